@@ -1,0 +1,1 @@
+"""What every chapter stands on: arrays, weights, samples, colour, steps."""

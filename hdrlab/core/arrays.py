@@ -1,0 +1,112 @@
+"""Arrays as the chapters expect them: checked once, at the verb.
+
+images  (P, H, W) gray or (P, H, W, 3) RGB, uint8 or uint16: a stack of photographs
+times   (P,) seconds of equivalent exposure, positive
+E       (H, W) or (H, W, 3) float32, radiance: finite and not negative, any linear unit
+L       (H, W) float32, luminance: the same, one channel
+valid   (P, H, W) bool, False where a photograph holds no picture
+n       256 or 65536, the number of levels a pixel value can take
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[Any]
+
+
+def describe(array: ArrayLike) -> str:
+    """Return what came, for an error message: shape, dtype and range."""
+    array = np.asarray(array)
+    if array.size == 0 or array.dtype.kind not in "biuf":
+        return f"shape {array.shape}, dtype {array.dtype}"
+    return f"shape {array.shape}, dtype {array.dtype}, values {array.min():.6g} to {array.max():.6g}"
+
+
+def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
+    """Return `images` as one array (P, H, W[, 3]) of uint8 or uint16, or raise a ValueError."""
+    if not isinstance(images, np.ndarray):
+        frames = [np.asarray(image) for image in images]  # type: ignore[union-attr]
+        kinds = sorted({f"{frame.shape} {frame.dtype}" for frame in frames})
+        if len(kinds) > 1:  # np.stack would take 8 and 16 bits together, and make the former nearly black
+            raise ValueError(f"expected frames of one size and type, got {', '.join(kinds)}")
+        images = np.stack(frames) if frames else np.empty(0)
+    if images.ndim not in (3, 4) or (images.ndim == 4 and images.shape[-1] != 3) or 0 in images.shape:
+        raise ValueError(f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}")
+    if images.dtype not in (np.uint8, np.uint16):
+        raise ValueError(f"expected images of uint8 or uint16, got {describe(images)}")
+    return images
+
+
+def as_times(times: ArrayLike, count: int) -> NDArray[np.float64]:
+    """Return `times` as float64 (count,), positive and finite, or raise a ValueError."""
+    checked = np.asarray(times, dtype=np.float64)
+    if checked.shape != (count,):
+        raise ValueError(f"expected {count} exposure times, one per image, got {describe(checked)}")
+    if not np.all(np.isfinite(checked) & (checked > 0)):
+        raise ValueError(f"expected positive exposure times in seconds, got {checked.tolist()}")
+    return checked
+
+
+def as_mask(valid: ArrayLike | None, images: Array) -> NDArray[np.bool_] | None:
+    """Return `valid` as bool (P, H, W), one mask per image; None, all is picture, passes."""
+    if valid is None:
+        return None
+    checked = np.asarray(valid, dtype=bool)
+    if checked.shape != images.shape[:3]:
+        raise ValueError(f"expected a mask of shape {images.shape[:3]}, got {describe(checked)}")
+    return checked
+
+
+def as_radiance(E: ArrayLike) -> NDArray[np.float32]:
+    """Return `E` as float32 (H, W) or (H, W, 3), finite and not negative, or raise a ValueError."""
+    array = np.asarray(E)
+    if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] != 3) or 0 in array.shape:
+        raise ValueError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
+    return _finite(array, "radiance")
+
+
+def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
+    """Return `L` as float32 (H, W), finite and not negative, or raise a ValueError."""
+    array = np.asarray(L)
+    if array.ndim != 2 or 0 in array.shape:
+        raise ValueError(f"expected luminance (H, W), got {describe(array)}")
+    return _finite(array, "luminance")
+
+
+def _finite(array: Array, what: str) -> NDArray[np.float32]:
+    """Return `array` as float32, or raise a ValueError that counts what is not finite or negative."""
+    if array.dtype.kind not in "iuf":
+        raise ValueError(f"expected {what} as numbers, got {describe(array)}")
+    with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
+        array = array.astype(np.float32, copy=False)
+    if not (array.min() >= 0 and array.max() < np.inf):  # a NaN makes both comparisons false
+        nan, inf = np.count_nonzero(np.isnan(array)), np.count_nonzero(np.isinf(array))
+        negative = np.count_nonzero(array < 0)
+        raise ValueError(
+            f"expected finite {what} that is not negative, got {nan} NaN, {inf} infinite "
+            f"and {negative} negative values in shape {array.shape}"
+        )
+    return array
+
+
+def levels(images: Array) -> int:
+    """Return n, the number of levels of the images' dtype: 256 or 65536."""
+    return 1 << (8 * images.dtype.itemsize)
+
+
+def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
+    """Return a table over pixel levels with n rows, (n,) or (n, C): as it is, or read between its levels.
+
+    A response of 256 levels serves 16-bit photographs so: level z of 65536 is level z / 257 of 256.
+    """
+    array = np.asarray(table, dtype=np.float64)
+    if array.ndim not in (1, 2) or len(array) < 2 or not np.all(np.isfinite(array)):
+        raise ValueError(f"expected a finite table over pixel levels, (n,) or (n, 3), got {describe(array)}")
+    if len(array) == n:
+        return array
+    at, own = np.linspace(0, 1, n), np.linspace(0, 1, len(array))
+    columns = [np.interp(at, own, column) for column in array.reshape(len(array), -1).T]
+    return np.stack(columns, axis=-1).reshape(n, *array.shape[1:])

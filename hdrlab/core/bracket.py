@@ -1,0 +1,70 @@
+"""A bracket: one scene, photographed several times with different exposures."""
+
+from collections.abc import Sequence
+from typing import NamedTuple
+from zlib import crc32
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, as_mask, as_stack, as_times
+
+
+class Bracket(NamedTuple):
+    """Photographs of one scene, sorted from the shortest exposure to the longest.
+
+    Attributes
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+    times : (P,) float64, seconds of equivalent exposure: shutter time x ISO / f-number squared,
+        relative to the first photograph's ISO and f-number
+    names : P strings, where each photograph came from
+    valid : (P, H, W) bool, or None where every pixel is a photograph's; False at pixels that are
+        not (the border of a registered scan)
+    linear : True where the values are proportional to exposure (RAW), so that there is no response to recover
+    """
+
+    images: Array
+    times: NDArray[np.float64]
+    names: tuple[str, ...]
+    valid: NDArray[np.bool_] | None = None
+    linear: bool = False
+
+
+def bracket(
+    images: ArrayLike | Sequence[ArrayLike],
+    times: ArrayLike,
+    names: Sequence[str] | None = None,
+    *,
+    valid: ArrayLike | None = None,
+    linear: bool = False,
+) -> Bracket:
+    """Return the Bracket of `images` and `times`, checked and sorted from short to long.
+
+    Raises
+    ------
+    ValueError
+        For images, times, names or masks that do not fit together; it says what was expected and what came.
+    """
+    images = as_stack(images)
+    times = as_times(times, len(images))
+    names = tuple(names) if names is not None else tuple(f"frame {j + 1}" for j in range(len(images)))
+    if len(names) != len(images):
+        raise ValueError(f"expected {len(images)} names, one per image, got {len(names)}")
+    mask = as_mask(valid, images)
+    order = short_to_long(images, times)
+    if np.any(order != np.arange(len(order))):
+        images, times, names = images[order], times[order], tuple(names[j] for j in order)
+        mask = mask[order] if mask is not None else None
+    return Bracket(images, times, names, mask, linear)
+
+
+def short_to_long(images: Array, times: NDArray[np.float64]) -> NDArray[np.intp]:
+    """Return the order of the frames (P,) that makes all that follows independent of the order given.
+
+    Frames of one time are ordered by their checksums, for even a sum depends on its order in the last bit.
+    """
+    if len(np.unique(times)) == len(times):
+        return np.argsort(times)
+    checksums = np.array([crc32(image.tobytes()) for image in images])
+    return np.lexsort((checksums, times))

@@ -1,0 +1,51 @@
+"""Which methods there are: a method is a module of its chapter that has the chapter's verb.
+
+So a new operator is one new file, and everything that offers a choice finds it there.
+"""
+
+import importlib
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+VERBS = {"align": "align", "response": "recover", "tonemap": "tonemap"}
+
+
+def names(chapter: str) -> list[str]:
+    """Return the names of a chapter's methods, sorted; the modules are read as text, not imported."""
+    folder = Path(__file__).parents[1] / chapter
+    verb = f"\ndef {VERBS[chapter]}("
+    return sorted(file.stem for file in folder.glob("*.py") if verb in file.read_text(encoding="utf8"))
+
+
+def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
+    """Return the verb of a chapter's method; a function is taken as it is, so that a reader's own plugs in.
+
+    Raises
+    ------
+    ValueError
+        For a name that the chapter does not have; it lists those that it has.
+
+    Examples
+    --------
+    >>> method("response", "linear").__module__
+    'hdrlab.response.linear'
+    """
+    if callable(name):
+        return name
+    if name not in names(chapter):
+        raise ValueError(f"expected a method of {chapter} out of {', '.join(names(chapter))}, got {name!r}")
+    return getattr(importlib.import_module(f"hdrlab.{chapter}.{name}"), VERBS[chapter])
+
+
+def check_knobs(chapter: str, name: str, knobs: dict[str, Any]) -> None:
+    """Raise a ValueError that lists a method's knobs where one of `knobs` is not among them."""
+    known = [
+        knob.name
+        for knob in inspect.signature(method(chapter, name)).parameters.values()
+        if knob.kind is knob.KEYWORD_ONLY
+    ]
+    for knob in knobs:
+        if knob not in known:
+            raise ValueError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")

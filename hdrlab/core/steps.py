@@ -1,0 +1,15 @@
+"""Steps: an algorithm that iterates yields its states; whoever holds them decides what to do."""
+
+from collections import deque
+from collections.abc import Iterable
+from typing import TypeVar
+
+State = TypeVar("State")
+
+
+def last(states: Iterable[State]) -> State:
+    """Return the last of `states`, which is what an iterating verb answers."""
+    kept = deque(states, maxlen=1)
+    if not kept:
+        raise ValueError("expected at least one state, got none")
+    return kept[0]

@@ -1,0 +1,46 @@
+"""How far to trust a pixel value: tables w(z) over the levels of a photograph.
+
+z  pixel level, 0 ... n - 1
+w  weight (n,), 0 at both ends: a value there says only "at most" or "at least"
+
+Which pixels are clipped is another question, and it is asked elsewhere (`radiance.merge`): a weight says how
+much, validity says whether.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Table = NDArray[np.float64]
+
+
+def hat(n: int = 256) -> Table:
+    """Return w(z) = z below the middle, n - 1 - z above it [Debevec97 eq. 4], scaled to 1 in the middle."""
+    z = np.arange(n)
+    return np.minimum(z, n - 1 - z) / ((n - 2) // 2)
+
+
+def gaussian(n: int = 256) -> Table:
+    """Return w(z) = exp(-4 (z - m)^2 / m^2), m the middle, brought to 0 at both ends [Robertson03 sec. 3]."""
+    m = (n - 1) / 2
+    bell = np.exp(-4 * ((np.arange(n) - m) / m) ** 2)
+    return (bell - bell[0]) / (1 - bell[0])
+
+
+def flat(n: int = 256) -> Table:
+    """Return w(z) = 1, and 0 at both ends: every value that is not clipped counts the same."""
+    w = np.ones(n)
+    w[[0, -1]] = 0
+    return w
+
+
+def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> Table:
+    """Return w with 0 above and below these fractions of the top level [Cerman06 sec. 4.2 cuts above 0.98].
+
+    Noise turns clipped pixels into nearly clipped ones, so a photograph lies a little below its top level
+    too.
+    """
+    if not 0 <= below < above <= 1:
+        raise ValueError(f"expected 0 <= below < above <= 1, got below={below} and above={above}")
+    w = np.asarray(w, dtype=np.float64)
+    z = np.linspace(0, 1, len(w))
+    return np.where((z > above) | (z < below), 0.0, w)
