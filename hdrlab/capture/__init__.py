@@ -1,0 +1,1 @@
+"""Light to numbers: scenes whose radiance is known, and a camera that photographs them."""

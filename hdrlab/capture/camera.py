@@ -1,0 +1,192 @@
+"""A camera in numbers: from the radiance of a scene to a bracket of photographs.
+
+E        radiance (H, W[, 3]) float32, any linear unit
+t        exposure time, s
+X        exposure at the sensor, float32: 1 fills the well
+N        electrons in the well, 0 to full_well
+M        brightness, 0 to 1
+Z        pixel level, 0 to 2^bits - 1
+offsets  (P, 2) int, (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference
+
+The light goes through the camera in this order, one function each:
+
+    E -> views -> exposure -> photons -> readout -> (hot pixels) -> response f -> grain -> quantise -> Z
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.capture.responses import Curve, Response, as_response
+from hdrlab.core.arrays import Array, as_radiance, as_times, describe
+from hdrlab.core.bracket import Bracket, bracket
+from hdrlab.core.colour import luminance
+
+Float = NDArray[np.float32]
+Seed = int | np.random.Generator
+
+
+def exposure(E: Float, time: float, *, sensitivity: float = 1.0) -> Float:
+    """Return X = s E t: light, times how long it was let in, times how strongly the sensor answers."""
+    with np.errstate(over="ignore"):  # an infinite exposure fills the well like any other too long one
+        return np.float32(sensitivity) * (E * np.float32(time))
+
+
+def photons(X: Float, *, full_well: float, rng: np.random.Generator) -> Float:
+    """Return N ~ Poisson(full_well X), at most full_well: light comes in photons, and a full well spills."""
+    arriving = full_well * np.minimum(X, 4.0)  # what would fill it four times over fills it surely
+    return np.minimum(rng.poisson(arriving), full_well).astype(np.float32)
+
+
+def readout(N: Float, *, read_noise: float, rng: np.random.Generator) -> Float:
+    """Return N + Normal(0, read_noise), electrons: what the amplifier adds, in the dark too."""
+    return N + np.float32(read_noise) * rng.standard_normal(N.shape, np.float32)
+
+
+def grain(M: Array, *, gray_noise: float, bits: int, rng: np.random.Generator) -> Array:
+    """Return M + Normal(0, gray_noise) levels: noise after the response, the same at every brightness."""
+    return M + np.float32(gray_noise / (2**bits - 1)) * rng.standard_normal(M.shape, np.float32)
+
+
+def quantise(M: Array, *, bits: int = 8) -> Array:
+    """Return Z = round((2^bits - 1) M), clamped to the levels there are: uint8 or uint16."""
+    top = 2**bits - 1
+    return np.floor(np.clip(M, 0, 1) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
+
+
+def views(E: Array, offsets: ArrayLike) -> list[Array]:
+    """Return what each frame of a moved camera sees: P arrays (h, w[, 3]), views of E.
+
+    Frame j sees E from (top + dy, left + dx) on, so that moved by (dy, dx) it lies on a frame of (0, 0). It
+    is smaller than the scene by the span of the offsets, h = H - (max dy - min dy) and w likewise: it holds
+    real content everywhere, and nothing wraps around.
+    """
+    moves = np.asarray(offsets)
+    if moves.ndim != 2 or moves.shape[1] != 2 or len(moves) == 0 or moves.dtype.kind not in "iu":
+        raise ValueError(f"expected offsets (P, 2) of whole pixels, got {describe(moves)}")
+    corners = moves - moves.min(axis=0)
+    h, w = E.shape[:2] - corners.max(axis=0)
+    if h < 1 or w < 1:
+        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {moves.tolist()}")
+    return [E[y : y + h, x : x + w] for y, x in corners]
+
+
+def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:
+    """Return offsets (P, 2) of a shaking hand, up to `radius` pixels each way; frame P // 2 stays at 0."""
+    if count < 1 or radius < 0:
+        raise ValueError(f"expected at least one frame and a radius of at least 0, got {count} and {radius}")
+    offsets = np.random.default_rng(rng).integers(-radius, radius, (count, 2), endpoint=True)
+    offsets[count // 2] = 0
+    return offsets
+
+
+def times_around(
+    E: ArrayLike, count: int = 7, *, stops: float = 2.0, middle: float = 0.1, sensitivity: float = 1.0
+) -> NDArray[np.float64]:
+    """Return `count` times (P,), seconds, `stops` apart, around the one that suits the scene.
+
+    That one brings the log-average luminance, exp(mean ln L), to X = `middle`: a little below half the levels
+    of a film or an sRGB picture, with three stops left above it.
+
+    Examples
+    --------
+    >>> times_around(np.full((2, 2), 0.5), 3, middle=0.5)
+    array([0.25, 1.  , 4.  ])
+    """
+    if count < 1 or not all(0 < knob < np.inf for knob in (stops, middle, sensitivity)):
+        got = f"{count}, {stops}, {middle} and {sensitivity}"
+        raise ValueError(
+            f"expected at least one frame, and positive stops, middle and sensitivity; got {got}"
+        )
+    L = luminance(E).astype(np.float64)
+    if not L.any():
+        raise ValueError("expected radiance with a positive pixel, got zeros")
+    suitable = middle / (sensitivity * np.exp(np.log(L[L > 0]).mean()))
+    return suitable * 2.0 ** (stops * (np.arange(count) - (count - 1) / 2))
+
+
+def shoot(
+    E: ArrayLike,
+    times: ArrayLike,
+    *,
+    response: str | Curve | Response | None = "film",
+    bits: int = 8,
+    sensitivity: float = 1.0,
+    full_well: float = np.inf,
+    read_noise: float = 0.0,
+    gray_noise: float = 0.0,
+    hot: float = 0.0,
+    offsets: ArrayLike | None = None,
+    rng: Seed = 0,
+) -> Bracket:
+    """Photograph a scene once per exposure time.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3), radiance, any linear unit
+    times : (P,) seconds, in any order: the photographs come sorted from short to long
+    response : f, a name in `responses.RESPONSES` (None: "linear"), a Response, or a rising function on arrays
+        of [0, 1]; `responses.true_g` tells what a calibration should find
+    bits : 8 or 16
+    sensitivity : s, exposure per (radiance unit x second): E t = 1 / s fills the well
+    full_well : electrons a pixel holds, which sets the shot noise; infinitely many have none. A phone's pixel
+        holds 5 000, a large sensor's 50 000.
+    read_noise : electrons, standard deviation; wants a finite full_well
+    gray_noise : pixel levels, standard deviation, after the response; 1 is the noise of [Cerman06 sec. 4.2]
+    hot : share of the sensor's elements (pixels of a gray photograph, channels of pixels of RGB) stuck at a
+        full well, the same ones in every photograph
+    offsets : (P, 2) int, (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
+        relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
+        saw is `views(E, offsets)[j]`.
+    rng : seed, or a generator, which is advanced
+
+    Returns
+    -------
+    bracket : Bracket of images (P, h, w[, 3]) uint8 or uint16, where h = H - (max dy - min dy), w likewise;
+        `linear` where the response is
+
+    Raises
+    ------
+    ValueError
+        For radiance, times, offsets or knobs that mean nothing; it says what was expected and what came.
+
+    Examples
+    --------
+    >>> b = shoot([[0.1, 0.5, 3.0]], [2.0, 1.0], response="linear")
+    >>> b.times, b.images[:, 0]
+    (array([1., 2.]), array([[ 26, 128, 255],
+           [ 51, 255, 255]], dtype=uint8))
+    """
+    E, f = as_radiance(E), as_response(response).f
+    times = np.atleast_1d(np.asarray(times, np.float64))
+    times = as_times(times, max(times.size, 1))
+    moves = np.zeros((len(times), 2), int) if offsets is None else np.asarray(offsets)
+    if moves.shape[:1] != times.shape:
+        raise ValueError(f"expected {len(times)} offsets, one per time, got {describe(moves)}")
+    _check(bits, sensitivity, full_well, read_noise, gray_noise, hot)
+
+    rng = np.random.default_rng(rng)
+    order = np.argsort(times, kind="stable")
+    seen = views(E, moves[order])
+    stuck = rng.random(seen[0].shape) < hot
+    images = []
+    for view, time in zip(seen, times[order], strict=True):
+        X = exposure(view, time, sensitivity=sensitivity)
+        if full_well < np.inf:
+            X = readout(photons(X, full_well=full_well, rng=rng), read_noise=read_noise, rng=rng) / full_well
+        M = f(np.where(stuck, 1, np.clip(X, 0, 1)))
+        images.append(quantise(grain(M, gray_noise=gray_noise, bits=bits, rng=rng), bits=bits))
+    return bracket(np.stack(images), times[order], linear=as_response(response) is as_response("linear"))
+
+
+def _check(
+    bits: int, sensitivity: float, full_well: float, read_noise: float, gray_noise: float, hot: float
+) -> None:
+    if bits not in (8, 16):
+        raise ValueError(f"expected 8 or 16 bits, got {bits}")
+    if not (0 < sensitivity < np.inf and full_well > 0):
+        raise ValueError(f"expected a positive sensitivity and full well, got {sensitivity} and {full_well}")
+    if not (0 <= read_noise < np.inf and 0 <= gray_noise < np.inf and 0 <= hot <= 1):
+        got = f"read_noise {read_noise}, gray_noise {gray_noise}, hot {hot}"
+        raise ValueError(f"expected noise of at least 0 and a share of hot pixels from 0 to 1, got {got}")
+    if read_noise > 0 and full_well == np.inf:
+        raise ValueError("expected a finite full_well for read_noise, which is counted in electrons; got inf")

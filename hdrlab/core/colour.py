@@ -1,0 +1,173 @@
+"""Colour around an operator that sees luminance alone, and the way from light to a display's 8 bits.
+
+E        radiance            (H, W, 3), linear, primaries of sRGB; or (H, W), gray
+L        luminance           (H, W), same unit
+Ld       display luminance   (H, W), linear, 1 = white
+display  linear display RGB  (H, W, 3) in [0, 1], or (H, W)
+s        saturation          1 keeps the colour's ratios, 0 is gray
+
+A saturated colour may want more of a channel than the display has. There are two policies: `recolour` clips
+the channel (the luminance drops, and the hue may turn), `recolour_chroma` gives up saturation instead
+(luminance and hue stay).
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_luminance, as_radiance, describe
+
+Float = NDArray[np.float32]
+
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
+DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray
+ROWS = 8  # a band of rows that stays in the processor's cache
+
+
+def luminance(E: ArrayLike) -> Float:
+    """Return L = 0.2126 R + 0.7152 G + 0.0722 B [BT.709], or E itself where it has one channel."""
+    E = as_radiance(E)
+    return E if E.ndim == 2 else E @ LUMINANCE
+
+
+def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> Float:
+    """Return C = (E / L)^s Ld for each channel C, clipped to [0, 1] [Tumblin99 eq. 3].
+
+    Parameters
+    ----------
+    E : (H, W, 3) radiance, or (H, W), which passes as gray
+    L : (H, W) luminance of E
+    Ld : (H, W) display luminance, linear, 1 = white
+    saturation : s >= 0; below 1 it takes from colours the contrast that tone mapping took from luminance
+
+    Returns
+    -------
+    (H, W, 3) float32 linear display RGB in [0, 1], or (H, W) where E is gray.
+    A pixel without light, E = L = 0, has no colour and becomes Ld in gray.
+
+    Raises
+    ------
+    ValueError
+        For shapes that do not fit together, values that are not finite or negative, a negative saturation.
+
+    References
+    ----------
+    Tumblin and Turk, LCIS: a boundary hierarchy for detail-preserving contrast reduction, SIGGRAPH 1999.
+
+    Examples
+    --------
+    >>> E = np.array([[[8.0, 4.0, 2.0]]])
+    >>> L = luminance(E)
+    >>> recolour(E, L, L / 10).round(3)
+    array([[[0.8, 0.4, 0.2]]], dtype=float32)
+    """
+    E, L, Ld = _fitting(E, L, Ld, saturation)
+    return np.clip(Ld if E.ndim == 2 else _ratio(E, L, Ld, saturation), 0, 1)
+
+
+def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> Float:
+    """Return C = (1 + s (E / L - 1)) Ld, with s lowered where a channel would leave [0, 1] [Mantiuk09 eq. 3].
+
+    The chroma E / L - 1 is a direction away from gray and only its length changes, so hue and luminance stay:
+    the luminance of the result is Ld in every pixel.
+
+    Parameters
+    ----------
+    E, L, Ld, saturation : as for `recolour`; L must be the luminance of E
+
+    Returns
+    -------
+    (H, W, 3) float32 linear display RGB in [0, 1], or (H, W) where E is gray.
+
+    Raises
+    ------
+    ValueError
+        As `recolour`.
+
+    References
+    ----------
+    Mantiuk et al., Color correction for tone mapping, Eurographics 2009.
+
+    Examples
+    --------
+    >>> E = np.array([[[0.0, 0.0, 5.0]]])
+    >>> recolour_chroma(E, luminance(E), np.array([[0.5]])) @ LUMINANCE
+    array([[0.5]], dtype=float32)
+    """
+    E, L, Ld = _fitting(E, L, Ld, saturation)
+    Ld = np.clip(Ld, 0, 1)
+    if E.ndim == 2:
+        return Ld
+    chroma = np.where((L < DARK)[..., None], 0, E / np.maximum(L, DARK)[..., None] - 1)
+    up, down = np.maximum(chroma.max(axis=-1), DARK), np.maximum(-chroma.min(axis=-1), DARK)
+    # s at which the first channel meets 1, or 0
+    room = np.minimum((1 - Ld) / np.maximum(Ld * up, DARK), 1 / down)
+    s = np.minimum(np.float32(saturation), room)[..., None]
+    return np.clip((1 + s * chroma) * Ld[..., None], 0, 1)  # the clip takes off rounding alone
+
+
+def encode_srgb(linear: ArrayLike) -> NDArray[Any]:
+    """Return 12.92 c up to c = 0.0031308 and 1.055 c^(1/2.4) - 0.055 above it [IEC 61966-2-1]."""
+    c = np.asarray(linear)
+    return np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 0.0031308) ** (1 / 2.4) - 0.055)
+
+
+def decode_srgb(encoded: ArrayLike) -> NDArray[Any]:
+    """Return v / 12.92 up to v = 0.04045 and ((v + 0.055) / 1.055)^2.4 above it [IEC 61966-2-1]."""
+    v = np.asarray(encoded)
+    return np.where(v <= 0.04045, v / 12.92, ((np.maximum(v, 0.04045) + 0.055) / 1.055) ** 2.4)
+
+
+# sRGB codes of 65536 steps of linear light. Where the curve is steepest a step is 1/20 of a code.
+CODES = np.floor(255 * encode_srgb(np.arange(65536) / 65535) + 0.5).astype(np.uint8)
+
+
+def to_8bit(display: ArrayLike) -> NDArray[np.uint8]:
+    """Return floor(255 encode_srgb(display) + 0.5), and 255 above 1, by table: within 0.53 of a code."""
+    return _codes(as_radiance(display))
+
+
+def render(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> NDArray[np.uint8]:
+    """Return to_8bit(recolour(E, L, Ld)), band by band, so that the picture in floats never stands in memory.
+
+    Parameters, errors : as for `recolour`
+
+    Returns
+    -------
+    (H, W, 3) uint8, sRGB; or (H, W) where E is gray
+    """
+    E, L, Ld = _fitting(E, L, Ld, saturation)
+    picture = np.empty(E.shape, np.uint8)
+    for top in range(0, len(E), ROWS):
+        band = slice(top, top + ROWS)
+        picture[band] = _codes(Ld[band] if E.ndim == 2 else _ratio(E[band], L[band], Ld[band], saturation))
+    return picture
+
+
+def _ratio(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
+    dark = L < DARK
+    L = np.maximum(L, DARK)
+    if saturation == 1:
+        C = E * np.stack([Ld / L] * 3, axis=-1)  # faster than an inner loop over three channels
+    else:
+        C = (E / L[..., None]) ** saturation * Ld[..., None]
+    if dark.any():
+        C[dark] = Ld[dark, None]
+    return C
+
+
+def _codes(display: Float) -> NDArray[np.uint8]:
+    index = (np.minimum(display, 1) * 65535 + 0.5).astype(np.uint16)
+    return CODES.take(index, mode="clip")  # which is faster than to look for an index out of range
+
+
+def _fitting(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float) -> tuple[Float, Float, Float]:
+    E, L, Ld = as_radiance(E), as_luminance(L), as_luminance(Ld)
+    if not E.shape[:2] == L.shape == Ld.shape:
+        raise ValueError(
+            f"expected L and Ld of shape {E.shape[:2]}, got L: {describe(L)}, and Ld: {describe(Ld)}"
+        )
+    if not 0 <= saturation < np.inf:
+        raise ValueError(f"expected a saturation that is finite and not negative, got {saturation}")
+    return E, L, Ld
