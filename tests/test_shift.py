@@ -1,0 +1,75 @@
+"""What `align.shift` promises."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from hdrlab.align.shift import crop, shift
+
+
+def views(offsets, shape=(40, 50)):
+    """Return photographs of one scene, so placed that `offsets` lay them on each other."""
+    scene = np.random.default_rng(3).integers(0, 256, (100, 110, *shape[2:]), dtype=np.uint8)
+    rows, columns = shape[:2]
+    return np.stack([scene[30 + dy : 30 + dy + rows, 30 + dx : 30 + dx + columns] for dy, dx in offsets])
+
+
+@given(arrays(np.int64, st.tuples(st.integers(1, 5), st.just(2)), elements=st.integers(-18, 18)))
+@settings(deadline=None)
+def test_moved_images_of_one_scene_are_equal_and_nothing_but_the_scene(offsets):
+    offsets = np.clip(offsets - offsets[0], -18, 18)
+    images = views(offsets)
+    rows, columns = crop(offsets, images.shape[1:])
+    moved = shift(images, offsets)
+    assert np.all(moved == images[0][rows, columns])
+
+
+@given(arrays(np.int64, st.tuples(st.integers(1, 5), st.just(2)), elements=st.integers(-30, 30)))
+@settings(deadline=None)
+def test_the_crop_holds_exactly_the_pixels_that_every_image_covers(offsets):
+    covered = np.ones((40, 50), bool)
+    for dy, dx in offsets:
+        y, x = np.mgrid[:40, :50]
+        covered &= (y >= dy) & (y < dy + 40) & (x >= dx) & (x < dx + 50)
+    if not covered.any():
+        with pytest.raises(ValueError, match="overlap"):
+            crop(offsets, (40, 50))
+        return
+    rows, columns = crop(offsets, (40, 50))
+    assert covered[rows, columns].all() and covered[rows, columns].size == covered.sum()
+
+
+@pytest.mark.parametrize("shape", [(40, 50), (40, 50, 3)])
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_depth_and_channels_survive(shape, dtype):
+    images = views([(0, 0), (2, -5)], shape).astype(dtype)
+    moved = shift(images, [(0, 0), (2, -5)])
+    assert moved.dtype == dtype and moved.shape == (2, 38, 45, *shape[2:])
+
+
+def test_images_that_stay_are_not_copied():
+    images = views([(0, 0), (0, 0)])
+    assert shift(images, np.zeros((2, 2), int)) is images
+
+
+def test_the_images_given_are_left_as_they_were():
+    images = views([(0, 0), (3, 4)])
+    before = images.copy()
+    shift(images, [(0, 0), (3, 4)])[:] = 0
+    assert np.array_equal(images, before)
+
+
+@pytest.mark.parametrize("offsets", [[(40, 0), (0, 0)], [(0, 25), (0, -25)], [(-20, 0), (20, 1)]])
+def test_offsets_that_leave_nothing_are_refused(offsets):
+    with pytest.raises(ValueError, match=r"overlap.*\(40, 50\)"):
+        shift(views([(0, 0), (0, 0)]), offsets)
+
+
+@pytest.mark.parametrize(
+    "offsets", [[(0, 0)], [(0, 0)] * 3, [0, 0], [(0.5, 0), (0, 0)], [(0, 0, 0), (0, 0, 0)]]
+)
+def test_offsets_that_are_not_one_whole_pair_per_image_are_refused(offsets):
+    with pytest.raises(ValueError, match="expected .*offsets"):
+        shift(views([(0, 0), (0, 0)]), offsets)
