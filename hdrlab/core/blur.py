@@ -1,0 +1,133 @@
+"""Gaussian blurs as matrix products: exact where they are narrow, on a coarse grid where they are wide.
+
+image  (H, W) float32, continued beyond its edges by reflection
+sigma  standard deviation, pixels
+k      taps (2r + 1,) of the kernel, sum 1; r = 4 sigma
+K      band matrix (n, (n - 1) step + 2r + 1), K[i, i step + j] = k[j]: row i holds the kernel of output i
+h      spacing of the coarse grid, pixels
+
+A blur of rows is a product with a band matrix, the same at every height. Cut into tiles of a few rows it is
+small and dense, which is what a processor's matrix product does at full speed; a loop over the taps does not.
+"""
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+
+Float = NDArray[np.float32]
+
+TILE = 16  # rows of a product: more would multiply more of the band's zeros, fewer idle the processor
+NODES = 8  # rows of a product on the coarse grid
+
+
+def gaussian(image: ArrayLike, sigma: float) -> Float:
+    """Return `image` blurred by a Gaussian of `sigma` pixels, reflected at the edges.
+
+    Below sigma = 4 it is the plain sum to the accuracy of float32. Wider ones go over a coarse grid, and
+    their kernel differs from the Gaussian by less than 0.2 % of its peak.
+
+    Parameters
+    ----------
+    image : (H, W)
+    sigma : standard deviation in pixels, > 0
+
+    Returns
+    -------
+    (H, W) float32
+
+    Raises
+    ------
+    ValueError
+        For an image of another shape and a sigma that is not positive.
+
+    Examples
+    --------
+    >>> np.allclose(gaussian([[0, 0, 1, 0, 0]], 0.5), [[0.0003, 0.1065, 0.7865, 0.1065, 0.0003]], atol=1e-4)
+    True
+    """
+    image = np.asarray(image, np.float32)
+    if image.ndim != 2 or 0 in image.shape:
+        raise ValueError(f"expected an image (H, W), got {describe(image)}")
+    if not 0 < sigma < np.inf:
+        raise ValueError(f"expected a positive sigma in pixels, got {sigma}")
+    h = spacing(sigma)
+    return direct(image, sigma) if h == 1 else coarse(image, sigma, h)
+
+
+def spacing(sigma: float) -> int:
+    """Return h, the largest power of two that is at most sigma / 2; 1 below sigma = 4."""
+    return 2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1
+
+
+def taps(sigma: float) -> Float:
+    """Return k[j] = exp(-(j - r)^2 / (2 sigma^2)), brought to the sum 1, to four sigma on either side."""
+    r = int(4 * sigma + 0.5)
+    k = np.exp(-0.5 * (np.arange(-r, r + 1) / sigma) ** 2)
+    return (k / k.sum()).astype(np.float32)
+
+
+def band(k: ArrayLike, n: int, step: int = 1) -> Float:
+    """Return the band matrix K of n rows, each holding the taps k `step` columns further right."""
+    k = np.asarray(k, np.float32)
+    K = np.zeros((n, (n - 1) * step + len(k)), np.float32)
+    for i in range(n):
+        K[i, i * step : i * step + len(k)] = k
+    return K
+
+
+def spline(h: int, n: int) -> Float:
+    """Return the matrix (n h, n + 3) that puts h rows between each two nodes by cubic B-splines."""
+    t = np.arange(h) / h
+    weights = (
+        np.stack([(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3], axis=-1) / 6
+    )
+    U = np.zeros((n * h, n + 3), np.float32)
+    for i in range(n):
+        U[i * h : (i + 1) * h, i : i + 4] = weights
+    return U
+
+
+def product(K: Float, step: int, image: Float) -> Float:
+    """Return K times each window of rows of `image`, a window every `step` rows, one below the other."""
+    windows = sliding_window_view(image, K.shape[1], axis=0)[::step].swapaxes(1, 2)  # (windows, rows, W)
+    return np.matmul(K, windows).reshape(-1, image.shape[1])
+
+
+def pad(image: Float, margin: int) -> Float:
+    """Return `image` continued by reflection, `margin` all round, and at the far ends up to whole tiles."""
+    return np.pad(image, [(margin, margin + -n % TILE) for n in image.shape], mode="symmetric")
+
+
+def inside(padded: Float, k: Float, margin: int) -> Float:
+    """Return the blur by taps k of what lies `margin` inside `padded`, as far as it fills whole tiles."""
+    K, cut = band(k, TILE), margin - len(k) // 2
+    core = padded[cut : len(padded) - cut, cut : padded.shape[1] - cut]
+    return product(K, TILE, np.ascontiguousarray(product(K, TILE, core).T)).T
+
+
+def direct(image: Float, sigma: float) -> Float:
+    """Return the plain blur."""
+    k = taps(sigma)
+    margin = len(k) // 2
+    blurred = inside(
+        pad(image, margin).T, k, margin
+    ).T  # lying on its side, to come out with its rows in one piece
+    return np.ascontiguousarray(blurred[: image.shape[0], : image.shape[1]])
+
+
+def coarse(image: Float, sigma: float, h: int) -> Float:
+    """Return the blur through a grid of spacing h: blurred at its nodes alone, then B-splines between them.
+
+    A cubic B-spline is itself nearly a Gaussian, of variance h^2 / 3. Variances add: the nodes take what is
+    left.
+    """
+    k = taps((sigma**2 - h**2 / 3) ** 0.5)
+    reach = h + len(k) // 2  # the first node lies one spacing before the first row
+    nodes = [NODES * (-(-n // (NODES * h)) + 1) for n in image.shape]
+    ends = [(reach, (m - 1) * h + len(k) - n - reach) for n, m in zip(image.shape, nodes, strict=True)]
+    K, U = band(k, NODES, h), spline(h, NODES)
+    few = product(K, NODES * h, product(K, NODES * h, np.pad(image, ends, mode="symmetric")).T)
+    blurred = product(U, NODES, product(U, NODES, few).T)
+    return np.ascontiguousarray(blurred[: image.shape[0], : image.shape[1]])

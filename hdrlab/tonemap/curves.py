@@ -1,0 +1,124 @@
+"""Curves from scene to display: linear scaling, gamma, logarithm, and the quantisation after them.
+
+L      luminance           (H, W) >= 0, any linear unit
+low    Lw_min              the darkest luminance of the scene
+high   Lw_max              the brightest
+F      tone mapping        [Lw_min, Lw_max] -> [0, 1]
+Ld     display luminance   F(L), (H, W), 1 = white
+N      levels of a display
+
+A curve (TRC, tone reproduction curve) treats equal luminances equally wherever they stand; an operator (TRO)
+looks at the neighbourhood too, so that one luminance may become several (`spread` shows which it is). Ld is
+light: the display's own encoding comes after it (`core.colour.encode_srgb`), so gamma here is contrast that
+the picture loses.
+"""
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_luminance
+from hdrlab.core.extremes import brightest, darkest
+
+Float = NDArray[np.float32]
+
+LAWS = ("monotone", "exposure")
+
+
+def linear(L: Float, *, high: float) -> Float:
+    """Return F(L) = L / Lw_max: black stays black, and most of a wide range falls below one level."""
+    white = np.float32(high)
+    return np.divide(np.minimum(L, white), white, dtype=np.float32)
+
+
+def gamma(L: Float, *, high: float, gamma: float = 2.2) -> Float:
+    """Return F(L) = (L / Lw_max)^(1 / gamma): every ratio of luminances is compressed alike."""
+    return linear(L, high=high) ** np.float32(1 / gamma)
+
+
+def logarithmic(L: Float, *, low: float, high: float) -> Float:
+    """Return F(L) = log(L / Lw_min) / log(Lw_max / Lw_min): every stop takes the same share of the range."""
+    if not low < high:
+        return np.where(L < low, np.float32(0), np.float32(1))
+    stops = np.log(np.clip(L, low, high)) - np.log(np.float32(low))
+    return np.clip(stops / np.float32(np.log(high) - np.log(low)), 0, 1)
+
+
+CURVES: dict[str, Callable[..., Float]] = {"linear": linear, "gamma": gamma, "log": logarithmic}
+
+
+def quantise(F: ArrayLike, *, levels: int = 256) -> NDArray[Any]:
+    """Return Q = floor((N - 1) F + 0.5), F in [0, 1], as uint8 or uint16 [Battiato08 eq. 1.21].
+
+    Raises a ValueError where F leaves [0, 1] or `levels` does not fit 16 bits.
+    """
+    F = np.asarray(F)
+    if not 2 <= levels <= 65536:
+        raise ValueError(f"expected 2 to 65536 levels, got {levels}")
+    if not np.all((F >= 0) & (F <= 1)):
+        outside = np.count_nonzero(~((F >= 0) & (F <= 1)))
+        raise ValueError(f"expected values in [0, 1], got {outside} outside it in shape {F.shape}")
+    return np.floor((levels - 1) * F + 0.5).astype(np.uint8 if levels <= 256 else np.uint16)
+
+
+def spread(L: Float, Ld: Float, *, bins: int = 64) -> tuple[Float, Float, Float]:
+    """Return (luminance, least Ld, greatest Ld) of `bins` classes of equally many pixels, dark to bright.
+
+    Of a curve the greatest of one class is the least of the next: together they draw the curve. Of an
+    operator they draw a band, as wide as the neighbourhood makes a difference.
+    """
+    order = np.argsort(L, axis=None, kind="stable")
+    classes = np.array_split(order, min(bins, order.size))
+    values = [(L.flat[c[len(c) // 2]], Ld.flat[c].min(), Ld.flat[c].max()) for c in classes]
+    luminance, least, greatest = np.array(values, np.float32).T
+    return luminance, least, greatest
+
+
+def tonemap(
+    L: ArrayLike,
+    *,
+    curve: Literal["linear", "gamma", "log"] = "log",
+    gamma: float = 2.2,
+    cut: float = 1e-4,
+) -> Float:
+    """Return display luminance by one curve for all pixels.
+
+    Parameters
+    ----------
+    L : (H, W) luminance, finite and not negative, any linear unit
+    curve : which F
+    gamma : exponent 1 / gamma, for that curve
+    cut : fraction of the lit pixels to leave out at either end of the scene's range; one hot pixel always is
+
+    Returns
+    -------
+    (H, W) float32 in [0, 1], 1 = white
+
+    Raises
+    ------
+    ValueError
+        For luminance that is not (H, W), finite and positive or zero; an unknown curve; gamma or cut out of
+        range.
+
+    References
+    ----------
+    Battiato, Castorina, Messina, Exposure correction for imaging devices: an overview, 2008, eq. 1.21.
+
+    Examples
+    --------
+    >>> tonemap(np.array([[1.0, 10.0, 100.0, 1000.0, 10000.0]])).round(2).tolist()
+    [[0.0, 0.0, 0.5, 1.0, 1.0]]
+    """
+    L = as_luminance(L)
+    if curve not in CURVES:
+        raise ValueError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
+    if not (0 < gamma < np.inf and 0 <= cut < 0.5):
+        raise ValueError(f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}")
+    low, high = (
+        darkest(L, cut=cut),
+        brightest(L, cut=cut) or 1.0,
+    )  # a scene without light is black under any curve
+    own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low or 1.0}}
+    return CURVES[curve](L, high=high, **own[curve])

@@ -1,0 +1,127 @@
+"""What every operator must obey, whatever its paper: each law takes the operator as an argument.
+
+Laws that hold for all stand in ALWAYS; the others are for modules that name them in LAWS (see
+hdrlab.tonemap).
+"""
+
+import warnings
+
+import numpy as np
+import pytest
+
+
+def scene(shape=(96, 128), seed=0):
+    """Return a luminance of about five decades: soft light, a bright window, fine texture."""
+    rng = np.random.default_rng(seed)
+    y, x = np.indices(shape) / max(shape)
+    light = 4 * np.exp(-8 * ((x - 0.6) ** 2 + (y - 0.3) ** 2)) + 3 * (x > 0.8) - 2 * (y > 0.5)
+    return np.exp(1.5 * light + 0.3 * rng.standard_normal(shape)).astype(np.float32)
+
+
+def hot_pixel(L, value=1e12):
+    """Return L with one hot pixel."""
+    L = L.copy()
+    L[L.shape[0] // 2, L.shape[1] // 3] = value
+    return L
+
+
+RADIANCES = {
+    "a scene": scene(),
+    "zeros among it": np.where(np.arange(128) % 3 == 0, 0, scene()),
+    "all zeros": np.zeros((16, 20)),
+    "one lamp in the dark": hot_pixel(np.zeros((16, 20)), 3.0),
+    "1e-12": np.full((16, 20), 1e-12),
+    "1e12": np.full((16, 20), 1e12),
+    "1e-12 beside 1e12": np.where(np.arange(20) < 10, 1e-12, 1e12) * np.ones((16, 1)),
+    "the range of float32": np.geomspace(1e-45, 3e38, 320).reshape(16, 20),
+    "one hot pixel": hot_pixel(scene()),
+    "a constant": np.full((33, 17), 3.7),
+    "1 x 1": np.full((1, 1), 5.0),
+    "2 x 3": np.array([[0.0, 1.0, 2.0], [3.0, 400.0, 5e5]]),
+    "one row": scene((1, 200)),
+    "integers": np.arange(320).reshape(16, 20),
+    "float64": scene().astype(np.float64),
+}
+
+
+def stays_in_range(tonemap):
+    for name, L in RADIANCES.items():
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            Ld = tonemap(L)
+        assert Ld.shape == L.shape and Ld.dtype == np.float32, name
+        assert np.all((Ld >= 0) & (Ld <= 1)), f"{name}: {np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))} values"
+
+
+def refuses_and_counts_what_is_no_radiance(tonemap):
+    for value, said in ((np.nan, "2 NaN"), (np.inf, "2 infinite"), (-1.0, "2 negative")):
+        L = scene()
+        L[3, 4] = L[50, 60] = value
+        with pytest.raises(ValueError, match=said):
+            tonemap(L)
+
+
+def refuses_wrong_shapes(tonemap):
+    for shape in ((), (5,), (4, 5, 3), (2, 4, 5, 3), (0, 5)):
+        with pytest.raises(ValueError, match="expected luminance"):
+            tonemap(np.ones(shape))
+    with pytest.raises(ValueError, match="expected luminance"):
+        tonemap(np.full((4, 5), "bright"))
+
+
+def answers_the_same_twice(tonemap):
+    assert np.array_equal(tonemap(scene()), tonemap(scene()))
+
+
+def leaves_its_input_alone(tonemap):
+    L = scene()
+    L.setflags(write=False)
+    Ld = tonemap(L)
+    assert np.array_equal(L, scene()) and not np.shares_memory(L, Ld)
+
+
+def takes_any_memory_layout(tonemap):
+    wide = np.zeros((96, 256), np.float32)
+    wide[:, ::2] = scene()
+    for L in (np.asfortranarray(scene()), wide[:, ::2], scene().astype(">f4")):
+        assert np.allclose(tonemap(L), tonemap(scene()), atol=1e-6)
+
+
+def shrugs_off_a_hot_pixel(tonemap):
+    for L in (scene(), scene((64, 64), 1) ** 0.2):
+        assert abs(np.median(tonemap(hot_pixel(L))) - np.median(tonemap(L))) < 0.02
+
+
+def keeps_the_light_the_right_way_up(tonemap):
+    """Brighter regions come out brighter: the ranks of coarse averages hardly change."""
+    L = scene()
+    means = [A.reshape(6, 16, 8, 16).mean(axis=(1, 3)).ravel() for A in (np.log(L), tonemap(L))]
+    ranks = [np.argsort(np.argsort(m)) for m in means]
+    assert np.corrcoef(ranks)[0, 1] > 0.5
+
+
+def monotone(tonemap):
+    """One curve for all pixels: a brighter pixel is never darker on the display."""
+    for L in (scene(), RADIANCES["zeros among it"], RADIANCES["the range of float32"], hot_pixel(scene())):
+        order = np.argsort(L, axis=None)
+        assert np.all(np.diff(tonemap(L).ravel()[order]) >= -1e-6)  # float32 rounds
+
+
+def exposure(tonemap):
+    """The unit of L cancels: a power of two to the last bits, any other factor to rounding."""
+    for L in (scene(), RADIANCES["zeros among it"]):
+        for factor, atol in ((2.0**-20, 1e-5), (2.0**20, 1e-5), (3.7e-6, 1e-4), (5.1e7, 1e-4)):
+            assert np.allclose(tonemap(L * np.float32(factor)), tonemap(L), atol=atol), factor
+
+
+ALWAYS = (
+    stays_in_range,
+    refuses_and_counts_what_is_no_radiance,
+    refuses_wrong_shapes,
+    answers_the_same_twice,
+    leaves_its_input_alone,
+    takes_any_memory_layout,
+    shrugs_off_a_hot_pixel,
+    keeps_the_light_the_right_way_up,
+)
+CLAIMED = {"monotone": monotone, "exposure": exposure}

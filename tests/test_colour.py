@@ -1,0 +1,152 @@
+"""hdrlab.core.colour: luminance, colour given back, display encoding."""
+
+import cv2
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hdrlab.core import colour
+
+rng = np.random.default_rng(7)
+E = np.exp(2 * rng.standard_normal((40, 50, 3))).astype(np.float32)
+L = colour.luminance(E)
+Ld = (L / (1 + L)).astype(np.float32)
+BOTH = pytest.mark.parametrize("recolour", [colour.recolour, colour.recolour_chroma])
+
+
+def test_luminance_weighs_the_channels_and_passes_gray():
+    assert colour.luminance(np.array([[[1.0, 2.0, 3.0]]]))[0, 0] == pytest.approx(
+        0.2126 + 2 * 0.7152 + 3 * 0.0722
+    )
+    assert np.array_equal(colour.luminance(L), L)
+    assert np.allclose(colour.luminance(np.full((2, 2, 3), 7.5)), 7.5)
+
+
+def test_recolour_keeps_the_ratios_of_channels_where_none_is_clipped():
+    dim = np.float32(0.05) * Ld
+    C = colour.recolour(E, L, dim)
+    assert np.allclose(C, E / L[..., None] * dim[..., None], rtol=1e-5)
+    assert np.allclose(colour.luminance(C), dim, rtol=1e-5)
+
+
+@pytest.mark.parametrize("saturation", [0.4, 0.7, 1.5])
+def test_recolour_is_its_formula_for_any_saturation(saturation):
+    formula = (E.astype(float) / L[..., None]) ** saturation * Ld[..., None]
+    assert np.allclose(colour.recolour(E, L, Ld, saturation=saturation), np.clip(formula, 0, 1), atol=1e-5)
+
+
+def test_a_channel_beyond_the_display_is_clipped_and_the_others_are_not_touched():
+    E = np.array([[[1.0, 0.1, 0.2]]])
+    L = colour.luminance(E)
+    C = colour.recolour(E, L, np.array([[0.6]]))[0, 0]
+    assert C[0] == 1 and np.allclose(C[1:], E[0, 0, 1:] / L[0, 0] * 0.6, rtol=1e-6)
+
+
+@given(rgb=st.tuples(*[st.floats(0, 1e6)] * 3), ld=st.floats(0, 1), saturation=st.floats(0, 3))
+@settings(max_examples=200, deadline=None)
+def test_recolour_chroma_keeps_the_luminance_in_gamut_for_any_colour(rgb, ld, saturation):
+    E = np.array([[rgb]])
+    C = colour.recolour_chroma(E, colour.luminance(E), np.array([[ld]]), saturation=saturation)
+    assert np.all((C >= 0) & (C <= 1))
+    assert colour.luminance(C)[0, 0] == pytest.approx(ld, abs=2e-6)
+
+
+def test_recolour_chroma_keeps_the_hue_that_clipping_turns():
+    E = np.array([[[1.0, 0.5, 0.0]]])
+    L, Ld = colour.luminance(E), np.array([[0.9]])
+
+    def hue(C):  # where the middle channel stands between the least and the greatest
+        least, middle, greatest = np.sort(C[0, 0])
+        return (middle - least) / (greatest - least)
+
+    assert hue(colour.recolour_chroma(E, L, Ld)) == pytest.approx(0.5, abs=1e-4)
+    assert hue(colour.recolour(E, L, Ld)) > 0.6
+
+
+def test_both_policies_agree_where_the_colour_fits():
+    dim = np.float32(0.05) * Ld
+    assert np.allclose(colour.recolour(E, L, dim), colour.recolour_chroma(E, L, dim), rtol=1e-4, atol=1e-6)
+
+
+@BOTH
+def test_no_saturation_is_gray_and_gray_passes(recolour):
+    assert np.allclose(recolour(E, L, Ld, saturation=0), Ld[..., None], atol=1e-6)
+    assert np.array_equal(recolour(L, L, Ld), Ld)
+    assert np.allclose(recolour(np.dstack([L] * 3), L, Ld), Ld[..., None], rtol=1e-5)
+
+
+@BOTH
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("level", [0, 1e-45, 1e-38, 1e-12, 1e12, 1e37])
+@pytest.mark.parametrize("saturation", [0.5, 1, 2])
+def test_no_light_and_any_light_stay_in_the_display(recolour, level, saturation):
+    E = np.array([[[0, 0, 0], [1, 1, 1], [1, 0, 0], [0, 0, 1]]]) * level
+    C = recolour(E, colour.luminance(E), np.array([[0.3, 0.3, 0.3, 1.0]]), saturation=saturation)
+    assert np.all((C >= 0) & (C <= 1))
+    assert np.allclose(C[0, :2], 0.3, atol=1e-5), "without light, or in gray light, the picture is gray at Ld"
+
+
+@pytest.mark.parametrize("verb", [colour.recolour, colour.recolour_chroma, colour.render])
+def test_what_does_not_fit_together_is_refused(verb):
+    with pytest.raises(ValueError, match=r"expected L and Ld of shape \(40, 50\)"):
+        verb(E, L[:-1], Ld)
+    with pytest.raises(ValueError, match="1 NaN"):
+        verb(E, L, np.where(np.arange(2000).reshape(L.shape) == 5, np.nan, Ld))
+    with pytest.raises(ValueError, match="saturation"):
+        verb(E, L, Ld, saturation=-1)
+
+
+def test_srgb_is_the_standard_in_its_named_values_and_back():
+    assert np.allclose(
+        colour.encode_srgb([0, 0.0031308, 0.18, 0.5, 1]), [0, 0.04045, 0.46135, 0.735357, 1], atol=1e-5
+    )
+    x = np.linspace(0, 1, 10001)
+    assert np.allclose(colour.decode_srgb(colour.encode_srgb(x)), x, atol=2e-8)
+    assert np.all(np.diff(colour.encode_srgb(x)) > 0)
+
+
+def test_srgb_agrees_with_another_library():
+    skimage = pytest.importorskip("skimage.color")
+    xyz = skimage.rgb2xyz(
+        np.dstack([np.linspace(0, 1, 256)] * 3)
+    )  # which decodes; Y of gray is its linear value
+    assert np.allclose(colour.decode_srgb(np.linspace(0, 1, 256)), xyz[0, :, 1], atol=1e-5)
+
+
+def test_to_8bit_is_the_formula_to_a_thirtieth_of_a_code():
+    x = np.concatenate(
+        [np.linspace(0, 0.02, 200_000), np.linspace(0, 1, 200_000), colour.decode_srgb(np.arange(256) / 255)]
+    )
+    exact = 255 * colour.encode_srgb(x)
+    codes = colour.to_8bit(x[None].astype(np.float32))[0].astype(float)
+    assert np.abs(codes - exact).max() <= 0.53
+    assert np.mean(codes != np.floor(exact + 0.5)) < 0.02
+
+
+def test_every_code_comes_back_through_linear_light():
+    codes = np.arange(256, dtype=np.uint8)[None]
+    assert np.array_equal(colour.to_8bit(colour.decode_srgb(codes / 255)), codes)
+
+
+def test_to_8bit_takes_what_is_beyond_white_as_white_and_refuses_nan():
+    assert colour.to_8bit(np.array([[1.0, 1.5, 1e30]])).tolist() == [[255, 255, 255]]
+    with pytest.raises(ValueError, match="1 NaN"):
+        colour.to_8bit(np.array([[0.5, np.nan]]))
+
+
+@pytest.mark.parametrize("saturation", [1.0, 0.6])
+def test_render_is_recolour_and_to_8bit(saturation):
+    picture = colour.render(E, L, Ld, saturation=saturation)
+    assert picture.dtype == np.uint8
+    assert np.array_equal(picture, colour.to_8bit(colour.recolour(E, L, Ld, saturation=saturation)))
+    assert np.array_equal(colour.render(L, L, Ld), colour.to_8bit(Ld))
+
+
+def test_render_shows_a_gray_ramp_as_opencv_would_encode_it():
+    ramp = np.linspace(0, 1, 512, dtype=np.float32)[None]
+    theirs = (
+        cv2.cvtColor(cv2.cvtColor(np.dstack([ramp] * 3), cv2.COLOR_LRGB2Luv), cv2.COLOR_Luv2RGB)[0, :, 0]
+        * 255
+    )
+    assert np.abs(colour.to_8bit(ramp)[0] - theirs).max() < 1.0
