@@ -1,0 +1,190 @@
+"""One photograph, in two steps: look at its header, then decode its pixels straight into their place.
+
+JPEG and PNG are decoded by imagecodecs, which keeps all 16 bits (Pillow cuts RGB to 8) and writes into an
+array that is there; TIFF by tifffile; RAW by hdrlab.io.raw. Pillow reads EXIF.
+"""
+
+import io
+import logging
+import struct
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import imagecodecs
+import numpy as np
+import tifffile
+from numpy.typing import NDArray
+from PIL import ExifTags, Image
+
+from hdrlab.io import raw
+from hdrlab.io.exposure import Exposure, exif_exposure
+from hdrlab.io.files import check_size
+
+logging.getLogger("tifffile").addHandler(logging.NullHandler())  # what is wrong is said by our errors
+
+Array = NDArray[Any]
+Exif = tuple[int, Exposure]  # the orientation and the exposure
+Looks = tuple[str, tuple[int, ...], np.dtype[Any], Exif]  # kind, shape as it is stored, dtype
+
+BEST_COMPRESSION = 1 << 12  # bytes of a picture in one of the file: more than any of these formats reaches
+MODES = {
+    "1": "1-bit pixels",
+    "P": "a palette",
+    "PA": "a palette",
+    "CMYK": "CMYK",
+    "F": "floating point",
+    "I": "32-bit integers",
+    "YCbCr": "YCbCr",
+    "LAB": "Lab",
+}
+UPRIGHT: dict[int, Callable[[Array], Array]] = {  # the EXIF orientations
+    1: lambda a: a,
+    2: lambda a: a[:, ::-1],
+    3: lambda a: a[::-1, ::-1],
+    4: lambda a: a[::-1],
+    5: lambda a: a.swapaxes(0, 1),
+    6: lambda a: a.swapaxes(0, 1)[:, ::-1],
+    7: lambda a: a.swapaxes(0, 1)[::-1, ::-1],
+    8: lambda a: a.swapaxes(0, 1)[::-1],
+}
+
+
+class Header(NamedTuple):
+    """What a photograph says before its pixels; `shape` is upright, (H, W) or (H, W, 3)."""
+
+    path: Path
+    kind: str
+    shape: tuple[int, ...]
+    dtype: np.dtype[Any]
+    orientation: int = 1
+    exposure: Exposure = Exposure()
+
+
+def look(path: str | Path) -> Header:
+    """Return the Header of the photograph at `path`, or raise a ValueError for what is not one."""
+    path = Path(path)
+    if raw.is_raw(path):
+        size, exposure = raw.look(path)
+        return Header(path, "RAW", size, np.dtype(np.uint16), 1, exposure)
+    with open(path, "rb") as file:
+        head = file.read(32)
+    if head[:4] in (b"II*\0", b"MM\0*"):
+        kind, shape, dtype, exif = _look_tiff(path)
+    elif head[:3] == b"\xff\xd8\xff" or head[:8] == b"\x89PNG\r\n\x1a\n":
+        kind, shape, dtype, exif = _look_pillow(path, head)
+    else:
+        raise ValueError(f"{path}: expected a JPEG, PNG or TIFF photograph, got {head[:8]!r}")
+    orientation, exposure = exif
+    check_size(path, shape[0], shape[1], int(np.prod(shape)) * dtype.itemsize // BEST_COMPRESSION)
+    if orientation > 4:
+        shape = (shape[1], shape[0], *shape[2:])
+    return Header(path, kind, shape, dtype, orientation, exposure)
+
+
+def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) -> None:
+    """Decode the photograph into `out`, of its upright shape; `balance` is a white balance for RAW."""
+    if header.kind == "RAW":
+        pixels = raw.decode(header.path, balance)
+    else:
+        data = header.path.read_bytes()
+        target = out if header.orientation == 1 else None
+        try:
+            pixels = UPRIGHT[header.orientation](DECODERS[header.kind](data, target))
+        except Exception as error:  # on damaged files the codecs raise what they like
+            raise ValueError(f"{header.path}: it is cut short or damaged ({error})") from None
+    if pixels.shape != out.shape or pixels.dtype != out.dtype:
+        raise ValueError(
+            f"{header.path}: expected {out.shape} {out.dtype}, got {pixels.shape} {pixels.dtype}"
+        )
+    if pixels is not out:
+        out[...] = pixels
+
+
+def _jpeg(data: bytes, out: Array | None) -> Array:
+    # libjpeg fills what is missing with gray and only warns; a marker cannot stand inside coded pixels
+    if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
+        raise ValueError("no end of image after its last scan")
+    return imagecodecs.jpeg8_decode(data, out=out)
+
+
+def _png(data: bytes, out: Array | None) -> Array:
+    return imagecodecs.png_decode(data, out=out)
+
+
+def _tiff(data: bytes, out: Array | None) -> Array:
+    with tifffile.TiffFile(io.BytesIO(data)) as file:
+        page = file.pages.first
+        if any(
+            at + count > len(data) for at, count in zip(page.dataoffsets, page.databytecounts, strict=True)
+        ):
+            raise ValueError("its pixels go past the end of the file")
+        pixels = page.asarray()
+    if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
+        pixels = np.moveaxis(pixels, 0, -1)
+    return pixels.astype(pixels.dtype.newbyteorder("="), copy=False)
+
+
+DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff}
+
+
+def _look_pillow(path: Path, head: bytes) -> Looks:
+    """Return what is said by the header of a JPEG or PNG file."""
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of sizes, which check_size judges, and of odd EXIF
+            with Image.open(path, formats=("JPEG", "PNG")) as image:
+                kind, (width, height), mode, info = image.format, image.size, image.mode, dict(image.info)
+    except Image.DecompressionBombError as error:
+        raise ValueError(f"{path}: its header claims an absurd size ({error})") from None
+    except Exception as error:  # on damaged files Pillow raises what it likes
+        raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
+    depth = struct.unpack_from(">B", head, 24)[0] if kind == "PNG" else 8
+    if mode.endswith("A") or "transparency" in info:
+        mode = "an alpha channel"
+    if depth not in (8, 16) or mode not in ("L", "RGB", "I;16"):
+        what = MODES.get(mode, mode) if depth in (8, 16) else f"{depth}-bit pixels"
+        raise ValueError(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
+    shape = (height, width) if mode != "RGB" else (height, width, 3)
+    exif = _exif(lambda exif: exif.load(info.get("exif", b"")))
+    return "PNG" if kind == "PNG" else "JPEG", shape, np.dtype(f"u{depth // 8}"), exif
+
+
+def _look_tiff(path: Path) -> Looks:
+    """Return what is said by the first page of a TIFF file."""
+    try:
+        with tifffile.TiffFile(path) as file:
+            page = file.pages.first
+            shape, dtype, samples = (
+                (int(page.imagelength), int(page.imagewidth)),
+                page.dtype,
+                page.samplesperpixel,
+            )
+            kind, extra, depth = (
+                str(getattr(page.photometric, "name", page.photometric)),
+                page.extrasamples,
+                page.imagedepth,
+            )
+    except Exception as error:  # on damaged files tifffile raises what it likes
+        raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
+    if extra:
+        kind = "an alpha channel"
+    if (kind, samples) not in (("MINISBLACK", 1), ("RGB", 3)) or dtype not in ("u1", "u2") or depth != 1:
+        raise ValueError(f"{path}: expected gray or RGB of 8 or 16 bits, got {samples} x {dtype}, {kind}")
+    with open(path, "rb") as stream:
+        exif = _exif(lambda exif: exif.load_from_fp(stream))
+    return "TIFF", (*shape, 3) if samples == 3 else shape, np.dtype(dtype), exif
+
+
+def _exif(load: Callable[[Image.Exif], None]) -> Exif:
+    """Return orientation and Exposure; EXIF that cannot be read says nothing, the photograph may be good."""
+    exif = Image.Exif()
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            load(exif)
+            orientation, exposure = exif.get(ExifTags.Base.Orientation, 1), exif_exposure(exif)
+    except Exception:
+        return 1, Exposure()
+    return (orientation if orientation in UPRIGHT else 1), exposure

@@ -1,0 +1,83 @@
+"""What a file is, as its header says: for `hdrlab info`."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from hdrlab.io import exr, pfm, radiance, rgbe
+from hdrlab.io.decode import look
+
+
+def describe_file(path: str | Path) -> dict[str, Any]:
+    """Return what the header of a photograph or of a radiance file says, in the order to print it.
+
+    Parameters
+    ----------
+    path : a file that `read_photo` or `read_radiance` reads
+
+    Returns
+    -------
+    dict of `file`, `format`, `width`, `height`, `channels`, `values`, and what else the format states
+
+    Raises
+    ------
+    ValueError
+        For a file that is neither, or whose header is damaged.
+    """
+    form = radiance.SUFFIXES.get(Path(path).suffix.lower())
+    about = {rgbe: _rgbe, pfm: _pfm, exr: _exr, None: _photo}[form]
+    return {"file": str(path), **about(path)}
+
+
+def _photo(path: str | Path) -> dict[str, Any]:
+    header = look(path)
+    height, width, channels = (*header.shape, 1)[:3]
+    said = header.exposure._asdict()
+    return {
+        "format": header.kind,
+        **_size(height, width, channels, np.dtype(header.dtype).name),
+        "orientation": header.orientation,
+        **{key: value for key, value in said.items() if value is not None},
+    }
+
+
+def _rgbe(path: str | Path) -> dict[str, Any]:
+    header = rgbe.read_header(path)
+    return {
+        "format": "Radiance RGBE",
+        **_size(header.height, header.width, 3, "8-bit mantissas, shared exponent"),
+        "axes": header.axes,
+        "exposure": header.exposure.tolist(),
+        "header": list(header.lines),
+    }
+
+
+def _pfm(path: str | Path) -> dict[str, Any]:
+    header = pfm.read_header(path)
+    return {
+        "format": "PFM",
+        **_size(header.height, header.width, 3 if header.colour else 1, "float32"),
+        "endian": "little" if header.scale < 0 else "big",
+        "scale": abs(header.scale),
+    }
+
+
+def _exr(path: str | Path) -> dict[str, Any]:
+    header = exr.read_header(path)
+    kinds = exr.read_dtypes(path)  # stand with the pixels only
+    return {
+        "format": "OpenEXR",
+        **_size(
+            header.display.height,
+            header.display.width,
+            ", ".join(header.channels),
+            ", ".join(sorted(set(kinds))),
+        ),
+        "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
+        **({"data window": tuple(header.data)} if header.data != header.display else {}),
+    }
+
+
+def _size(height: int, width: int, channels: int | str, values: str) -> dict[str, Any]:
+    return {"width": width, "height": height, "channels": channels, "values": values}

@@ -1,0 +1,163 @@
+"""OpenEXR files, .exr, through the official OpenEXR module.
+
+Half, float and unsigned channels become float32; R, G and B make a colour, Y or a channel alone a luminance.
+An alpha channel is left out: it says how much a pixel covers, and its radiance stands in R, G and B.
+The picture is the display window: where the data window is smaller, the rest is 0; where larger, it is cut.
+"""
+
+import contextlib
+import io
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import OpenEXR
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_radiance
+from hdrlab.io.files import check_size, replacing
+
+LARGEST_HALF = 65504.0
+BEST_COMPRESSION = 1 << 16  # bytes of a picture in one of the file: more than any of the methods reaches
+COLOURS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
+
+
+class Window(NamedTuple):
+    """A rectangle of pixels: its first row and column, and its size."""
+
+    top: int
+    left: int
+    height: int
+    width: int
+
+
+class Header(NamedTuple):
+    """What an OpenEXR file says before its pixels: its channels, the two windows, and all its attributes."""
+
+    channels: tuple[str, ...]
+    data: Window
+    display: Window
+    attributes: dict[str, Any]
+
+
+def read_header(path: str | Path) -> Header:
+    """Return the Header of the first part of the OpenEXR file at `path`, or raise a ValueError."""
+    attributes, _ = _first_part(path, header_only=True)
+    if attributes["type"] not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
+        raise ValueError(f"{path}: expected a flat image, got {attributes['type'].name}")
+    channels, across, down = zip(*attributes["channels"], strict=True)
+    if {*across, *down} != {1}:
+        raise ValueError(
+            f"{path}: expected channels of full size, got subsampled ones ({', '.join(channels)})"
+        )
+    data, display = (
+        _window(path, attributes[name], len(channels)) for name in ("dataWindow", "displayWindow")
+    )
+    return Header(channels, data, display, attributes)
+
+
+def read(path: str | Path) -> NDArray[np.float32]:
+    """Read an OpenEXR file, with the values as they stand in it, NaN and infinity too.
+
+    Parameters
+    ----------
+    path : the file; of several parts, the first is read
+
+    Returns
+    -------
+    (H, W, 3) or (H, W) float32, the display window.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not one, is cut short or damaged, or holds other channels than these.
+    """
+    header = read_header(path)
+    names = set(header.channels)
+    if names not in COLOURS and names - {"A"} != {"Y"} and len(names) != 1:
+        raise ValueError(f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}")
+    _, planes = _first_part(path, separate_channels=names not in COLOURS)
+    if names in COLOURS:
+        E = next(iter(planes.values()))[..., :3]
+    else:
+        E = planes["Y" if "Y" in names else header.channels[0]]
+    return _place(path, E.astype(np.float32, copy=False), header)
+
+
+def read_dtypes(path: str | Path) -> tuple[str, ...]:
+    """Return the name of each channel's dtype: float16, float32 or uint32."""
+    header = read_header(path)
+    _, planes = _first_part(path, separate_channels=True)
+    return tuple(planes[name].dtype.name for name in header.channels)
+
+
+def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
+    """Write radiance as an OpenEXR file of float32, without loss, whole or not at all.
+
+    Parameters
+    ----------
+    path : the file; what it held is replaced
+    E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as Y
+    half : True for 16-bit floats: half the size, 3 digits, up to 65504
+
+    Raises
+    ------
+    ValueError
+        For NaN, infinite or negative values, and with `half` for values above 65504.
+    """
+    E = as_radiance(E)
+    if half and E.max() > LARGEST_HALF:
+        raise ValueError(
+            f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got up to {E.max():.6g}"
+        )
+    pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    with replacing(path) as name, OpenEXR.File(header, {"RGB" if E.ndim == 3 else "Y": pixels}) as file:
+        file.write(str(name))
+
+
+def _first_part(path: str | Path, **options: bool) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """Return the header and the pixels of the first part."""
+    with open(
+        path, "rb"
+    ) as start:  # the module cannot tell a file that is missing from one that is not OpenEXR
+        magic = start.read(4)
+    if magic != b"v/1\x01":
+        raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
+    said = io.StringIO()  # the module prints what is wrong with a part, and leaves the part out
+    try:
+        with contextlib.redirect_stdout(said), OpenEXR.File(str(path), **options) as file:
+            part = file.parts[0]
+            channels = [
+                (channel.name, channel.xSampling, channel.ySampling) for channel in part.header["channels"]
+            ]
+            planes = {name: channel.pixels for name, channel in part.channels.items()}
+            return {**part.header, "channels": channels}, planes
+    except Exception as error:  # damaged files make it raise what they like, UnicodeDecodeError included
+        reason = said.getvalue().strip().rpartition(" - ")[2] or str(error)
+        raise ValueError(f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})") from None
+
+
+def _window(path: str | Path, window: tuple[NDArray[np.int32], NDArray[np.int32]], channels: int) -> Window:
+    """Return the Window of an attribute (left, top), (right, bottom), after a look at its size."""
+    (left, top), (right, bottom) = (corner.tolist() for corner in window)
+    height, width = bottom - top + 1, right - left + 1
+    check_size(path, height, width, height * width * channels // BEST_COMPRESSION)
+    return Window(top, left, height, width)
+
+
+def _place(path: str | Path, E: NDArray[np.float32], header: Header) -> NDArray[np.float32]:
+    """Return E, which fills the data window, on the display window."""
+    data, display = header.data, header.display
+    if E.shape[:2] != (data.height, data.width):
+        raise ValueError(f"{path}: expected {data.height} x {data.width} pixels of data, got {E.shape[:2]}")
+    if data == display:
+        return np.ascontiguousarray(E)
+    top, left = data.top - display.top, data.left - display.left
+    rows = slice(max(top, 0), min(top + data.height, display.height))
+    columns = slice(max(left, 0), min(left + data.width, display.width))
+    if rows.start >= rows.stop or columns.start >= columns.stop:
+        raise ValueError(f"{path}: expected pixels in its display window {display}, they are all in {data}")
+    placed = np.zeros((display.height, display.width, *E.shape[2:]), np.float32)
+    placed[rows, columns] = E[rows.start - top : rows.stop - top, columns.start - left : columns.stop - left]
+    return placed

@@ -1,0 +1,77 @@
+"""Files that are written whole or not at all, and headers that are not believed before they are checked."""
+
+import errno
+import os
+import secrets
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import BinaryIO
+
+MAX_PIXELS = 1 << 27  # 134 million: beyond any camera, and 1.6 GB as float32 RGB
+
+
+@contextmanager
+def replacing(path: str | Path) -> Iterator[Path]:
+    """Yield a temporary name beside `path`, which takes the place of `path` when the block ends well.
+
+    When the block fails, or is interrupted, the temporary file is removed and what stood at `path` stays.
+
+    Raises
+    ------
+    FileNotFoundError
+        Where the folder of `path` does not exist.
+    ValueError
+        Where `path` is a folder or a device, which cannot be replaced.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> target = Path(tempfile.mkdtemp()) / "note.txt"
+    >>> with replacing(target) as name:
+    ...     _ = name.write_text("all of it")
+    >>> target.read_text()
+    'all of it'
+    """
+    path = Path(path).resolve()  # through a link, so that its target is replaced and not the link
+    if not path.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {path.name}: there is no folder {path.parent}")
+    if path.exists() and not path.is_file():
+        raise ValueError(f"cannot write {path}: expected the name of a file, this is a folder or a device")
+    temporary = path.with_name(f".hdrlab-{secrets.token_hex(6)}{path.suffix}")  # codecs look at the suffix
+    try:
+        yield temporary
+        os.replace(temporary, path)
+    except BaseException:  # Ctrl-C as well
+        temporary.unlink(missing_ok=True)
+        raise
+
+
+def reserve(file: BinaryIO, size: int) -> None:
+    """Ask the disk for `size` bytes at once: a full disk is found before the first byte, and it is quicker.
+
+    Systems that cannot do so are left alone.
+    """
+    if hasattr(os, "posix_fallocate"):
+        try:
+            os.posix_fallocate(file.fileno(), 0, size)
+        except OSError as error:
+            if error.errno == errno.ENOSPC:
+                raise
+
+
+def check_size(path: str | Path, height: int, width: int, least: int = 0, *, held: int | None = None) -> None:
+    """Raise a ValueError where a header claims an absurd size, before anything of that size is allocated.
+
+    `least` is the number of bytes that such a picture takes at the format's best compression, and `held`
+    the number that the file has for it: all its bytes, unless told.
+    """
+    claim = f"{path}: its header claims {width} x {height} pixels"
+    if height < 1 or width < 1:
+        raise ValueError(f"{claim}, expected at least one")
+    if height * width > MAX_PIXELS:
+        raise ValueError(f"{claim}, expected at most {MAX_PIXELS} in all")
+    if held is None:
+        held = Path(path).stat().st_size
+    if held < least:
+        raise ValueError(f"{claim}, which take {least} bytes or more, got {held}: it is cut short or damaged")

@@ -1,0 +1,93 @@
+"""Portable float maps, .pfm: a line of text for the kind, the size and the scale, then float32 values.
+
+PF is RGB and Pf is gray; a negative scale says little endian; rows run from the bottom to the top.
+The scale's magnitude is not applied: the format never settled whether to multiply or to divide by it.
+"""
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_radiance
+from hdrlab.io.files import check_size, replacing, reserve
+
+# one white space, and not more, stands between the scale and the values, whose first byte may look like one
+HEADER = re.compile(rb"(PF|Pf)\s+(\d{1,10})\s+(\d{1,10})\s+([-+]?\d*\.?\d*(?:[eE][-+]?\d{1,3})?)\s")
+ROWS = 16  # a band that stays in the cache
+
+
+class Header(NamedTuple):
+    """What a PFM file says before its values: size, whether it is RGB, scale, and where the values begin."""
+
+    height: int
+    width: int
+    colour: bool
+    scale: float
+    start: int
+
+
+def read_header(path: str | Path) -> Header:
+    """Return the Header of the PFM file at `path`, or raise a ValueError, also for one that is cut short."""
+    with open(path, "rb") as file:
+        head = file.read(256)
+    match = HEADER.match(head)
+    scale = float(match[4]) if match and match[4].strip(b"+-.eE") else 0.0
+    if not match or scale == 0 or not np.isfinite(scale):
+        raise ValueError(f"{path}: expected a PFM file (PF or Pf, width, height, scale), got {head[:16]!r}")
+    header = Header(int(match[3]), int(match[2]), match[1] == b"PF", scale, match.end())
+    size = header.height * header.width * (12 if header.colour else 4)
+    check_size(path, header.height, header.width, size + header.start)
+    return header
+
+
+def read(path: str | Path, *, flip: bool = True) -> NDArray[np.float32]:
+    """Read a PFM file, with the values as they stand in it.
+
+    Parameters
+    ----------
+    path : the file
+    flip : False for a file whose rows run from the top to the bottom, as some programs write them
+
+    Returns
+    -------
+    (H, W, 3) or (H, W) float32, the first row at the top.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not one, or is cut short.
+    """
+    header = read_header(path)
+    shape = (header.height, header.width, 3) if header.colour else (header.height, header.width)
+    E = np.fromfile(path, "<f4" if header.scale < 0 else ">f4", int(np.prod(shape)), offset=header.start)
+    E = E.reshape(shape).astype(np.float32, copy=False)
+    return E[::-1] if flip else E
+
+
+def write(path: str | Path, E: ArrayLike, *, flip: bool = True) -> None:
+    """Write radiance as a little-endian PFM file of scale -1.0, whole or not at all.
+
+    Parameters
+    ----------
+    path : the file; what it held is replaced
+    E : (H, W) or (H, W, 3) radiance, finite and not negative
+    flip : False to write the rows from the top to the bottom, against the format
+
+    Raises
+    ------
+    ValueError
+        For NaN, infinite or negative values.
+    """
+    E = as_radiance(E)
+    if flip:
+        E = E[::-1]
+    height, width = E.shape[:2]
+    header = f"{'PF' if E.ndim == 3 else 'Pf'}\n{width} {height}\n-1.0\n".encode()
+    with replacing(path) as name, open(name, "wb") as file:
+        reserve(file, len(header) + E.nbytes)
+        file.write(header)
+        for y in range(0, height, ROWS):
+            file.write(np.ascontiguousarray(E[y : y + ROWS], dtype="<f4").data)

@@ -1,0 +1,196 @@
+"""Photographs in, as arrays, and pictures out.
+
+A bracket's headers are read first: they say whether the frames go together and in which order. Then each is
+decoded once, straight into its place, several at a time.
+"""
+
+import os
+from collections.abc import Callable, Iterable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from PIL import Image
+
+from hdrlab.core.arrays import describe
+from hdrlab.core.bracket import Bracket, bracket
+from hdrlab.io import raw
+from hdrlab.io.decode import Header, decode, look
+from hdrlab.io.files import replacing
+from hdrlab.io.times import Times, bracket_times
+
+SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
+PICTURES: dict[str, dict[str, Any]] = {
+    ".png": {},
+    ".jpg": {"quality": 95, "subsampling": 0},
+    ".jpeg": {"quality": 95, "subsampling": 0},
+    ".tif": {"compression": "tiff_deflate"},
+    ".tiff": {"compression": "tiff_deflate"},
+}
+
+Paths = str | Path | Sequence[str | Path]
+
+
+def read_photo(path: str | Path) -> NDArray[Any]:
+    """Read one photograph, upright.
+
+    Parameters
+    ----------
+    path : a JPEG, PNG or TIFF file, gray or RGB, of 8 or 16 bits, or a RAW file
+
+    Returns
+    -------
+    (H, W) or (H, W, 3), uint8 or uint16
+
+    Raises
+    ------
+    ValueError
+        For a file that is none of these, or is damaged.
+    """
+    header = look(path)
+    image = np.empty(header.shape, header.dtype)
+    decode(header, image)
+    return image
+
+
+def read_bracket(
+    paths: Paths,
+    times: Times | None = None,
+    *,
+    mask: tuple[int, int, int] | None = None,
+    progress: Callable[[Sequence[Path]], Iterable[Path]] = iter,
+) -> Bracket:
+    """Read a bracket of photographs, with their exposure times.
+
+    Parameters
+    ----------
+    paths : the photographs, or one folder, of which all photographs are taken, sorted by name
+    times : None to take them from EXIF; else seconds of equivalent exposure, in the order of the photographs
+        or by file name, or the path of a list (see `hdrlab.io.times.read_times`)
+    mask : the colour (R, G, B) of pixels that are no photograph, such as the border of a registered scan
+    progress : what to wrap the paths in while they are decoded, such as tqdm
+
+    Returns
+    -------
+    Bracket, sorted from short to long
+
+    Raises
+    ------
+    ValueError
+        For files that are no photographs or do not go together, and for times missing or not positive.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> for name, level in ("a.png", 200), ("b.png", 50):
+    ...     write_picture(folder / name, np.full((2, 3), level, np.uint8))
+    >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
+    ('b.png', 'a.png')
+    """
+    headers = [look(path) for path in photographs(paths)]
+    _check_alike(headers)
+    seconds = bracket_times(
+        [header.path.name for header in headers], [header.exposure for header in headers], times
+    )
+    headers = [headers[j] for j in np.argsort(seconds, kind="stable")]
+    linear = headers[0].kind == "RAW"
+    balance = raw.balance(headers[0].path) if linear else None
+    images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
+    valid = _valid_like(images, mask)
+
+    def fill(j: int) -> None:
+        decode(headers[j], images[j], balance=balance)
+        if valid is not None:
+            valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
+
+    pool = ThreadPoolExecutor(min(os.cpu_count() or 1, 4))
+    try:
+        waiting = [pool.submit(fill, j) for j in range(len(headers))]
+        for j, _ in enumerate(progress([header.path for header in headers])):
+            waiting[j].result()
+    finally:
+        pool.shutdown(cancel_futures=True)
+    names = [header.path.name for header in headers]
+    return bracket(images, sorted(seconds), names, valid=valid, linear=linear)
+
+
+def photographs(paths: Paths) -> list[Path]:
+    """Return the paths of a bracket: those given, or all photographs of a folder, sorted by name."""
+    given = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
+    if len(given) == 1 and given[0].is_dir():
+        folder = given[0]
+        given = sorted(
+            path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()
+        )
+        given = [path for path in given if not path.name.startswith(".")]
+        if not given:
+            raise ValueError(f"{folder}: expected a folder with photographs, it holds none")
+    for path in given:
+        if path.is_dir():
+            raise ValueError(f"{path}: expected photographs or one folder, this is a folder among others")
+    if len(given) < 2:
+        raise ValueError(f"expected two photographs or more, got {', '.join(map(str, given)) or 'none'}")
+    return given
+
+
+def write_picture(path: str | Path, image: ArrayLike) -> None:
+    """Write a picture for the eye, as PNG, JPEG or TIFF by suffix, whole or not at all.
+
+    Parameters
+    ----------
+    path : the file; what it held is replaced
+    image : (H, W) or (H, W, 3) uint8
+
+    Raises
+    ------
+    ValueError
+        For another suffix, shape or dtype.
+    """
+    image, suffix = np.asarray(image), Path(path).suffix.lower()
+    if suffix not in PICTURES:
+        raise ValueError(
+            f"{path}: expected a picture file ({', '.join(PICTURES)}), got {suffix or 'no suffix'}"
+        )
+    if (
+        image.dtype != np.uint8
+        or image.ndim not in (2, 3)
+        or image.shape[2:] not in ((), (3,))
+        or not image.size
+    ):
+        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(image)}")
+    with replacing(path) as name:
+        Image.fromarray(image).save(name, **PICTURES[suffix])
+
+
+def _check_alike(headers: list[Header]) -> None:
+    """Raise a ValueError that names the first photograph and one that does not go with it."""
+    first = headers[0]
+    for other in headers[1:]:
+        if (first.kind == "RAW") != (other.kind == "RAW"):
+            what = "RAW photographs and others cannot be mixed"
+        elif first.shape[:2] != other.shape[:2]:
+            what = "expected frames of one size"
+        elif (first.shape, first.dtype) != (other.shape, other.dtype):
+            what = "expected frames all gray or all RGB, all of 8 or all of 16 bits"
+        else:
+            continue
+        raise ValueError(f"{what}: {_short(first)}, {_short(other)}")
+
+
+def _short(header: Header) -> str:
+    height, width = header.shape[:2]
+    colour = "RGB" if len(header.shape) == 3 else "gray"
+    return (
+        f"{header.path.name} is {width} x {height}, {colour}, {8 * header.dtype.itemsize} bits, {header.kind}"
+    )
+
+
+def _valid_like(images: NDArray[Any], mask: tuple[int, int, int] | None) -> NDArray[np.bool_] | None:
+    if mask is None:
+        return None
+    if images.ndim != 4:
+        raise ValueError(f"expected RGB photographs for the mask colour {mask}, these are gray")
+    return np.empty(images.shape[:3], bool)

@@ -1,0 +1,102 @@
+"""RAW photographs, through LibRaw: linear, so that there is no response to recover.
+
+    raw    sensor values of one colour per pixel, above the black level, proportional to exposure
+    Z      (H, W, 3) uint16, linear RGB with the primaries of sRGB
+
+All frames of a bracket must be developed alike: LibRaw's brightening, which looks at the picture, is off;
+the white level is the camera's, not the brightest value found; one white balance, of the shortest exposure,
+serves all. Once the camera's colours are mixed into those of sRGB, nobody can tell which were clipped: so a
+pixel that is clipped in any colour is made white in all.
+"""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hdrlab.io.exposure import Exposure
+from hdrlab.io.files import check_size
+
+SUFFIXES = frozenset({".cr2", ".cr3", ".nef", ".arw", ".dng", ".raf", ".rw2", ".orf", ".pef"})
+WHITE = 65535
+ROWS = 64
+
+Balance = tuple[float, float, float, float]
+
+
+def is_raw(path: str | Path) -> bool:
+    """Return whether the suffix is one of RAW photographs."""
+    return Path(path).suffix.lower() in SUFFIXES
+
+
+def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
+    """Return the upright shape (H, W, 3) and the Exposure of the RAW file at `path`."""
+    with _open(path) as file:
+        sizes, other = file.sizes, file.other
+        height, width = sizes.iheight, sizes.iwidth
+        if sizes.flip in (5, 6):  # turned by a quarter
+            height, width = width, height
+        values = (other.shutter_speed, other.aperture, other.iso_speed)
+    check_size(path, height, width, height * width // 64)
+    return (height, width, 3), Exposure(*(float(value) if 0 < value < np.inf else None for value in values))
+
+
+def balance(path: str | Path) -> Balance:
+    """Return the white balance that the camera chose, or that of daylight where it chose none."""
+    with _open(path) as file:
+        chosen = list(file.camera_whitebalance)
+        if not all(np.isfinite(chosen)) or min(chosen[:3]) <= 0:
+            chosen = list(file.daylight_whitebalance)
+    red, green, blue, green2 = chosen
+    return red, green, blue, green2 or green
+
+
+def decode(path: str | Path, white_balance: Balance | None = None) -> NDArray[np.uint16]:
+    """Return Z, linear sRGB (H, W, 3); the photograph's own white balance serves where none is given."""
+    rawpy = _rawpy()
+    white_balance = balance(path) if white_balance is None else white_balance
+    with _open(path) as file:
+        matrix = file.color_matrix[:, :3].astype(np.float32)
+        camera = file.postprocess(
+            output_color=rawpy.ColorSpace.raw,
+            user_wb=list(white_balance),
+            gamma=(1, 1),
+            no_auto_bright=True,
+            adjust_maximum_thr=0.0,
+            output_bps=16,
+        )
+    return to_srgb(camera, matrix)
+
+
+def to_srgb(camera: NDArray[np.uint16], matrix: NDArray[np.float32]) -> NDArray[np.uint16]:
+    """Return the camera's colours as sRGB's, Z = M camera, and white where any of them is clipped."""
+    Z = np.empty_like(camera)
+    for y in range(0, len(camera), ROWS):
+        band = camera[y : y + ROWS]
+        mixed = np.clip(np.rint(band @ matrix.T), 0, WHITE)
+        Z[y : y + ROWS] = np.where((band == WHITE).any(axis=-1, keepdims=True), WHITE, mixed)
+    return Z
+
+
+@contextmanager
+def _open(path: str | Path) -> Iterator[Any]:
+    rawpy = _rawpy()
+    with open(path, "rb"):  # a missing file is a FileNotFoundError here as elsewhere
+        pass
+    try:
+        with rawpy.imread(str(path)) as file:
+            yield file
+    except (rawpy.LibRawError, rawpy.NotSupportedError) as error:
+        said = error.args[0].decode() if isinstance(error.args[0], bytes) else error
+        raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {said}") from None
+
+
+def _rawpy() -> Any:
+    try:
+        import rawpy
+    except ImportError:
+        raise ValueError('expected rawpy, which reads RAW photographs: pip install "hdrlab[raw]"') from None
+    return rawpy

@@ -1,0 +1,149 @@
+"""Radiance RGBE files, .hdr and .pic (Ward, Real Pixels, Graphics Gems II, 1991).
+
+m   mantissas of red, green and blue   (H, W, 3), 0 to 255
+e   the exponent that the three share   (H, W), 0 to 255
+E   radiance                            (H, W, 3) float32, E = m / 256 * 2^(e - 128), and 0 where e = 0
+
+Radiance itself decodes (m + 0.5) / 256, the middle of what a mantissa stands for; OpenCV, imageio and most
+others decode m / 256, the lower end, and so does hdrlab: a file read and written again is then unchanged.
+Run-length scanlines go through imagecodecs; the equations below serve the other files, and say what it does.
+"""
+
+from pathlib import Path
+
+import imagecodecs
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_radiance
+from hdrlab.io.files import check_size, replacing
+from hdrlab.io.rgbe_header import read_header
+
+SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)  # 2^(e - 128) / 256
+SCALE[0] = 0
+RUN = 127  # the longest run that one code of two bytes stands for
+ROWS = 64
+
+
+def read(path: str | Path) -> NDArray[np.float32]:
+    """Read a Radiance RGBE file: flat, old or new run-length scanlines, in any of the eight orientations.
+
+    Parameters
+    ----------
+    path : the file
+
+    Returns
+    -------
+    (H, W, 3) float32, radiance: the pixels' values divided by the header's exposures.
+
+    Raises
+    ------
+    ValueError
+        For a file that is not one, is cut short or damaged, or holds XYZE colours.
+
+    References
+    ----------
+    Ward, G., "Real Pixels", Graphics Gems II, Academic Press 1991, 80-83.
+    """
+    header = read_header(path)
+    scanlines, length = (header.height, header.width)[:: 1 if header.axes[1] == "Y" else -1]
+    with open(path, "rb") as file:
+        file.seek(header.start)
+        data = file.read()
+    if 8 <= length <= 32767 and b"\2\2\0" <= data[:3] < b"\2\2\x80" and len(data) > 3:
+        E = _run_lengths(path, data, scanlines, length)
+    else:
+        check_size(path, scanlines, length, 4 * scanlines, held=len(data))
+        E = to_radiance(_pixels(path, data, scanlines, length))
+    E = _upright(E, header.axes)
+    if np.any(header.exposure != 1):
+        E /= header.exposure.astype(np.float32)
+    return E
+
+
+def write(path: str | Path, E: ArrayLike) -> None:
+    """Write radiance as a Radiance RGBE file, whole or not at all.
+
+    Parameters
+    ----------
+    path : the file; what it held is replaced
+    E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as three equal ones
+
+    Raises
+    ------
+    ValueError
+        For NaN, infinite or negative values, and for values of 2^127 or more, which RGBE cannot hold.
+    """
+    E = as_radiance(E)
+    height, width = E.shape[:2]
+    if E.max() >= 2.0**127:
+        raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
+    if E.ndim == 2:
+        E = np.broadcast_to(E[..., None], (height, width, 3))
+    room = bytearray(ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
+    with replacing(path) as name, open(name, "wb") as file:
+        file.write(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode())
+        for y in range(0, height, ROWS):
+            band = np.ascontiguousarray(E[y : y + ROWS])
+            file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))
+
+
+def to_radiance(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
+    """Return E = m / 256 2^(e - 128) of pixels (H, W, 4), three mantissas m and the exponent e [Ward91]."""
+    return pixels[..., :3] * SCALE[pixels[..., 3:]]
+
+
+def to_pixels(E: NDArray[np.float32]) -> NDArray[np.uint8]:
+    """Return m = floor(256 E 2^(128 - e)) and e, so that the largest m is 128 or more [Ward91]."""
+    brightest = E.max(axis=-1, keepdims=True)
+    _, exponent = np.frexp(brightest)
+    mantissa = np.ldexp(E, 8 - exponent)
+    pixels = np.concatenate([mantissa, exponent + 128], axis=-1)
+    return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
+
+
+def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArray[np.float32]:
+    """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
+    if data[2] * 256 + data[3] != length:
+        raise ValueError(
+            f"{path}: expected scanlines of {length} pixels, got one of {data[2] * 256 + data[3]}"
+        )
+    check_size(path, scanlines, length, scanlines * (4 + 4 * 2 * -(-length // RUN)), held=len(data))
+    E = np.empty((scanlines, length, 3), np.float32)
+    try:
+        return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
+    except imagecodecs.RgbeError:
+        raise ValueError(f"{path}: expected {scanlines} scanlines, they are damaged or cut short") from None
+
+
+def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArray[np.uint8]:
+    """Return the pixels (H, W, 4) of flat scanlines, among which (1, 1, 1, n) repeats the pixel before it.
+
+    Such marks in a row are the digits of one count in base 256, the lowest first: the oldest run lengths.
+    """
+    count = scanlines * length
+    words = np.frombuffer(data, "<u4", min(len(data) // 4, count))
+    marks = (words & 0xFFFFFF) == 0x010101
+    place = np.arange(len(words))
+    pixel = np.maximum.accumulate(np.where(marks, -1, place))  # the last that is not a mark
+    digit = np.clip(place - pixel - 1, 0, 4)
+    counts = np.where(marks, (words >> 24).astype(np.int64) << 8 * digit, 1)
+    made = np.cumsum(counts)
+    last = int(np.searchsorted(made, count))
+    if last == len(made) or made[last] != count or marks[0]:
+        raise ValueError(
+            f"{path}: expected {scanlines} scanlines of {length} pixels, they are damaged or cut short"
+        )
+    repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
+    return repeated.view(np.uint8).reshape(scanlines, length, 4)
+
+
+def _upright(E: NDArray[np.float32], axes: str) -> NDArray[np.float32]:
+    """Return E with its first row at the top (-Y) and its first column at the left (+X)."""
+    if axes[1] == "X":
+        E = E.swapaxes(0, 1)
+    if "+Y" in axes:
+        E = E[::-1]
+    if "-X" in axes:
+        E = E[:, ::-1]
+    return np.ascontiguousarray(E)

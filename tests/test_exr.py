@@ -1,0 +1,176 @@
+"""OpenEXR files: the official module is the oracle, and writes the unusual ones."""
+
+import numpy as np
+import OpenEXR
+import pytest
+
+from hdrlab.io import exr
+from hdrlab.io.radiance import read_radiance
+
+RGB = np.exp2(np.random.default_rng(0).uniform(-20, 15, (37, 21, 3))).astype(np.float32)
+GRAY = RGB[..., 0].copy()
+
+
+def wrote(path, channels, **header):
+    header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage, **header}
+    with OpenEXR.File(header, channels) as file:
+        file.write(str(path))
+    return path
+
+
+def window(left, top, right, bottom):
+    return np.array([left, top], np.int32), np.array([right, bottom], np.int32)
+
+
+@pytest.mark.parametrize(("E", "name"), [(RGB, "RGB"), (GRAY, "Y")])
+def test_openexr_reads_ours_and_we_read_openexrs_bit_for_bit(tmp_path, E, name):
+    exr.write(tmp_path / "ours.exr", E)
+    with OpenEXR.File(str(tmp_path / "ours.exr")) as file:
+        theirs = file.channels()[name].pixels
+        assert theirs.dtype == np.float32 and np.array_equal(theirs, E)
+    assert np.array_equal(exr.read(tmp_path / "ours.exr"), E)
+    assert np.array_equal(exr.read(wrote(tmp_path / "theirs.exr", {name: E})), E)
+
+
+@pytest.mark.parametrize("dtype", [np.float16, np.float32, np.uint32])
+@pytest.mark.parametrize("name", ["RGB", "Y", "Z"])
+def test_half_float_and_unsigned_channels_become_float32(tmp_path, dtype, name):
+    values = np.arange(24).astype(dtype).reshape((2, 4, 3) if name == "RGB" else (4, 6))
+    E = exr.read(wrote(tmp_path / "x.exr", {name: values}))
+    assert E.dtype == np.float32 and np.array_equal(E, values)
+    assert set(exr.read_dtypes(tmp_path / "x.exr")) == {np.dtype(dtype).name}
+
+
+def test_alpha_is_left_out(tmp_path):
+    RGBA = np.concatenate([RGB, np.full_like(RGB[..., :1], 0.5)], axis=-1)
+    assert np.array_equal(exr.read(wrote(tmp_path / "a.exr", {"RGBA": RGBA})), RGB)
+    assert np.array_equal(exr.read(wrote(tmp_path / "b.exr", {"Y": GRAY, "A": RGBA[..., 3].copy()})), GRAY)
+
+
+COMPRESSIONS = ["NO", "RLE", "ZIPS", "ZIP", "PIZ"]
+
+
+@pytest.mark.parametrize("compression", COMPRESSIONS)
+@pytest.mark.parametrize("separate", [True, False])
+def test_every_lossless_compression_reads(tmp_path, compression, separate):
+    channels = {c: RGB[..., k].copy() for k, c in enumerate("RGB")} if separate else {"RGB": RGB}
+    path = wrote(tmp_path / "x.exr", channels, compression=getattr(OpenEXR, f"{compression}_COMPRESSION"))
+    assert np.array_equal(exr.read(path), RGB)
+
+
+@pytest.mark.parametrize("offset", [(0, 0), (3, -2), (-5, 4)])
+def test_a_cropped_data_window_stands_in_the_display_window_with_zeros_around(tmp_path, offset):
+    x, y = offset
+    header = {
+        "dataWindow": window(10 + x, 20 + y, 13 + x, 22 + y),
+        "displayWindow": window(x, y, 39 + x, 29 + y),
+    }
+    inside = RGB[:3, :4].copy()
+    E = exr.read(wrote(tmp_path / "x.exr", {"RGB": inside}, **header))
+    expected = np.zeros((30, 40, 3), np.float32)
+    expected[20:23, 10:14] = inside
+    assert np.array_equal(E, expected)
+
+
+def test_a_data_window_beyond_the_display_window_is_cut(tmp_path):
+    header = {"dataWindow": window(-2, -3, 18, 33), "displayWindow": window(0, 0, 9, 39)}
+    E = exr.read(wrote(tmp_path / "x.exr", {"RGB": RGB}, **header))
+    assert np.array_equal(E[:34], RGB[3:, 2:12]) and not E[34:].any() and E.shape == (40, 10, 3)
+
+
+def test_a_data_window_outside_the_display_window_is_refused(tmp_path):
+    header = {"dataWindow": window(50, 0, 70, 36), "displayWindow": window(0, 0, 9, 9)}
+    with pytest.raises(ValueError, match="x.exr: expected pixels in its display window"):
+        exr.read(wrote(tmp_path / "x.exr", {"RGB": RGB}, **header))
+
+
+def test_half_floats_keep_three_digits_and_refuse_what_does_not_fit(tmp_path):
+    path = tmp_path / "x.exr"
+    exr.write(path, RGB, half=True)
+    assert np.array_equal(exr.read(path), RGB.astype(np.float16))
+    exr.write(path, [[65504.0]], half=True)
+    with pytest.raises(ValueError, match="expected radiance up to 65504 for half floats, got up to 65505"):
+        exr.write(path, [[1.0, 65505.0]], half=True)
+    assert exr.read(path) == 65504
+
+
+def test_what_is_no_radiance_is_not_written(tmp_path):
+    for value, says in (np.nan, "1 NaN"), (np.inf, "1 infinite"), (-1, "1 negative"):
+        with pytest.raises(ValueError, match=says):
+            exr.write(tmp_path / "x.exr", [[1.0, value]])
+    assert not list(tmp_path.iterdir())
+
+
+def test_other_channels_are_refused_by_name(tmp_path):
+    path = wrote(tmp_path / "x.exr", {"U": GRAY, "V": GRAY})
+    with pytest.raises(ValueError, match="x.exr: expected the channels R, G, B or Y, got U, V"):
+        exr.read(path)
+
+
+def test_subsampled_channels_are_refused_by_name(tmp_path):
+    path = wrote(tmp_path / "x.exr", {"Y": GRAY[:36, :20].copy()})
+    data = bytearray(path.read_bytes())
+    at = data.index(b"chlist\0") + len(b"chlist\0") + 4 + len(b"Y\0") + 8
+    assert data[at : at + 8] == np.array([1, 1], "<i4").tobytes()
+    data[at : at + 8] = np.array([2, 2], "<i4").tobytes()
+    path.write_bytes(data)
+    with pytest.raises(ValueError, match="x.exr: expected channels of full size, got subsampled ones"):
+        exr.read(path)
+
+
+@pytest.mark.parametrize("data", [b"", b"v/1\x01", b"\x89PNG\r\n\x1a\n", b"v/1\x01" + bytes(100)])
+def test_what_is_no_openexr_file_is_refused_by_name(tmp_path, data):
+    (tmp_path / "x.exr").write_bytes(data)
+    with pytest.raises(ValueError, match="x.exr: expected an OpenEXR file"):
+        exr.read(tmp_path / "x.exr")
+
+
+def test_a_missing_file_is_missing(tmp_path):
+    with pytest.raises(FileNotFoundError):
+        exr.read(tmp_path / "x.exr")
+
+
+def test_a_file_that_is_cut_short_is_refused_and_nothing_is_printed(tmp_path, capsys):
+    exr.write(tmp_path / "x.exr", RGB)
+    data = (tmp_path / "x.exr").read_bytes()
+    for length in range(len(data) - 1, 8, -397):
+        (tmp_path / "x.exr").write_bytes(data[:length])
+        with pytest.raises(ValueError, match="x.exr: expected an OpenEXR file, it is cut short or damaged"):
+            exr.read(tmp_path / "x.exr")
+    assert capsys.readouterr().out == ""
+
+
+@pytest.mark.parametrize("name", [b"dataWindow", b"displayWindow"])
+def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, name):
+    exr.write(tmp_path / "x.exr", RGB)
+    data = bytearray((tmp_path / "x.exr").read_bytes())
+    at = data.index(name + b"\0box2i\0") + len(name) + 7 + 4
+    data[at : at + 16] = np.array([0, 0, 65535, 32767], "<i4").tobytes()
+    (tmp_path / "x.exr").write_bytes(data)
+    with pytest.raises(
+        ValueError, match="x.exr: (its header claims 65536 x 32768 pixels|expected an OpenEXR file)"
+    ):
+        exr.read(tmp_path / "x.exr")
+
+
+REAL = ["BrightRings", "Carrots", "Desk", "GammaChart", "SquaresSwirls", "StillLife"]
+
+
+@pytest.mark.parametrize("name", REAL)
+def test_real_files_read_as_the_official_module_reads_them(shared, name):
+    path = shared("openexr") / f"{name}.exr"
+    with OpenEXR.File(str(path), separate_channels=True) as file:
+        theirs = np.stack([file.channels()[c].pixels for c in "RGB"], axis=-1)
+    E = exr.read(path)
+    assert E.dtype == np.float32 and np.array_equal(E, theirs)
+
+
+def test_a_real_file_with_nan_and_infinity_is_refused_with_counts_unless_it_is_cleaned(shared):
+    path = shared("openexr") / "BrightRingsNanInf.exr"
+    E = exr.read(path)
+    nan, inf = np.count_nonzero(np.isnan(E)), np.count_nonzero(np.isinf(E))
+    assert nan + inf > 0
+    with pytest.raises(ValueError, match=rf"BrightRingsNanInf.exr: .*got {nan} NaN, {inf} infinite.*--clean"):
+        read_radiance(path)
+    mended, good = read_radiance(path, clean=True), np.isfinite(E)
+    assert np.array_equal(mended[good], np.maximum(E[good], 0)) and np.all(np.isfinite(mended))

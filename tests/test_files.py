@@ -1,0 +1,87 @@
+"""Files are written whole or not at all, and headers are checked before they are believed."""
+
+import os
+import stat
+
+import pytest
+
+from hdrlab.io import files
+
+
+def test_a_file_takes_its_name_when_it_is_complete(tmp_path):
+    path = tmp_path / "out.hdr"
+    with files.replacing(path) as name:
+        name.write_bytes(b"whole")
+        assert name.parent == tmp_path and name.suffix == ".hdr" and not path.exists()
+    assert path.read_bytes() == b"whole" and os.listdir(tmp_path) == ["out.hdr"]
+
+
+@pytest.mark.parametrize("error", [ValueError, OSError, KeyboardInterrupt])
+def test_a_failed_or_interrupted_write_loses_nothing_and_leaves_nothing(tmp_path, error):
+    path = tmp_path / "out.hdr"
+    path.write_bytes(b"old")
+    with pytest.raises(error), files.replacing(path) as name:
+        name.write_bytes(b"half of the ne")
+        raise error
+    assert path.read_bytes() == b"old" and os.listdir(tmp_path) == ["out.hdr"]
+
+
+def test_a_missing_folder_is_named_before_anything_is_written(tmp_path):
+    with (
+        pytest.raises(FileNotFoundError, match="no folder .*missing"),
+        files.replacing(tmp_path / "missing/out.hdr"),
+    ):
+        pytest.fail("the block ran")
+
+
+def test_a_folder_is_not_replaced(tmp_path):
+    with pytest.raises(ValueError, match="expected the name of a file"), files.replacing(tmp_path):
+        pytest.fail("the block ran")
+
+
+def test_a_device_is_not_replaced():
+    with pytest.raises(ValueError, match="expected the name of a file"), files.replacing(os.devnull):
+        pytest.fail("the block ran")
+
+
+def test_a_link_stays_a_link(tmp_path):
+    (tmp_path / "target.txt").write_text("old")
+    (tmp_path / "link.txt").symlink_to("target.txt")
+    with files.replacing(tmp_path / "link.txt") as name:
+        name.write_text("new")
+    assert (tmp_path / "link.txt").is_symlink() and (tmp_path / "target.txt").read_text() == "new"
+
+
+def test_a_new_file_has_the_permissions_of_any_new_file(tmp_path):
+    (tmp_path / "plain.txt").write_text("")
+    with files.replacing(tmp_path / "ours.txt") as name:
+        name.write_text("")
+    modes = {stat.S_IMODE((tmp_path / n).stat().st_mode) for n in ("plain.txt", "ours.txt")}
+    assert len(modes) == 1
+
+
+def test_a_claim_beyond_the_limit_or_beyond_the_file_is_refused(tmp_path):
+    path = tmp_path / "small.bin"
+    path.write_bytes(bytes(100))
+    files.check_size(path, 10, 10, 100)
+    with pytest.raises(ValueError, match="small.bin.*at least one"):
+        files.check_size(path, 0, 10)
+    with pytest.raises(ValueError, match=r"claims 65536 x 32768 pixels, expected at most"):
+        files.check_size(path, 32768, 65536)
+    with pytest.raises(ValueError, match="take 101 bytes or more, got 100"):
+        files.check_size(path, 10, 10, 101)
+
+
+def test_a_full_disk_is_reported_and_a_system_that_cannot_reserve_is_not(tmp_path, monkeypatch):
+    def refuse(number):
+        def fallocate(*_):
+            raise OSError(number, os.strerror(number))
+
+        return fallocate
+
+    with open(tmp_path / "x", "wb") as file:
+        monkeypatch.setattr(os, "posix_fallocate", refuse(95), raising=False)
+        files.reserve(file, 10)
+        monkeypatch.setattr(os, "posix_fallocate", refuse(28), raising=False)
+        with pytest.raises(OSError, match="space"):
+            files.reserve(file, 10)

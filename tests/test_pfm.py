@@ -1,0 +1,81 @@
+"""Portable float maps: written bytes first, then OpenCV as the oracle."""
+
+import cv2
+import numpy as np
+import pytest
+
+from hdrlab.io import pfm
+
+RGB = np.random.default_rng(0).random((37, 21, 3)).astype(np.float32)
+GRAY = RGB[..., 0].copy()
+
+
+@pytest.mark.parametrize("E", [RGB, GRAY])
+def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
+    pfm.write(tmp_path / "ours.pfm", E)
+    cv2.imwrite(str(tmp_path / "theirs.pfm"), np.ascontiguousarray(E[..., ::-1]) if E.ndim == 3 else E)
+    theirs = cv2.imread(str(tmp_path / "ours.pfm"), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(theirs[..., ::-1] if E.ndim == 3 else theirs, E)
+    assert np.array_equal(pfm.read(tmp_path / "ours.pfm"), E)
+    assert np.array_equal(pfm.read(tmp_path / "theirs.pfm"), E)
+
+
+def test_rows_run_from_the_bottom_to_the_top_in_little_endian(tmp_path):
+    pfm.write(tmp_path / "x.pfm", [[1.0, 2.0], [3.0, 4.0]])
+    expected = b"Pf\n2 2\n-1.0\n" + np.array([3, 4, 1, 2], "<f4").tobytes()
+    assert (tmp_path / "x.pfm").read_bytes() == expected
+
+
+def test_flip_takes_and_writes_rows_from_the_top_to_the_bottom(tmp_path):
+    pfm.write(tmp_path / "x.pfm", RGB, flip=False)
+    assert np.array_equal(pfm.read(tmp_path / "x.pfm", flip=False), RGB)
+    assert np.array_equal(pfm.read(tmp_path / "x.pfm"), RGB[::-1])
+
+
+@pytest.mark.parametrize(
+    ("scale", "dtype"), [("-1", "<f4"), ("-2.5e0", "<f4"), ("1.0", ">f4"), ("+0.5", ">f4")]
+)
+def test_the_sign_of_the_scale_is_the_byte_order_and_its_magnitude_is_left_alone(tmp_path, scale, dtype):
+    data = np.arange(6, dtype=dtype)
+    (tmp_path / "x.pfm").write_bytes(f"PF\n2 1\n{scale}\n".encode() + data.tobytes())
+    E = pfm.read(tmp_path / "x.pfm")
+    assert E.dtype == np.float32 and np.array_equal(E, np.arange(6).reshape(1, 2, 3))
+    assert pfm.read_header(tmp_path / "x.pfm").scale == float(scale)
+
+
+def test_a_first_value_that_looks_like_white_space_is_a_value(tmp_path):
+    data = np.array([0x20200A0A], "<u4").view("<f4")
+    (tmp_path / "x.pfm").write_bytes(b"Pf 1 1 -1\n" + data.tobytes())
+    assert np.array_equal(pfm.read(tmp_path / "x.pfm"), data[None])
+
+
+def test_what_is_no_radiance_is_not_written(tmp_path):
+    for value, says in (np.nan, "1 NaN"), (np.inf, "1 infinite"), (-1, "1 negative"):
+        with pytest.raises(ValueError, match=says):
+            pfm.write(tmp_path / "x.pfm", [[1.0, value]])
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(
+    "head",
+    [
+        b"",
+        b"P6\n2 2\n255\n",
+        b"PF\n2 2\n",
+        b"PF\n2 2\n0\n",
+        b"PF\n2 2\n-\n",
+        b"PF\n2 2\nnan\n",
+        b"PF\n-2 2\n1\n",
+    ],
+)
+def test_what_is_no_pfm_file_is_refused_by_name(tmp_path, head):
+    (tmp_path / "x.pfm").write_bytes(head + b"x" * 48 * bool(head))
+    with pytest.raises(ValueError, match="x.pfm: expected a PFM file"):
+        pfm.read(tmp_path / "x.pfm")
+
+
+@pytest.mark.parametrize("size", ["2147483648 1", "65536 32768", "0 4", "9999 9999", "3 2"])
+def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, size):
+    (tmp_path / "x.pfm").write_bytes(f"PF\n{size}\n-1.0\n".encode() + bytes(71))
+    with pytest.raises(ValueError, match="x.pfm: its header claims"):
+        pfm.read(tmp_path / "x.pfm")

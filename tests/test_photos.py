@@ -1,0 +1,363 @@
+"""Photographs in, as arrays, and pictures out: what is written by one library is read back by another."""
+
+import struct
+import zlib
+
+import cv2
+import imageio.v3 as iio
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image, ImageOps
+
+from hdrlab.io.decode import look
+from hdrlab.io.photos import read_bracket, read_photo, write_picture
+
+RNG = np.random.default_rng(0)
+RGB8 = RNG.integers(0, 256, (13, 21, 3), np.uint8)
+RGB16 = RNG.integers(0, 65536, (13, 21, 3), np.uint16)
+IMAGES = {"rgb8": RGB8, "gray8": RGB8[..., 1].copy(), "rgb16": RGB16, "gray16": RGB16[..., 1].copy()}
+
+
+def exif(orientation=1, *, seconds=None, f_number=None, iso=None):
+    tags = Image.Exif()
+    tags[0x0112] = orientation
+    stated = {33434: seconds, 33437: f_number, 34855: iso}
+    tags.get_ifd(0x8769).update({tag: value for tag, value in stated.items() if value is not None})
+    return tags
+
+
+def save(path, image, **tags):
+    """Write with Pillow, EXIF included."""
+    Image.fromarray(image).save(path, exif=exif(**tags))
+    return path
+
+
+def png(path, width, height, depth=8, kind=2, *chunks):
+    """Write a PNG of any header, with a pixel or two."""
+    data = b"\x89PNG\r\n\x1a\n"
+    ihdr = struct.pack(">IIBBBBB", width, height, depth, kind, 0, 0, 0)
+    for name, body in (b"IHDR", ihdr), *chunks, (b"IDAT", zlib.compress(bytes(9))), (b"IEND", b""):
+        data += struct.pack(">I", len(body)) + name + body + struct.pack(">I", zlib.crc32(name + body))
+    path.write_bytes(data)
+    return path
+
+
+@pytest.mark.parametrize("name", IMAGES)
+def test_png_keeps_every_bit_that_opencv_wrote(tmp_path, name):
+    image = IMAGES[name]
+    cv2.imwrite(str(tmp_path / "x.png"), np.ascontiguousarray(image[..., ::-1]) if image.ndim == 3 else image)
+    read = read_photo(tmp_path / "x.png")
+    assert read.dtype == image.dtype and np.array_equal(read, image)
+
+
+@pytest.mark.parametrize("name", IMAGES)
+@pytest.mark.parametrize("how", [{}, {"compression": "deflate", "predictor": True}, {"byteorder": ">"}])
+def test_tiff_keeps_every_bit(tmp_path, name, how):
+    image = IMAGES[name]
+    photometric = "rgb" if image.ndim == 3 else "minisblack"
+    tifffile.imwrite(tmp_path / "x.tif", image, photometric=photometric, **how)
+    read = read_photo(tmp_path / "x.tif")
+    assert read.dtype == image.dtype and read.dtype.isnative and np.array_equal(read, image)
+
+
+def test_a_tiff_of_separate_planes_reads(tmp_path):
+    planes = np.moveaxis(RGB16, -1, 0)
+    tifffile.imwrite(tmp_path / "x.tif", planes, photometric="rgb", planarconfig="separate")
+    assert np.array_equal(read_photo(tmp_path / "x.tif"), RGB16)
+
+
+@pytest.mark.parametrize("name", ["rgb8", "gray8"])
+@pytest.mark.parametrize("progressive", [True, False])
+def test_jpeg_decodes_as_in_pillow_and_opencv(tmp_path, name, progressive):
+    Image.fromarray(IMAGES[name]).save(tmp_path / "x.jpg", quality=90, progressive=progressive)
+    read = read_photo(tmp_path / "x.jpg")
+    theirs = cv2.imread(str(tmp_path / "x.jpg"), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(read, iio.imread(tmp_path / "x.jpg"))
+    assert np.array_equal(read, theirs[..., ::-1] if read.ndim == 3 else theirs)
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+@pytest.mark.parametrize("suffix", ["jpg", "png", "tif"])
+@pytest.mark.parametrize("name", ["rgb8", "gray8"])
+def test_exif_orientation_is_applied(tmp_path, orientation, suffix, name):
+    path = save(tmp_path / f"x.{suffix}", IMAGES[name], orientation=orientation)
+    oracle = save(tmp_path / "y.png", IMAGES[name], orientation=orientation) if suffix == "tif" else path
+    with Image.open(oracle) as image:  # gray TIFF is turned twice by Pillow
+        upright = np.asarray(ImageOps.exif_transpose(image))
+    read = read_photo(path)
+    assert look(path).shape == read.shape and np.array_equal(read, upright)
+
+
+def tiff_with_exif(path):
+    """Write a TIFF whose EXIF stands in a directory of its own, which neither Pillow nor tifffile writes."""
+    tifffile.imwrite(path, RGB8, photometric="rgb", extratags=[(65000, "I", 1, 0x7A7A7A7A, True)])
+    data = path.read_bytes()
+    at = len(data) + len(data) % 2
+    entry = struct.Struct("<HHII")
+    values = at + 2 + 3 * entry.size + 4
+    directory = struct.pack("<H", 3) + entry.pack(33434, 5, 1, values) + entry.pack(33437, 5, 1, values + 8)
+    directory += entry.pack(34855, 3, 1, 400) + bytes(4) + struct.pack("<4I", 1, 80, 56, 10)
+    data = data.replace(struct.pack("<HHII", 65000, 4, 1, 0x7A7A7A7A), struct.pack("<HHII", 34665, 4, 1, at))
+    path.write_bytes(data.ljust(at, b"\0") + directory)
+    return path
+
+
+@pytest.mark.parametrize("suffix", ["jpg", "png", "tif"])
+def test_exposure_is_read_from_exif_of_every_format(tmp_path, suffix):
+    path = tmp_path / f"x.{suffix}"
+    if suffix == "tif":
+        tiff_with_exif(path)
+    else:
+        save(path, RGB8, seconds=0.0125, f_number=5.6, iso=400)
+    assert look(path).exposure == pytest.approx((0.0125, 5.6, 400))
+    assert np.array_equal(read_photo(path), RGB8) or suffix == "jpg"
+
+
+def test_damaged_exif_does_not_spoil_the_photograph(tmp_path):
+    Image.fromarray(RGB8).save(tmp_path / "x.png", exif=b"Exif\0\0II*\0\xff\xff\xff\xff" + bytes(9))
+    assert (
+        np.array_equal(read_photo(tmp_path / "x.png"), RGB8) and look(tmp_path / "x.png").exposure[0] is None
+    )
+
+
+def bracket_of(folder, times=(0.25, 1.0, 4.0), image=RGB8, **tags):
+    for j, t in enumerate(times):
+        save(folder / f"{'cab'[j]}.png", np.full_like(image, 10 * j + 1), seconds=t, **tags)
+    return folder
+
+
+def test_a_folder_is_its_photographs_from_the_shortest_to_the_longest(tmp_path):
+    bracket_of(tmp_path)
+    for name in "list.csv", "notes.txt", "map.hdr", "map.exr", ".hidden.png":
+        (tmp_path / name).write_text("not a photograph")
+    (tmp_path / "folder.png").mkdir()
+    bracket = read_bracket(tmp_path)
+    assert bracket.names == ("c.png", "a.png", "b.png") and not bracket.linear and bracket.valid is None
+    assert bracket.times.tolist() == [0.25, 1, 4] and bracket.images[:, 0, 0, 0].tolist() == [1, 11, 21]
+    assert np.array_equal(read_bracket([tmp_path]).images, bracket.images)
+
+
+def test_times_in_a_sequence_follow_the_photographs_as_given(tmp_path):
+    bracket_of(tmp_path)
+    bracket = read_bracket([tmp_path / "b.png", tmp_path / "c.png"], [8, 2])
+    assert bracket.names == ("c.png", "b.png") and bracket.times.tolist() == [2, 8]
+
+
+def test_a_list_beats_exif(tmp_path):
+    bracket_of(tmp_path)
+    (tmp_path / "times.txt").write_text("a.png 1\nb.png 2\nc.png 4\n")
+    assert read_bracket(tmp_path, tmp_path / "times.txt").names == ("c.png", "b.png", "a.png")
+
+
+def test_aperture_and_iso_count_in_the_exposure(tmp_path):
+    save(tmp_path / "a.jpg", RGB8, seconds=0.5, f_number=8.0, iso=100)
+    save(tmp_path / "b.jpg", RGB8, seconds=0.5, f_number=4.0, iso=200)
+    assert read_bracket(tmp_path).times == pytest.approx([0.5, 4])
+
+
+@pytest.mark.parametrize("f_number", [0.0, None])
+def test_a_lens_without_contacts_never_gives_infinity(tmp_path, f_number):
+    bracket_of(tmp_path, f_number=f_number, iso=100)
+    assert read_bracket(tmp_path).times.tolist() == [0.25, 1, 4]
+
+
+def test_pixels_of_the_mask_colour_are_not_valid(tmp_path):
+    image = RGB8.copy()
+    image[2:5, 3:9] = (0, 0, 255)
+    for name in "ab":
+        save(tmp_path / f"{name}.png", image)
+    valid = read_bracket(tmp_path, [1, 2], mask=(0, 0, 255)).valid
+    expected = np.ones(RGB8.shape[:2], bool)
+    expected[2:5, 3:9] = False
+    assert valid.shape == (2, 13, 21) and np.array_equal(valid[0], expected)
+
+
+def test_a_mask_colour_needs_colour_photographs(tmp_path):
+    bracket_of(tmp_path, image=RGB8[..., 0])
+    with pytest.raises(ValueError, match=r"expected RGB photographs for the mask colour \(0, 0, 255\)"):
+        read_bracket(tmp_path, mask=(0, 0, 255))
+
+
+def test_progress_sees_each_photograph_once(tmp_path):
+    seen = []
+
+    def watch(paths):
+        for path in paths:
+            yield path
+            seen.append(path.name)
+
+    read_bracket(bracket_of(tmp_path), progress=watch)
+    assert sorted(seen) == ["a.png", "b.png", "c.png"]
+
+
+def test_a_folder_without_photographs_is_named(tmp_path):
+    (tmp_path / "list.csv").write_text("file,exposure_time_s\n")
+    with pytest.raises(ValueError, match=f"{tmp_path}: expected a folder with photographs"):
+        read_bracket(tmp_path)
+
+
+def test_one_photograph_is_no_bracket(tmp_path):
+    path = save(tmp_path / "a.jpg", RGB8, seconds=1.0)
+    for paths in path, [path], tmp_path:
+        with pytest.raises(ValueError, match="expected two photographs or more, got .*a.jpg"):
+            read_bracket(paths)
+    with pytest.raises(ValueError, match="expected two photographs or more, got none"):
+        read_bracket([])
+
+
+def test_a_missing_photograph_is_missing(tmp_path):
+    path = save(tmp_path / "a.jpg", RGB8, seconds=1.0)
+    with pytest.raises(FileNotFoundError, match="b.jpg"):
+        read_bracket([path, tmp_path / "b.jpg"])
+
+
+def test_a_folder_among_photographs_is_refused(tmp_path):
+    with pytest.raises(ValueError, match="expected photographs or one folder"):
+        read_bracket([tmp_path, tmp_path])
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "says"),
+    [
+        (RGB8, RGB8[:, 1:], "frames of one size: a.png is 21 x 13, .*, b.png is 20 x 13"),
+        (RGB8, RGB8[..., 0], "all gray or all RGB.*a.png is .* RGB, .*b.png is .* gray"),
+        (RGB16, RGB8, "8 or all of 16 bits.*a.png is .* 16 bits, .*b.png is .* 8 bits"),
+    ],
+)
+def test_frames_that_do_not_go_together_are_both_named(tmp_path, first, second, says):
+    for name, image in ("a.png", first), ("b.png", second):
+        cv2.imwrite(str(tmp_path / name), np.ascontiguousarray(image))
+    with pytest.raises(ValueError, match=says):
+        read_bracket(tmp_path, [1, 2])
+
+
+@pytest.mark.parametrize("missing", [None, 0.0])
+def test_a_photograph_without_a_time_is_named_with_the_way_out(tmp_path, missing):
+    save(tmp_path / "a.jpg", RGB8, seconds=1.0)
+    save(tmp_path / "b.jpg", RGB8, seconds=missing)
+    with pytest.raises(ValueError, match="b.jpg: expected an exposure time in its EXIF.*--times FILE"):
+        read_bracket(tmp_path)
+
+
+@pytest.mark.parametrize(
+    ("mode", "suffix", "says"),
+    [
+        ("P", "png", "a palette"),
+        ("RGBA", "png", "an alpha channel"),
+        ("LA", "png", "an alpha channel"),
+        ("1", "png", "1-bit pixels"),
+        ("CMYK", "jpg", "CMYK"),
+        ("P", "tif", "PALETTE"),
+        ("RGBA", "tif", "an alpha channel"),
+        ("CMYK", "tif", "SEPARATED"),
+        ("1", "tif", "bool|1-bit"),
+        ("F", "tif", "float32"),
+        ("YCbCr", "tif", "YCBCR"),
+    ],
+)
+def test_other_kinds_of_pixels_are_refused_by_name(tmp_path, mode, suffix, says):
+    path = tmp_path / f"x.{suffix}"
+    Image.fromarray(RGB8).convert(mode).save(path)
+    with pytest.raises(ValueError, match=f"x.{suffix}: expected gray or RGB of 8 or 16 bits, got.*({says})"):
+        read_photo(path)
+
+
+def test_other_kinds_of_tiff_and_png_are_refused_by_name(tmp_path):
+    tifffile.imwrite(tmp_path / "x.tif", RGB8.astype(np.float32), photometric="rgb")
+    with pytest.raises(ValueError, match="x.tif: expected gray or RGB of 8 or 16 bits, got 3 x float32, RGB"):
+        read_photo(tmp_path / "x.tif")
+    path = png(tmp_path / "x.png", 1, 1, 8, 2, (b"tRNS", bytes(6)))
+    with pytest.raises(ValueError, match="x.png: expected gray or RGB of 8 or 16 bits, got an alpha channel"):
+        read_photo(path)
+    path = png(tmp_path / "x.png", 1, 1, 4, 0)
+    with pytest.raises(ValueError, match="x.png: expected gray or RGB of 8 or 16 bits, got 4-bit pixels"):
+        read_photo(path)
+
+
+@pytest.mark.parametrize(
+    "data", [b"", b"GIF89a", b"#?RADIANCE\n", b"a text that is longer than any header is"]
+)
+def test_what_is_no_photograph_is_refused_by_name(tmp_path, data):
+    (tmp_path / "x.jpg").write_bytes(data)
+    with pytest.raises(ValueError, match="x.jpg: expected a JPEG, PNG or TIFF photograph, got b"):
+        read_photo(tmp_path / "x.jpg")
+
+
+@pytest.mark.parametrize("suffix", ["jpg", "png", "tif"])
+def test_a_photograph_that_is_cut_short_is_refused(tmp_path, suffix):
+    path = tmp_path / f"x.{suffix}"
+    write_picture(path, RNG.integers(0, 256, (60, 80, 3), np.uint8))
+    data = path.read_bytes()
+    for length in (*range(1, len(data) - 1, 501), len(data) - 2 if suffix == "jpg" else len(data) - 13):
+        path.write_bytes(data[:length])
+        with pytest.raises(ValueError, match=f"x.{suffix}: "):
+            read_photo(path)
+
+
+def test_a_thumbnail_in_the_exif_does_not_hide_that_a_jpeg_is_cut_short(tmp_path):
+    Image.fromarray(RGB8).save(tmp_path / "x.jpg", exif=b"Exif\0\0" + b"\xff\xd8\xff\xda\xff\xd9")
+    data = (tmp_path / "x.jpg").read_bytes()
+    (tmp_path / "x.jpg").write_bytes(data[:-20])
+    with pytest.raises(ValueError, match="x.jpg: it is cut short or damaged"):
+        read_photo(tmp_path / "x.jpg")
+
+
+@pytest.mark.parametrize(("width", "height"), [(65536, 32768), (2**31 - 1, 1), (30000, 3000), (12000, 11000)])
+def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, width, height):
+    with pytest.raises(ValueError, match="x.png: its header claims"):
+        read_photo(png(tmp_path / "x.png", width, height))
+    tifffile.imwrite(tmp_path / "x.tif", RGB8, photometric="rgb")
+    data = (tmp_path / "x.tif").read_bytes()
+    for tag, old, new in (256, 21, width), (257, 13, height):
+        data = data.replace(struct.pack("<HHII", tag, 4, 1, old), struct.pack("<HHII", tag, 4, 1, new))
+        data = data.replace(struct.pack("<HHIHH", tag, 3, 1, old, 0), struct.pack("<HHII", tag, 4, 1, new))
+    (tmp_path / "x.tif").write_bytes(data)
+    with pytest.raises(ValueError, match="x.tif: its header claims"):
+        read_photo(tmp_path / "x.tif")
+
+
+@pytest.mark.parametrize("suffix", ["png", "tif", "tiff"])
+@pytest.mark.parametrize("name", ["rgb8", "gray8"])
+def test_a_picture_that_is_written_reads_back(tmp_path, suffix, name):
+    write_picture(tmp_path / f"x.{suffix}", IMAGES[name])
+    assert np.array_equal(read_photo(tmp_path / f"x.{suffix}"), IMAGES[name])
+    assert np.array_equal(iio.imread(tmp_path / f"x.{suffix}"), IMAGES[name])
+
+
+def test_a_jpeg_that_is_written_looks_the_same(tmp_path):
+    smooth = cv2.GaussianBlur(RGB8, (0, 0), 3)
+    write_picture(tmp_path / "x.JPG", smooth)
+    assert np.abs(read_photo(tmp_path / "x.JPG").astype(int) - smooth).max() <= 4
+
+
+@pytest.mark.parametrize(
+    ("name", "image"),
+    [("x.png", RGB16), ("x.png", RGB8[..., :2]), ("x.png", RGB8[:0]), ("x.bmp", RGB8), ("x", RGB8)],
+)
+def test_what_is_no_picture_is_not_written(tmp_path, name, image):
+    with pytest.raises(ValueError, match="expected a picture"):
+        write_picture(tmp_path / name, image)
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize(("name", "frames"), [("window", 12), ("stlouis_arch", 4), ("frobisher", 3)])
+def test_real_brackets_have_the_times_of_their_exif(shared, name, frames):
+    folder = shared(name)
+    bracket, listed = read_bracket(folder), read_bracket(folder, folder / "exposures.csv")
+    assert len(bracket.images) == frames and bracket.names == listed.names
+    assert bracket.times == pytest.approx(listed.times, rel=1e-3)
+    theirs = cv2.imread(str(folder / bracket.names[0]))
+    assert np.array_equal(bracket.images[0], theirs[..., ::-1])
+
+
+def test_the_memorial_bracket_has_its_blue_border_masked(shared):
+    folder = shared("memorial")
+    bracket = read_bracket(folder, folder / "memorial.hdr_image_list.txt", mask=(0, 0, 255))
+    assert bracket.images.shape == (16, 768, 512, 3) and bracket.names[0] == "memorial0076.png"
+    assert np.all((bracket.images == (0, 0, 255)).all(axis=-1) == ~bracket.valid) and not bracket.valid.all()
+
+
+def test_the_crusader_bracket_without_times_says_what_to_do(shared):
+    with pytest.raises(ValueError, match="1.jpeg: expected an exposure time in its EXIF.*--times FILE"):
+        read_bracket(shared("crusader") / "frames")

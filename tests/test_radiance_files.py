@@ -1,0 +1,98 @@
+"""Radiance files by their suffix, and what files of every kind say about themselves."""
+
+import numpy as np
+import pytest
+
+from hdrlab.io import exr, pfm
+from hdrlab.io.describe import describe_file
+from hdrlab.io.photos import write_picture
+from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
+
+E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(np.float32)  # RGBE keeps one power
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_every_suffix_reads_what_it_wrote(tmp_path, suffix):
+    gray = E[..., 0].copy()
+    write_radiance(tmp_path / f"x{suffix}", gray)
+    read = read_radiance(tmp_path / f"x{suffix}")
+    assert read.dtype == np.float32 and np.array_equal(read if read.ndim == 2 else read[..., 1], gray)
+
+
+def test_the_suffix_may_be_in_capitals(tmp_path):
+    write_radiance(tmp_path / "x.EXR", E)
+    assert np.array_equal(read_radiance(tmp_path / "x.EXR"), E)
+
+
+@pytest.mark.parametrize("name", ["x.png", "x", "x.hdr.gz"])
+def test_another_suffix_is_refused_by_name(tmp_path, name):
+    for act in read_radiance, lambda path: write_radiance(path, E):
+        with pytest.raises(ValueError, match=f"{name}: expected a radiance file .*.hdr"):
+            act(tmp_path / name)
+
+
+def test_half_floats_are_for_exr_alone(tmp_path):
+    write_radiance(tmp_path / "x.exr", np.ones((2, 2)), half=True)
+    assert exr.read_dtypes(tmp_path / "x.exr") == ("float16",)
+    with pytest.raises(ValueError, match="x.hdr: expected an .exr file for half floats"):
+        write_radiance(tmp_path / "x.hdr", E, half=True)
+
+
+def spoiled(path):
+    """Write a PFM file with values that are no radiance."""
+    values = np.array([[np.nan, np.inf, -np.inf, -1, 0, 7]], "<f4")
+    path.write_bytes(b"Pf\n6 1\n-1.0\n" + values.tobytes())
+    return path
+
+
+def test_values_that_are_no_radiance_are_counted_and_refused(tmp_path):
+    with pytest.raises(ValueError, match=r"x.pfm: .*got 1 NaN, 2 infinite and 2 negative values.*--clean"):
+        read_radiance(spoiled(tmp_path / "x.pfm"))
+
+
+def test_cleaning_makes_nan_and_negative_values_0_and_infinite_ones_the_largest(tmp_path):
+    path = spoiled(tmp_path / "x.pfm")
+    assert read_radiance(path, clean=True).tolist() == [[0, 7, 0, 0, 0, 7]]
+    assert np.isnan(pfm.read(path)[0, 0])
+
+
+def test_cleaning_leaves_radiance_as_it_is(tmp_path):
+    write_radiance(tmp_path / "x.exr", E)
+    assert np.array_equal(read_radiance(tmp_path / "x.exr", clean=True), E)
+
+
+@pytest.mark.parametrize("suffix", [".hdr", ".pfm", ".exr", ".png"])
+def test_a_missing_file_or_folder_is_missing(tmp_path, suffix):
+    with pytest.raises(FileNotFoundError):
+        describe_file(tmp_path / f"x{suffix}")
+    if suffix in SUFFIXES:
+        with pytest.raises(FileNotFoundError):
+            read_radiance(tmp_path / f"x{suffix}")
+        with pytest.raises(FileNotFoundError, match="no folder"):
+            write_radiance(tmp_path / "nowhere" / f"x{suffix}", E)
+
+
+@pytest.mark.parametrize(
+    ("suffix", "says"),
+    [
+        (".hdr", {"format": "Radiance RGBE", "channels": 3, "axes": "-Y+X", "exposure": [1, 1, 1]}),
+        (".pfm", {"format": "PFM", "channels": 3, "values": "float32", "endian": "little", "scale": 1}),
+        (".exr", {"format": "OpenEXR", "channels": "B, G, R", "values": "float32", "compression": "ZIP"}),
+        (".png", {"format": "PNG", "channels": 3, "values": "uint8", "orientation": 1}),
+        (".jpg", {"format": "JPEG", "channels": 3, "values": "uint8", "orientation": 1}),
+        (".tif", {"format": "TIFF", "channels": 3, "values": "uint8", "orientation": 1}),
+    ],
+)
+def test_a_file_describes_itself(tmp_path, suffix, says):
+    path = tmp_path / f"x{suffix}"
+    (write_radiance if suffix in SUFFIXES else write_picture)(
+        path, E if suffix in SUFFIXES else E.astype(np.uint8)
+    )
+    said = describe_file(path)
+    assert said["file"] == str(path) and (said["width"], said["height"]) == (9, 7)
+    assert {key: said[key] for key in says} == says
+
+
+def test_a_photograph_describes_its_exposure(shared):
+    said = describe_file(shared("frobisher") / "IMG_2600.jpg")
+    assert (said["seconds"], said["f_number"], said["iso"]) == (0.125, 8, 100)

@@ -1,0 +1,186 @@
+"""Exposure times from lists and from EXIF, and which of them a bracket takes."""
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from PIL import Image
+from PIL.TiffImagePlugin import IFDRational
+
+from hdrlab.io.exposure import Exposure, equivalent, exif_exposure
+from hdrlab.io.times import bracket_times, read_times
+
+NAMES = ["a.jpg", "b.jpg"]
+TIME, NUMBER, SPEED, TV, AV, BIAS = 33434, 33437, 34855, 37377, 37378, 37380
+
+
+def exif(**tags):
+    image = Image.Exif()
+    image.get_ifd(0x8769).update({globals()[name]: value for name, value in tags.items()})
+    return image
+
+
+def wrote(tmp_path, text, name="times.txt"):
+    path = tmp_path / name
+    path.write_text(text)
+    return path
+
+
+def test_rationals_are_read():
+    said = exif_exposure(exif(TIME=IFDRational(1, 60), NUMBER=IFDRational(28, 10), SPEED=200))
+    assert said == Exposure(pytest.approx(1 / 60), pytest.approx(2.8), 200)
+
+
+def test_apex_values_serve_where_plain_ones_are_missing():
+    said = exif_exposure(exif(TV=IFDRational(6, 1), AV=IFDRational(3, 1)))
+    assert said == Exposure(1 / 64, pytest.approx(2**1.5), None)
+    assert exif_exposure(exif(TIME=IFDRational(0, 1), TV=IFDRational(-2, 1))).seconds == 4
+    assert exif_exposure(exif(TV=IFDRational(0, 1))).seconds == 1
+
+
+def test_plain_values_come_before_apex_values():
+    said = exif_exposure(exif(TIME=IFDRational(1, 50), TV=IFDRational(6, 1)))
+    assert said.seconds == pytest.approx(1 / 50)
+
+
+def test_the_exposure_bias_is_no_time():
+    assert exif_exposure(exif(BIAS=IFDRational(-2, 1))) == Exposure(None, None, None)
+
+
+def test_an_iso_speed_beyond_16_bits_is_taken_from_the_newer_tag():
+    image = exif(SPEED=65535)
+    assert exif_exposure(image).iso is None
+    image.get_ifd(0x8769)[34866] = 102400
+    assert exif_exposure(image).iso == 102400
+
+
+@pytest.mark.parametrize("nothing", [IFDRational(0, 1), IFDRational(1, 0), IFDRational(0, 0), "", (), b"x"])
+def test_values_of_zero_and_infinity_say_nothing(nothing):
+    said = exif_exposure(exif(TIME=nothing, NUMBER=nothing, SPEED=nothing))
+    assert said == Exposure(None, None, None)
+
+
+@given(st.lists(st.tuples(*[st.floats(1e-4, 1e4)] * 3), min_size=2, max_size=5))
+def test_equivalent_exposure_is_t_S_over_N_squared_relative_to_the_first(values):
+    exposures = [Exposure(*value) for value in values]
+    _, N0, S0 = values[0]
+    expected = [t * S / S0 * N0**2 / N**2 for t, N, S in values]
+    got = equivalent([str(j) for j in range(len(values))], exposures)
+    assert got == pytest.approx(expected) and got[0] == pytest.approx(values[0][0])
+
+
+@pytest.mark.parametrize("f_number", [None, 8.0])
+@pytest.mark.parametrize("iso", [None, 100.0])
+def test_what_no_photograph_states_is_the_same_in_all(f_number, iso):
+    assert equivalent(NAMES, [Exposure(1.0, f_number, iso), Exposure(2.0, f_number, iso)]) == [1, 2]
+
+
+def test_what_only_some_photographs_state_is_an_error():
+    with pytest.raises(ValueError, match="b.jpg: expected the f-number.*--times FILE"):
+        equivalent(NAMES, [Exposure(1.0, 8.0, 100), Exposure(2.0, None, 100)])
+    with pytest.raises(ValueError, match="a.jpg: expected the ISO speed"):
+        equivalent(NAMES, [Exposure(1.0, 8.0, None), Exposure(2.0, 8.0, 100)])
+
+
+def test_a_missing_time_is_named_with_the_way_out():
+    with pytest.raises(ValueError, match="b.jpg: expected an exposure time in its EXIF.*--times FILE"):
+        equivalent(NAMES, [Exposure(1.0), Exposure(None, 8.0, 100)])
+
+
+def test_a_csv_list_gives_equivalent_exposures(tmp_path):
+    text = "file,exposure_time_s,f_number,iso\na.jpg,0.5,8,100\nb.jpg,0.5,4,200\n"
+    assert read_times(wrote(tmp_path, text)) == {"a.jpg": 0.5, "b.jpg": pytest.approx(4.0)}
+
+
+def test_a_csv_list_may_leave_f_number_and_iso_empty_or_out(tmp_path):
+    text = "file,exposure_time_s,f_number,iso\na.jpg,0.5,,\n\nb.jpg,2,,\n"
+    assert read_times(wrote(tmp_path, text)) == {"a.jpg": 0.5, "b.jpg": 2}
+    text = '\ufeffexposure_time_s, file\n0.5,"a, the first.jpg"\n'
+    assert read_times(wrote(tmp_path, text)) == {"a, the first.jpg": 0.5}
+
+
+def test_the_second_column_of_a_course_list_is_one_over_seconds(tmp_path):
+    text = "# OpenCV's tutorial\nmemorial00.png 0.03125\nmemorial 01.png\t1024  # darkest\n"
+    assert read_times(wrote(tmp_path, text)) == {"memorial00.png": 32, "memorial 01.png": 1 / 1024}
+
+
+def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_path):
+    text = "# Filename exposure 1/shutter f/stop gain ND\na.png 4 0.25 8 0 0\nb.png 1 0.25 16 0 0\n"
+    assert read_times(wrote(tmp_path, text)) == {"a.png": 4, "b.png": 1}
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "times.txt: expected a list of exposure times, it is empty"),
+        ("# only a comment\n", "it is empty"),
+        ("a.jpg 2\nb.jpg\n", "times.txt, line 2: expected a file name and 1/seconds, got b.jpg"),
+        ("a.jpg 2\n\nb.jpg fast\n", "line 3: expected a positive number, got fast"),
+        ("a.jpg 2\nb.jpg 0\n", "line 2: expected a positive number, got 0"),
+        ("a.jpg -2\n", "line 1: expected a positive number, got -2"),
+        ("a.jpg nan\n", "line 1: expected a positive number, got nan"),
+        ("a.jpg 2\na.jpg 4\n", "line 1: expected each file once, got a.jpg again"),
+        ("a.png 1 1 8 6 0\n", "line 1: expected neither gain nor ND filters"),
+        ("file,exposure_time_s\na.jpg\n", "line 2: expected 2 columns, got 1"),
+        ("file,exposure_time_s\na.jpg,\n", "line 2: expected a positive number, got nothing"),
+        ("file,exposure_time_s\na.jpg,1/30\n", "line 2: expected a positive number, got 1/30"),
+        ("name,exposure_time_s\na.jpg,1\n", "line 1: expected the columns file and exposure_time_s"),
+        ("file,exposure_time_s,iso\na.jpg,1,0\n", "line 2: expected a positive number, got 0"),
+        ("file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n", "times.txt: b.jpg: expected the ISO speed"),
+    ],
+)
+def test_a_list_that_is_wrong_names_file_line_and_what_was_expected(tmp_path, text, says):
+    with pytest.raises(ValueError) as caught:
+        read_times(wrote(tmp_path, text))
+    assert says in str(caught.value) and "times.txt" in str(caught.value)
+
+
+def test_a_list_that_is_not_text_is_refused(tmp_path):
+    path = tmp_path / "times.txt"
+    path.write_bytes(b"\xff\xd8\xff\xe0")
+    with pytest.raises(ValueError, match="this is not a text file"):
+        read_times(path)
+
+
+@given(st.text(max_size=200))
+def test_any_text_is_a_list_or_a_value_error(tmp_path_factory, text):
+    path = tmp_path_factory.mktemp("lists") / "times.txt"
+    path.write_text(text, encoding="utf-8", errors="replace")
+    try:
+        times = read_times(path)
+    except ValueError as error:
+        assert str(path) in str(error)
+    else:
+        assert times and all(t > 0 and math.isfinite(t) for t in times.values())
+
+
+def test_explicit_times_beat_exif(tmp_path):
+    stated = [Exposure(1.0, 8.0, 100), Exposure(2.0, 4.0, 100)]
+    assert bracket_times(NAMES, stated, None) == [1, pytest.approx(8)]
+    assert bracket_times(NAMES, stated, [3, 4]) == [3, 4]
+    assert bracket_times(NAMES, stated, {"b.jpg": 5, "a.jpg": 6, "c.jpg": 7}) == [6, 5]
+    assert bracket_times(NAMES, stated, wrote(tmp_path, "b.jpg 4\na.jpg 2\n")) == [0.5, 0.25]
+
+
+def test_a_photograph_that_the_list_does_not_name_is_named(tmp_path):
+    with pytest.raises(ValueError, match="times.txt: expected a time for each photograph.*none for b.jpg"):
+        bracket_times(NAMES, [], wrote(tmp_path, "a.jpg 2\n"))
+
+
+@pytest.mark.parametrize("wrong", [0, -1, math.nan, math.inf])
+def test_times_that_are_not_positive_are_refused_by_name(wrong):
+    with pytest.raises(ValueError, match="b.jpg: expected a positive exposure time.*--times FILE"):
+        bracket_times(NAMES, [], [1, wrong])
+
+
+def test_as_many_times_as_photographs_are_expected():
+    with pytest.raises(ValueError, match="expected 2 exposure times, one per photograph, got 3"):
+        bracket_times(NAMES, [], [1, 2, 3])
+
+
+def test_the_lists_of_the_memorial_bracket_agree(shared):
+    folder = shared("memorial")
+    times = read_times(folder / "memorial.hdr_image_list.txt")
+    assert times == read_times(folder / "exposures.csv")
+    assert len(times) == 16 and times["memorial0061.png"] == 32 and times["memorial0076.png"] == 1 / 1024
