@@ -9,6 +9,8 @@ import warnings
 import numpy as np
 import pytest
 
+from hdrlab.capture import camera, responses
+
 
 def scene(shape=(96, 128), seed=0):
     """Return a luminance of about five decades: soft light, a bright window, fine texture."""
@@ -125,3 +127,116 @@ ALWAYS = (
     keeps_the_light_the_right_way_up,
 )
 CLAIMED = {"monotone": monotone, "exposure": exposure}
+
+
+# The response
+
+
+def photographs(response, *, shape=(60, 80), frames=7, bits=8, rng=11):
+    """Return a Bracket of five decades of light, 2 stops apart, under the noise of a large sensor."""
+    E = (10.0 ** np.random.default_rng(rng).uniform(-2.5, 2.5, shape)).astype(np.float32)
+    times = camera.times_around(E, frames, stops=2)
+    return camera.shoot(E, times, response=response, bits=bits, full_well=50_000, read_noise=5, rng=rng)
+
+
+def curve_error(g, truth):
+    """Return the RMSE of f^-1 over levels 10 to 250 of 256, its unit fitted, per its largest value."""
+    at = np.arange(10, 251) * (len(g) - 1) // 255
+    X, true = np.exp(g[at]), np.exp(truth[at])
+    return np.sqrt(np.mean((X * (X @ true) / (X @ X) - true) ** 2)) / true.max()
+
+
+def finds_the_true_curve_of_a_simulated_camera(recover, response):
+    for bits in (8, 16):
+        taken = photographs(response, bits=bits)
+        g = recover(taken.images, taken.times)
+        assert curve_error(g, responses.true_g(response, len(g))) < 0.01, f"{bits} bits"
+
+
+def answers_one_number_per_level_with_the_middle_at_0(recover, response):
+    for shape, channels in (((60, 80), ()), ((60, 80, 3), (3,))):
+        taken = photographs(response, shape=shape)
+        g = recover(taken.images, taken.times)
+        assert g.shape in {(256,), (256, *channels)} and g.dtype == np.float64
+        assert np.all(np.isfinite(g)) and np.all(g[128] == 0) and np.all(np.diff(g, axis=0) >= 0)
+
+
+def does_not_ask_for_an_order_of_the_frames(recover, response):
+    taken = photographs(response)
+    order = np.random.default_rng(0).permutation(len(taken.times))
+    shuffled = recover(taken.images[order], taken.times[order])
+    assert np.allclose(shuffled, recover(taken.images, taken.times), atol=1e-8)
+
+
+def does_not_depend_on_the_unit_of_time(recover, response):
+    taken = photographs(response)
+    for factor in (2, 1 / 3000):
+        assert np.allclose(
+            recover(taken.images, factor * taken.times), recover(taken.images, taken.times), atol=1e-8
+        )
+
+
+def reads_16_bits_like_the_8_they_hold(recover, response):
+    taken = photographs(response)
+    g = recover(taken.images.astype(np.uint16) * 257, taken.times)
+    eight = recover(taken.images, taken.times)
+    if len(g) == 256:
+        assert np.allclose(g, eight, atol=1e-12)
+    else:
+        shared = g[257:-257:257]
+        assert np.allclose(shared - shared[127], eight[1:-1] - eight[128], atol=1e-6)
+
+
+def recovers_gray_like_each_of_three_equal_channels(recover, response):
+    taken = photographs(response)
+    gray = recover(taken.images, taken.times)
+    rgb = recover(np.stack([taken.images] * 3, axis=-1), taken.times)
+    assert np.allclose(rgb.reshape(len(gray), -1), gray[:, None], atol=1e-10)
+
+
+def makes_do_with_two_frames(recover, response):
+    E = np.geomspace(0.02, 1, 4800, dtype=np.float32).reshape(60, 80)
+    taken = camera.shoot(E, [0.5, 1.0], response=response)
+    g = recover(taken.images, taken.times)
+    assert curve_error(g, responses.true_g(response, len(g))) < 0.05
+
+
+def makes_do_with_levels_that_no_pixel_has(recover, response):
+    taken = photographs(response)
+    images = taken.images // 2 * 2  # the even ones alone
+    g = recover(images, taken.times)
+    assert np.all(np.isfinite(g)) and curve_error(g, responses.true_g(response, len(g))) < 0.02
+
+
+def leaves_the_photographs_alone(recover, response):
+    taken = photographs(response)
+    images, times = taken.images.copy(), taken.times.copy()
+    images.setflags(write=False)
+    times.setflags(write=False)
+    assert np.array_equal(recover(images, times), recover(taken.images, taken.times))
+
+
+def refuses_what_is_no_bracket(recover, response):
+    taken = photographs(response)
+    for images, times in (
+        (taken.images, taken.times[1:]),
+        (taken.images, taken.times * 0),
+        (taken.images.astype(float), taken.times),
+        (taken.images[..., None], taken.times),
+    ):
+        with pytest.raises(ValueError, match="expected"):
+            recover(images, times)
+
+
+RECOVERY = (
+    finds_the_true_curve_of_a_simulated_camera,
+    answers_one_number_per_level_with_the_middle_at_0,
+    does_not_ask_for_an_order_of_the_frames,
+    does_not_depend_on_the_unit_of_time,
+    reads_16_bits_like_the_8_they_hold,
+    recovers_gray_like_each_of_three_equal_channels,
+    makes_do_with_two_frames,
+    makes_do_with_levels_that_no_pixel_has,
+    leaves_the_photographs_alone,
+    refuses_what_is_no_bracket,
+)

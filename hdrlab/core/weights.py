@@ -44,3 +44,25 @@ def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> Table:
     w = np.asarray(w, dtype=np.float64)
     z = np.linspace(0, 1, len(w))
     return np.where((z > above) | (z < below), 0.0, w)
+
+
+def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> Table:
+    """Return w = f / f', the signal over a noise that has one size at all levels [Mitsunaga99 eq. 14].
+
+    f = exp g is the exposure of each level, of the channels' mean where g is (n, 3). Its slope f' is taken
+    over `span` levels on either side, in units of the mean slope, and held at `least` or above: where a curve
+    was levelled it is not certain without bound. Scaled to 1 in the middle, and 0 at both ends. It grows with
+    the level: noise that is not clipped matters least in bright pixels.
+    """
+    g = np.asarray(g, dtype=np.float64)
+    if g.ndim not in (1, 2) or len(g) < 3 or not np.all(np.isfinite(g)):
+        raise ValueError(f"expected a finite response (n,) or (n, 3), got shape {g.shape}")
+    f = np.exp(g - g[-1]).reshape(len(g), -1).mean(axis=1)
+    if not f[-1] > f[0]:
+        raise ValueError("expected a response that rises, got one that ends where it began, or below")
+    z = np.arange(len(g))
+    low, high = np.maximum(z - span, 0), np.minimum(z + span, len(g) - 1)
+    slope = (f[high] - f[low]) / (high - low) * (len(g) - 1) / (f[-1] - f[0])
+    w = f / np.maximum(slope, least)
+    w[[0, -1]] = 0
+    return w / w[len(g) // 2]

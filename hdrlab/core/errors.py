@@ -1,0 +1,120 @@
+"""How far a result lies from a truth that is known, where the camera was a simulated one.
+
+g        response    (n,) or (n, 3), ln f^-1, ln exposure of each level
+E        radiance    (H, W[, 3]), any linear unit
+offsets  (P, 2) int, (dy, dx) pixels
+well     (H, W) bool, pixels that at least one frame saw well
+
+Photographs fix neither the unit of exposure nor where the camera stood at first. So one factor, or one common
+shift, is taken off before anything is compared; each function says which.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, as_radiance, as_stack, as_table, describe
+from hdrlab.core.sampling import to_256
+
+Float = NDArray[np.float64]
+LOW, HIGH = 10, 250  # of 256 levels: noise rules below, the cut above
+
+
+class Truth(NamedTuple):
+    """What a simulated camera knows, and a calibration should find.
+
+    Attributes
+    ----------
+    E : (h, w) or (h, w, 3), radiance of the scene where the map shows it, in any linear unit
+    g : (n,) or (n, 3), the camera's response, ln exposure of each level
+    offsets : (P, 2) int, (dy, dx) pixels, where each photograph must move
+    """
+
+    E: Array
+    g: Float
+    offsets: NDArray[np.int64]
+
+
+def response_rmse(g: ArrayLike, truth: ArrayLike) -> Float:
+    """Return the RMSE of f^-1 over the levels 10 to 250, in percent of the true f^-1(250), per channel.
+
+    Each channel is first multiplied by the factor that fits it best (least squares), for a response is known
+    only up to one.
+
+    Parameters
+    ----------
+    g : (n,) or (n, C)
+        The response that was found, ln exposure of each level.
+    truth : (n,) or (n, C)
+        The camera's own; one curve serves all channels.
+
+    Returns
+    -------
+    (C,) float64
+        Percent of the exposure at level 250.
+
+    Raises
+    ------
+    ValueError
+        For tables that are not responses, or numbers of channels that do not fit together.
+
+    Examples
+    --------
+    >>> g = np.log(np.arange(1, 257))
+    >>> response_rmse(g + 3, g).round(6) + 0.0  # another unit of exposure is no error
+    array([0.])
+    """
+    levels = slice(LOW, HIGH + 1)
+    found, true = (as_table(one, 256).reshape(256, -1) for one in (g, truth))
+    if true.shape[1] not in (1, found.shape[1]):
+        raise ValueError(f"expected one true response, or {found.shape[1]}, got {true.shape[1]}")
+    X, X_true = np.exp(found - found[HIGH])[levels], np.exp(true - true[HIGH])[levels]
+    s = (X * X_true).sum(axis=0) / (X * X).sum(axis=0)
+    return 100 * np.sqrt(((s * X - X_true) ** 2).mean(axis=0))
+
+
+def well_seen(images: ArrayLike, valid: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+    """Return where some frame (P, H, W[, 3]) has a pixel's levels, in all channels, within 10 to 250."""
+    stack = as_stack(images)
+    Z = to_256(stack).reshape(*stack.shape[:3], -1)
+    inside = ((Z >= LOW) & (Z <= HIGH)).all(axis=-1)
+    return np.any(inside if valid is None else inside & valid, axis=0)
+
+
+def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> Float:
+    """Return s E / E_true - 1 in every pixel and channel, (H, W[, 3]); NaN where the truth is without light.
+
+    The factor s is one for all, and makes the median of s E / E_true over the pixels of `well` 1.
+
+    Raises
+    ------
+    ValueError
+        For shapes that do not fit together, or where no pixel of `well` can be compared.
+
+    Examples
+    --------
+    >>> truth = np.array([[1.0, 2.0, 4.0]])
+    >>> radiance_errors([[10.0, 20.0, 44.0]], truth, truth > 0).round(3)
+    array([[0. , 0. , 0.1]])
+    """
+    E, truth = as_radiance(E).astype(np.float64), as_radiance(truth)
+    if not (E.shape == truth.shape and E.shape[:2] == well.shape):
+        raise ValueError(
+            f"expected maps of one shape, got {E.shape} and, as truth, {truth.shape}, {well.shape}"
+        )
+    ratio = E / np.where(truth > 0, truth, np.nan)
+    median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
+    if not median > 0:
+        raise ValueError("expected a pixel with light that a frame saw well, got none")
+    return ratio / median - 1
+
+
+def offset_errors(found: ArrayLike, truth: ArrayLike) -> NDArray[np.int64]:
+    """Return found - truth (P, 2) in pixels, less the shift that most frames share: the whole map's."""
+    found, truth = np.asarray(found, np.int64), np.asarray(truth, np.int64)
+    if found.shape != truth.shape or found.ndim != 2 or found.shape[1] != 2:
+        raise ValueError(f"expected offsets (P, 2) twice, got {describe(found)} and {describe(truth)}")
+    apart = found - truth
+    common = [np.bincount(axis - axis.min()).argmax() + axis.min() for axis in apart.T]
+    return apart - np.array(common)

@@ -1,0 +1,205 @@
+"""Where the chapters meet: a bracket of photographs -> a radiance map -> a picture.
+
+Each stage may be a method's name or a function of the same signature, so a reader's own plugs in wherever the
+library's does. `assemble_steps` yields what is known after each stage; `assemble` returns the last of it.
+"""
+
+from collections.abc import Callable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.align import judge, mtb, pairs
+from hdrlab.align.shift import as_offsets, shift
+from hdrlab.core import catalogue, colour, weights
+from hdrlab.core.arrays import levels
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.steps import last
+from hdrlab.radiance import consistency
+from hdrlab.radiance.merge import merge_seen
+
+Method = str | Callable[..., Any]
+STAGES = ("align", "response", "merge", "compare")
+WEIGHTS = {"hat": weights.hat, "gaussian": weights.gaussian, "flat": weights.flat}
+CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
+REGISTER = "no shift lays one on the other; leave one out, or bring them to lie on each other by other means"
+
+
+class Assembly(NamedTuple):
+    """What is known of a bracket after a stage; what is not known yet is None.
+
+    Attributes
+    ----------
+    stage : the one of STAGES that was done last
+    bracket : the photographs, moved and cut to what all of them show
+    offsets : (P, 2) int, (dy, dx) pixels, where each photograph was moved
+    g : (n,) or (n, 3), response, ln exposure of each level
+    E : (h, w) or (h, w, 3) float32, radiance
+    seen : (h, w) uint8, how each pixel is known: flags of `radiance.bounds.Seen`
+    medians : (P, C, 256), what each frame says of each level: see `radiance.consistency`
+    notes : sentences, what to know about this map
+    doubts : sentences, reasons not to trust it
+    """
+
+    stage: str
+    bracket: Bracket
+    offsets: NDArray[np.int64]
+    g: NDArray[np.float64] | None = None
+    E: NDArray[np.float32] | None = None
+    seen: NDArray[np.uint8] | None = None
+    medians: NDArray[np.float64] | None = None
+    notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
+
+    @property
+    def spread(self) -> float:
+        """How far the frames contradict each other, in stops; NaN before the last stage."""
+        return consistency.spread(self.medians) if self.medians is not None else float("nan")
+
+
+def assemble_steps(
+    bracket: Bracket,
+    *,
+    align: Method = "mtb",
+    response: Method = "auto",
+    weight: str = "gaussian",
+    method: str = "log",
+) -> Iterator[Assembly]:
+    """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
+    _check_exposures(bracket)
+    if weight not in WEIGHTS:
+        raise ValueError(f"expected a weight out of {', '.join(WEIGHTS)}, got {weight!r}")
+    state = aligned(bracket, align)
+    yield state
+    images, times, _, valid, linear = state.bracket
+    if response == "auto":
+        response = "linear" if linear else "debevec"
+    g = catalogue.method("response", response)(images, times, valid=valid)
+    yield (state := state._replace(stage="response", g=g))
+    E, seen = merge_seen(images, times, g, WEIGHTS[weight](levels(images)), method=method, valid=valid)
+    yield (state := state._replace(stage="merge", E=E, seen=seen))
+    yield compared(state, consistency.level_medians(images, times, E, valid=valid))
+
+
+def _check_exposures(bracket: Bracket) -> None:
+    """Raise a ValueError where a bracket holds fewer than two exposures."""
+    if len(set(bracket.times.tolist())) < 2:
+        exposures = zip(bracket.names, bracket.times, strict=True)
+        got = ", ".join(f"{name} {time:.6g} s" for name, time in exposures)
+        raise ValueError(f"expected photographs of at least two different exposures, got {got}")
+
+
+def aligned(bracket: Bracket, align: Method) -> Assembly:
+    """Return the Assembly after alignment: by a method's name, a function, or "none"."""
+    offsets = np.zeros((len(bracket.images), 2), np.int64)
+    verdicts: tuple[pairs.Verdict, ...] = ()
+    if align == "mtb":
+        verdicts = mtb.verdicts(bracket.images)
+        offsets = pairs.along(verdicts)
+    elif align != "none":
+        offsets = as_offsets(catalogue.method("align", align)(bracket.images), len(bracket.images))
+    lost = [one for one in verdicts if one.informative and one.confidence < judge.DOUBT]
+    notes = tuple(_about(one, bracket) for one in verdicts if one.trouble and one not in lost)
+    doubts = tuple(f"{_about(one, bracket)}: {REGISTER}" for one in lost)
+    return Assembly("align", moved(bracket, offsets), offsets, notes=notes, doubts=doubts)
+
+
+def moved(bracket: Bracket, offsets: NDArray[np.int64]) -> Bracket:
+    """Return the bracket with its photographs, and their masks, moved and cut to what all of them show."""
+    valid = bracket.valid
+    if valid is not None:
+        valid = shift(valid.view(np.uint8), offsets).view(bool)
+    return bracket._replace(images=shift(bracket.images, offsets), valid=valid)
+
+
+def _about(verdict: pairs.Verdict, bracket: Bracket) -> str:
+    """Return the sentence on a pair that is in trouble."""
+    moving, fixed = bracket.names[verdict.moving], bracket.names[verdict.fixed]
+    return f"{moving} against {fixed}, moved by {verdict.offset} pixels: {verdict.trouble}"
+
+
+def compared(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
+    """Return the Assembly with what its frames say of each level, and what that puts in doubt."""
+    state = state._replace(stage="compare", medians=medians)
+    if np.isnan(state.spread):
+        note = "no level stands in two frames, so the times cannot be compared with the pixels"
+        return state._replace(notes=(*state.notes, note))
+    if state.spread <= CONTRADICTION:
+        return state
+    stops = zip(state.bracket.names, consistency.deviations(medians), strict=True)
+    off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
+    doubt = (
+        f"the photographs contradict their exposure times by {state.spread:.2f} stops ({off}): "
+        "check the times, and that the camera did not change ISO, aperture or its processing"
+    )
+    return state._replace(doubts=(*state.doubts, doubt))
+
+
+def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
+    """Return the radiance map of a bracket, with all that was found on the way.
+
+    Parameters
+    ----------
+    bracket : Bracket
+        At least two photographs of different exposure.
+    align : str or function
+        A method of `align`, "none", or your own `align(images) -> offsets (P, 2)`.
+    response : str or function
+        A method of `response`, "auto" (linear where the bracket is, else Debevec), or your own
+        `recover(images, times, *, valid) -> g`.
+    weight : {"gaussian", "hat", "flat"}
+        How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the frames of
+        real brackets contradict each other least.
+    method : {"log", "likelihood", "mean", "shot"}
+        How the frames are merged, see `radiance.merge`.
+
+    Returns
+    -------
+    Assembly
+        Read its `doubts` before you trust its `E`.
+
+    Raises
+    ------
+    ValueError
+        For brackets that hold fewer than two exposures or nothing that two of them see well, and for
+        names that no method has.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import camera, scenes
+    >>> photographs = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], rng=1)
+    >>> assembly = assemble(photographs)
+    >>> assembly.E.shape, assembly.doubts
+    ((96, 144, 3), ())
+    """
+    return last(assemble_steps(bracket, **knobs))
+
+
+def develop(
+    E: ArrayLike, tonemap: Method = "reinhard", *, saturation: float = 1.0, **knobs: Any
+) -> NDArray[np.uint8]:
+    """Return the picture of a radiance map: tone-mapped luminance, its colours, sRGB in 8 bits.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3)
+        Radiance, any linear unit.
+    tonemap : str or function
+        A method of `tonemap`, or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
+    saturation : float
+        1 keeps the ratios of the channels.
+    **knobs
+        Those of the operator.
+
+    Returns
+    -------
+    (H, W) or (H, W, 3) uint8
+
+    Raises
+    ------
+    ValueError
+        For radiance that is not finite or negative, and for knobs out of their range.
+    """
+    L = colour.luminance(E)
+    return colour.render(E, L, catalogue.method("tonemap", tonemap)(L, **knobs), saturation=saturation)

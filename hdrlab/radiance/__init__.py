@@ -1,0 +1,1 @@
+"""From photographs and response to the radiance map of the scene."""

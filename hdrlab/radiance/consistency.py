@@ -1,0 +1,91 @@
+"""Does the map explain its photographs?
+
+Z   pixel levels       (P, H, W[, 3])
+t   exposure times     (P,) seconds
+E   radiance           (H, W[, 3])
+
+A pixel of level z received the exposure f^-1(z), whichever frame it stands in. So for each level the median
+of log2(E t) over the pixels of that level must be the same in every frame. Where it is not, the times, the
+response or the alignment contradict the pixels; in photographic stops, and frame by frame.
+"""
+
+import warnings
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_mask, as_radiance, as_stack, as_times
+from hdrlab.core.sampling import to_256
+
+Float = NDArray[np.float64]
+LEVELS = slice(30, 226)  # away from the noise below and the shoulder above
+PIXELS = 400_000  # an even choice of about so many speaks for the whole frame
+TOP = 250  # a frame's pixel with a channel above is clipped, and not a measurement
+FEWEST = 50  # pixels that make a median
+
+
+def level_medians(
+    images: ArrayLike, times: ArrayLike, E: ArrayLike, *, valid: ArrayLike | None = None
+) -> Float:
+    """Return the median of log2(E t) per frame, channel and level, (P, C, 256); NaN where pixels are few.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+    times : (P,) seconds
+    E : (H, W) or (H, W, 3), the map that was made of them; pixels that are 0 are left out
+    valid : (P, H, W) bool, False where a photograph holds no picture
+
+    Raises
+    ------
+    ValueError
+        If the shapes of photographs, map and mask do not fit together.
+    """
+    stack, E = as_stack(images), as_radiance(E)
+    times, mask = as_times(times, len(stack)), as_mask(valid, stack)
+    if E.shape != stack.shape[1:]:
+        raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
+    step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
+    few = slice(None, None, step)
+    channels = 1 if E.ndim == 2 else E.shape[-1]
+    Z = to_256(stack[:, few, few]).reshape(len(stack), -1, channels)
+    with np.errstate(divide="ignore"):
+        lE = np.log2(E[few, few].reshape(-1, channels))
+    whole = np.all(Z <= TOP, axis=-1)
+    if mask is not None:
+        whole &= mask[:, few, few].reshape(len(stack), -1)
+    medians = np.empty((len(Z), Z.shape[-1], 256))
+    for j, c in np.ndindex(*medians.shape[:2]):
+        medians[j, c] = _medians(Z[j, whole[j], c], lE[whole[j], c]) + np.log2(times[j])
+    return medians
+
+
+def _medians(Z: NDArray[np.uint8], lE: NDArray[np.float32]) -> Float:
+    """Return the median of lE over the pixels of each level, (256,)."""
+    Z, lE = Z[np.isfinite(lE)], lE[np.isfinite(lE)]
+    order = np.argsort(Z, kind="stable")
+    groups = np.split(lE[order], np.cumsum(np.bincount(Z, minlength=256))[:-1])
+    return np.array([np.median(group) if len(group) >= FEWEST else np.nan for group in groups])
+
+
+def deviations(medians: Float) -> Float:
+    """Return by how many stops each frame departs from the mean of all (P,): median over levels, channels."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # a level that no frame shows has no mean
+        apart = medians - np.nanmean(_shared(medians), axis=0)
+        return np.nan_to_num(np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1))
+
+
+def spread(medians: Float) -> float:
+    """Return the map's spread in stops: standard deviation over the frames, median over levels and channels.
+
+    0 means that every frame tells the same story; NaN that no level stands in two frames.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)
+        return float(np.nanmedian(np.nanstd(_shared(medians), axis=0)[..., LEVELS]))
+
+
+def _shared(medians: Float) -> Float:
+    """Return the medians of the levels that at least two frames show; NaN elsewhere."""
+    return np.where(np.isfinite(medians).sum(axis=0) >= 2, medians, np.nan)

@@ -1,0 +1,134 @@
+"""Arrays are checked once, and an error says what was expected and what came."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.core import arrays
+
+
+def test_an_array_of_photographs_passes_as_it_is():
+    images = np.zeros((2, 3, 4, 3), np.uint16)
+    assert arrays.as_stack(images) is images
+
+
+@pytest.mark.parametrize("shape", [(3, 4), (3, 4, 3)])
+def test_a_list_of_photographs_becomes_one_array(shape):
+    frames = [np.full(shape, z, np.uint8) for z in (1, 2)]
+    stack = arrays.as_stack(frames)
+    assert stack.shape == (2, *shape) and stack.dtype == np.uint8
+    assert stack[1].min() == stack[1].max() == 2
+
+
+@pytest.mark.parametrize(
+    ("images", "said"),
+    [
+        ([], r"stack of images .* got shape \(0,\)"),
+        (np.zeros((4, 5), np.uint8), r"got shape \(4, 5\)"),
+        (np.zeros((2, 4, 5, 4), np.uint8), r"got shape \(2, 4, 5, 4\)"),
+        (np.zeros((2, 0, 5), np.uint8), r"got shape \(2, 0, 5\)"),
+        (np.zeros((2, 4, 5)), "uint8 or uint16, got .* float64, values 0 to 0"),
+        (np.zeros((2, 4, 5), np.int16), "uint8 or uint16, got .* int16"),
+        (np.zeros((2, 4, 5), bool), "uint8 or uint16, got .* bool"),
+        ([np.zeros((4, 5), np.uint8), np.zeros((4, 6), np.uint8)], r"one size .* \(4, 5\) .* \(4, 6\)"),
+        ([np.zeros((4, 5), np.uint8), np.zeros((4, 5, 3), np.uint8)], r"one size .* \(4, 5\) .*\(4, 5, 3\)"),
+        ([np.zeros((4, 5), np.uint8), np.zeros((4, 5), np.uint16)], "one size and type, .* uint16, .* uint8"),
+    ],
+)
+def test_what_is_no_stack_of_photographs_is_refused(images, said):
+    with pytest.raises(ValueError, match=said):
+        arrays.as_stack(images)
+
+
+def test_times_become_float64():
+    times = arrays.as_times([1, 2], 2)
+    assert times.dtype == np.float64 and times.tolist() == [1, 2]
+
+
+@pytest.mark.parametrize("times", [[1], [1, 2, 3], [[1, 2]], 1, []])
+def test_as_many_times_as_images_are_wanted(times):
+    with pytest.raises(ValueError, match="expected 2 exposure times, one per image, got shape"):
+        arrays.as_times(times, 2)
+
+
+@pytest.mark.parametrize("bad", [0, -1, np.nan, np.inf])
+def test_a_time_that_is_not_positive_and_finite_is_refused(bad):
+    with pytest.raises(ValueError, match=r"positive exposure times in seconds, got \[1.0, "):
+        arrays.as_times([1, bad], 2)
+
+
+def test_a_mask_is_one_per_image_and_none_passes():
+    images = np.zeros((2, 3, 4, 3), np.uint8)
+    assert arrays.as_mask(None, images) is None
+    assert arrays.as_mask(np.ones((2, 3, 4)), images).dtype == bool
+    with pytest.raises(ValueError, match=r"mask of shape \(2, 3, 4\), got shape \(3, 4\)"):
+        arrays.as_mask(np.ones((3, 4)), images)
+
+
+@pytest.mark.parametrize(
+    ("check", "shape"),
+    [(arrays.as_radiance, (4, 5, 3)), (arrays.as_radiance, (4, 5)), (arrays.as_luminance, (4, 5))],
+)
+def test_radiance_and_luminance_become_float32_without_a_copy_where_they_are(check, shape):
+    E = np.ones(shape, np.float32)
+    assert np.shares_memory(check(E), E)
+    assert check(np.ones(shape, int)).dtype == np.float32
+
+
+@pytest.mark.parametrize("check", [arrays.as_radiance, arrays.as_luminance])
+def test_values_that_are_no_light_are_counted(check):
+    E = np.ones((4, 5))
+    E[0, :2], E[1, :3], E[2, 0] = np.nan, np.inf, -1
+    with pytest.raises(ValueError, match="got 2 NaN, 3 infinite and 1 negative"):
+        check(E)
+
+
+def test_a_float64_beyond_float32_counts_as_infinite():
+    with pytest.raises(ValueError, match="1 infinite"):
+        arrays.as_radiance([[1e39, 1]])
+
+
+@pytest.mark.parametrize("shape", [(), (5,), (4, 5, 4), (2, 4, 5, 3), (0, 5), (4, 0, 3)])
+def test_radiance_of_another_shape_is_refused(shape):
+    with pytest.raises(ValueError, match="expected radiance"):
+        arrays.as_radiance(np.ones(shape))
+
+
+@pytest.mark.parametrize("shape", [(), (5,), (4, 5, 3), (0, 5)])
+def test_luminance_of_another_shape_is_refused(shape):
+    with pytest.raises(ValueError, match=r"expected luminance \(H, W\), got"):
+        arrays.as_luminance(np.ones(shape))
+
+
+@pytest.mark.parametrize("values", [np.full((4, 5), "x"), np.ones((4, 5), complex), np.ones((4, 5), bool)])
+def test_radiance_that_is_no_number_is_refused(values):
+    with pytest.raises(ValueError, match="expected radiance as numbers"):
+        arrays.as_radiance(values)
+
+
+def test_levels_are_those_of_the_type():
+    assert arrays.levels(np.zeros(1, np.uint8)) == 256 and arrays.levels(np.zeros(1, np.uint16)) == 65536
+
+
+@given(st.integers(0, 255))
+def test_a_table_of_256_levels_read_at_65536_keeps_its_own(z):
+    table = np.sin(np.arange(256))
+    read = arrays.as_table(np.stack([table, 2 * table], axis=-1), 65536)
+    assert read.shape == (65536, 2) and np.allclose(read[257 * z], [table[z], 2 * table[z]])
+
+
+def test_a_table_between_its_levels_is_a_straight_line():
+    assert np.allclose(arrays.as_table([0, 1], 5), [0, 0.25, 0.5, 0.75, 1])
+
+
+@pytest.mark.parametrize("table", [[1], 3, [1, np.nan], [1, np.inf], np.ones((2, 2, 2))])
+def test_what_is_no_table_is_refused(table):
+    with pytest.raises(ValueError, match="finite table over pixel levels"):
+        arrays.as_table(table, 256)
+
+
+def test_a_description_holds_shape_type_and_range():
+    assert arrays.describe([[1, 5]]) == "shape (1, 2), dtype int64, values 1 to 5"
+    assert arrays.describe([]) == "shape (0,), dtype float64"
+    assert arrays.describe(["a"]) == "shape (1,), dtype <U1"

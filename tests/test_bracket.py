@@ -1,0 +1,62 @@
+"""A bracket is checked, and sorted from the shortest exposure to the longest."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+
+from hdrlab.core.bracket import bracket, short_to_long
+from hdrlab.core.steps import last
+
+IMAGES = np.random.default_rng(0).integers(0, 256, (3, 4, 5), np.uint8)
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+def test_any_order_of_frames_is_the_same_bracket(order):
+    order, masks = list(order), IMAGES > 20
+    made = bracket(
+        IMAGES[order], np.array([1.0, 2, 4])[order], [f"{j}.jpg" for j in order], valid=masks[order]
+    )
+    assert np.array_equal(made.images, IMAGES) and np.array_equal(made.valid, masks)
+    assert made.times.tolist() == [1, 2, 4] and made.names == ("0.jpg", "1.jpg", "2.jpg")
+
+
+@pytest.mark.parametrize("order", list(permutations(range(3))))
+def test_frames_of_one_time_have_an_order_of_their_own(order):
+    images, times = IMAGES[list(order)], np.array([1.0, 1, 1])
+    assert np.array_equal(images[short_to_long(images, times)], IMAGES[short_to_long(IMAGES, times)])
+
+
+def test_frames_are_named_by_their_place_unless_they_have_names():
+    assert bracket(IMAGES, [4, 2, 1]).names == ("frame 3", "frame 2", "frame 1")
+
+
+def test_a_sorted_bracket_holds_the_images_themselves():
+    assert np.shares_memory(bracket(IMAGES, [1, 2, 4]).images, IMAGES)
+
+
+def test_the_lists_that_were_given_stay_as_they_are():
+    images, times = IMAGES.copy(), np.array([4.0, 2, 1])
+    bracket(images, times)
+    assert np.array_equal(images, IMAGES) and times.tolist() == [4, 2, 1]
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"times": [1, 2]}, "expected 3 exposure times"),
+        ({"times": [1, 2, 0]}, "positive exposure times"),
+        ({"names": ["a"]}, "expected 3 names, one per image, got 1"),
+        ({"valid": np.ones((3, 4, 4))}, r"mask of shape \(3, 4, 5\), got"),
+        ({"images": IMAGES.astype(float)}, "uint8 or uint16"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(given, said):
+    with pytest.raises(ValueError, match=said):
+        bracket(**({"images": IMAGES, "times": [1, 2, 3]} | given))
+
+
+def test_the_last_state_is_the_answer_and_none_is_an_error():
+    assert last(iter("abc")) == "c"
+    with pytest.raises(ValueError, match="at least one state"):
+        last([])

@@ -1,0 +1,49 @@
+"""A method is a module with its chapter's verb, and is found by existing."""
+
+import inspect
+
+import pytest
+
+from hdrlab.core import catalogue
+
+
+@pytest.mark.parametrize(
+    ("chapter", "some"),
+    [("align", {"mtb"}), ("response", {"debevec", "linear"}), ("tonemap", {"curves", "reinhard"})],
+)
+def test_a_chapter_lists_its_methods_and_nothing_else(chapter, some):
+    names = catalogue.names(chapter)
+    assert some <= set(names) and names == sorted(names)
+    assert all(callable(catalogue.method(chapter, name)) for name in names)
+    assert "shift" not in names and "__init__" not in names
+
+
+def test_a_method_is_the_verb_of_its_module():
+    from hdrlab.response import debevec
+
+    assert catalogue.method("response", "debevec") is debevec.recover
+
+
+def test_a_readers_own_function_is_taken_as_it_is():
+    assert catalogue.method("response", len) is len
+
+
+@pytest.mark.parametrize("name", ["nobody", "", "__init__", "shift", "../core/arrays"])
+def test_an_unknown_name_is_refused_with_those_there_are(name):
+    with pytest.raises(ValueError, match="method of align out of .*mtb.*, got"):
+        catalogue.method("align", name)
+
+
+@pytest.mark.parametrize("chapter", catalogue.VERBS)
+def test_every_method_documents_every_knob(chapter):
+    for name in catalogue.names(chapter):
+        verb = catalogue.method(chapter, name)
+        for knob in inspect.signature(verb).parameters.values():
+            if knob.kind is knob.KEYWORD_ONLY:
+                assert f"{knob.name} :" in verb.__doc__ or f"{knob.name}," in verb.__doc__, (name, knob)
+
+
+def test_a_knob_that_a_method_does_not_have_is_refused_with_those_it_has():
+    catalogue.check_knobs("align", "mtb", {"bits": 5})
+    with pytest.raises(ValueError, match="expected a knob of mtb out of .*bits.*, got 'bytes'"):
+        catalogue.check_knobs("align", "mtb", {"bytes": 5})

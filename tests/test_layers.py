@@ -1,0 +1,95 @@
+"""Who may import whom: the layers of the house, read from the source."""
+
+import ast
+import sys
+from pathlib import Path
+
+import pytest
+
+import hdrlab
+
+HOME = Path(hdrlab.__file__).parent
+CHAPTERS = ("io", "capture", "align", "response", "radiance", "tonemap", "enhance", "beyond")
+BELOW = {"core": set()}  # which rooms each room may use, beside itself
+BELOW |= {chapter: {"core"} for chapter in CHAPTERS}
+BELOW["pipeline"] = {"core", *CHAPTERS}
+BELOW["show"] = BELOW["pipeline"] | {"pipeline"}
+BELOW["course"] = BELOW["demo"] = BELOW["show"] | {"show"}
+BELOW["cli"] = BELOW["course"] | {"course", "demo"}
+BELOW["__main__"] = {"cli"}
+BELOW["__init__"] = set()
+
+ONLY_IN = {  # package -> rooms
+    **dict.fromkeys(
+        ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "exifread"], {"io"}
+    ),
+    **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets", "IPython"], {"show"}),
+    **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
+    "jinja2": {"show", "course"},
+    "lazy_loader": {"__init__"},
+}
+EVERYWHERE = {"numpy", "scipy", "skimage"}
+NOWHERE = {"cv2", "colour_hdri", "pytest", "hypothesis"}  # oracles and tools of the tests
+
+FILES = sorted(HOME.rglob("*.py"))
+
+
+def module(path):
+    """Return the dotted parts of a file's module: ("hdrlab", "core", "arrays")."""
+    parts = path.relative_to(HOME.parent).with_suffix("").parts
+    return parts[:-1] if parts[-1] == "__init__" and len(parts) > 2 else parts
+
+
+def is_module(parts):
+    """Return whether these parts name a module of hdrlab, and not something inside one."""
+    path = HOME.parent.joinpath(*parts)
+    return path.is_dir() or path.with_suffix(".py").is_file()
+
+
+def imports(path):
+    """Yield (line, level, dotted parts) of every import of a file, those inside functions too."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))):
+        if isinstance(node, ast.Import):
+            yield from ((node.lineno, 0, tuple(alias.name.split("."))) for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = tuple((node.module or "").split("."))
+            for alias in node.names:
+                inner = (*base, alias.name)
+                yield node.lineno, node.level, inner if base[0] == "hdrlab" and is_module(inner) else base
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: ".".join(module(path)))
+def test_a_module_uses_the_layers_below_it_alone(path):
+    room = module(path)[1]
+    assert room in BELOW, f"{room} is no room of the house"
+    for line, level, target in imports(path):
+        where = f"{path.name}:{line} imports {'.'.join(target)}"
+        assert level == 0, f"{where}, relatively"
+        if target[0] == "hdrlab":
+            used = target[1] if len(target) > 1 else "__init__"
+            allowed = BELOW[room] | {room, "__init__"}
+            assert used in allowed, (
+                f"{where}, but {room} stands on {', '.join(sorted(BELOW[room])) or 'nothing'}"
+            )
+        elif target[0] in ONLY_IN:
+            assert room in ONLY_IN[target[0]], f"{where}, which belongs to {', '.join(ONLY_IN[target[0]])}"
+        else:
+            known = target[0] in EVERYWHERE or target[0] in sys.stdlib_module_names
+            assert known and target[0] not in NOWHERE, f"{where}, which nobody allowed"
+
+
+def test_what_is_read_here_are_the_imports():
+    """The reader of imports sees plain ones, those from a package, and those inside functions."""
+    found = {target for _, _, target in imports(HOME / "pipeline.py")}
+    assert {("numpy",), ("hdrlab", "align", "mtb"), ("hdrlab", "radiance", "merge")} <= found
+    assert len(FILES) > 30
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: ".".join(module(path)))
+def test_a_module_below_the_screen_does_not_print(path):
+    if module(path)[1] in ("cli", "__main__"):
+        return
+    calls = [
+        node for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))) if isinstance(node, ast.Call)
+    ]
+    assert not [node.lineno for node in calls if isinstance(node.func, ast.Name) and node.func.id == "print"]

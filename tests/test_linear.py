@@ -1,0 +1,28 @@
+"""The response of a linear camera is the logarithm."""
+
+import numpy as np
+import pytest
+
+from hdrlab.capture import responses
+from hdrlab.response import linear
+
+
+@pytest.mark.parametrize("n", [256, 65536])
+def test_exposure_is_proportional_to_the_level(n):
+    f_inverse = np.exp(linear.curve(n))
+    assert np.allclose(f_inverse[1:] * (n // 2), np.arange(1, n)) and linear.curve(n)[n // 2] == 0
+
+
+@pytest.mark.parametrize("n", [256, 65536])
+def test_it_is_the_simulated_linear_cameras_curve(n):
+    assert np.allclose(linear.curve(n), responses.true_g("linear", n), atol=1e-12)
+
+
+@pytest.mark.parametrize(("dtype", "n"), [(np.uint8, 256), (np.uint16, 65536)])
+def test_a_curve_has_as_many_levels_as_the_photographs(dtype, n):
+    assert np.array_equal(linear.recover(np.zeros((2, 3, 4, 3), dtype), [1, 2]), linear.curve(n))
+
+
+def test_what_is_no_bracket_is_refused():
+    with pytest.raises(ValueError, match="expected 2 exposure times"):
+        linear.recover(np.zeros((2, 3, 4), np.uint8), [1])

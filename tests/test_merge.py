@@ -1,0 +1,385 @@
+"""The radiance map: what each pixel takes from the frames, and what it takes where no frame measured it."""
+
+from itertools import permutations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from hdrlab.capture import camera, responses
+from hdrlab.core import weights
+from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import METHODS, merge, merge_seen
+from hdrlab.response import linear
+
+LINEAR = linear.curve()
+FILM = responses.true_g("film")
+CURVES = sorted(responses.RESPONSES)
+TOP = 250  # the first clipped of 256 levels, at the default cut of 0.98
+
+
+def row(*frames, dtype=np.uint8):
+    """Return frames of one row of gray pixels, (P, 1, W)."""
+    return np.array(frames, dtype)[:, None]
+
+
+# The four estimates
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_one_frame_gives_its_exposure_over_its_time(method):
+    images = np.arange(1, TOP, dtype=np.uint8)[None, None]
+    E = merge(images, [0.5], FILM, method=method)
+    assert np.allclose(E, np.exp(FILM[1:TOP]) / 0.5, rtol=1e-5)
+
+
+def test_each_method_is_its_formula():
+    z, t, w = np.array([60, 200]), np.array([0.25, 1.0]), weights.hat()
+    wz, X = w[z], np.exp(FILM[z])
+    expected = {
+        "log": np.exp(np.sum(wz * (FILM[z] - np.log(t))) / wz.sum()),
+        "likelihood": np.sum(wz * X * t) / np.sum(wz * t**2),
+        "mean": np.sum(wz * X / t) / wz.sum(),
+        "shot": np.sum(wz * X) / np.sum(wz * t),
+    }
+    assert set(expected) == set(METHODS)
+    for method, E in expected.items():
+        assert np.isclose(merge(row([60], [200]), t, FILM, w, method=method)[0, 0], E, rtol=1e-6)
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_on_clean_photographs_the_methods_agree(name, decades):
+    E = decades((40, 60))
+    taken = camera.shoot(E, camera.times_around(E, 7, stops=2), response=name, bits=16)
+    g = responses.true_g(name, 65536)
+    maps = [merge_seen(taken.images, taken.times, g, weights.gaussian(65536), method=m) for m in METHODS]
+    measured = maps[0].seen == Seen.MEASURED
+    for found in maps:
+        assert np.array_equal(found.seen, maps[0].seen)
+        assert np.allclose(found.E[measured] / maps[0].E[measured], 1, atol=0.002)
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("name", CURVES)
+def test_radiance_is_found_to_one_percent_where_a_frame_saw_it_well(name, method, seven_frames):
+    E, taken = seven_frames(name)
+    found = merge_seen(taken.images, taken.times, responses.true_g(name), weights.gaussian(), method=method)
+    well = ((taken.images > 30) & (taken.images < 225)).any(axis=0)
+    ratio = found.E[well] / E[well]
+    assert well.mean() > 0.8 and np.median(np.abs(ratio / np.median(ratio) - 1)) < 0.01
+
+
+# Invariances
+
+
+@pytest.mark.parametrize("times", [[1.0, 2, 8], [1.0, 1, 2], [3.0, 3, 3]])
+@pytest.mark.parametrize("bits", [8, 16])
+@pytest.mark.parametrize("method", METHODS)
+def test_any_order_of_frames_gives_the_same_map_bit_for_bit(method, bits, times):
+    dtype = np.uint8 if bits == 8 else np.uint16
+    rng = np.random.default_rng(3)
+    images = rng.integers(0, 2**bits, (3, 6, 7, 3), dtype)
+    valid, times = rng.random((3, 6, 7)) > 0.2, np.array(times)
+    first = merge_seen(images, times, FILM, method=method, valid=valid)
+    for order in map(list, permutations(range(3))):
+        other = merge_seen(images[order], times[order], FILM, method=method, valid=valid[order])
+        assert np.array_equal(other.E, first.E) and np.array_equal(other.seen, first.seen)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_16_bits_give_the_map_of_the_8_they_hold(method):
+    images = np.random.default_rng(4).integers(0, 256, (3, 20, 30, 3), np.uint8)
+    eight = merge_seen(images, [1, 2, 8], FILM, method=method)
+    sixteen = merge_seen(images.astype(np.uint16) * 257, [1, 2, 8], FILM, method=method)
+    measured = eight.seen == Seen.MEASURED
+    assert np.array_equal(sixteen.seen, eight.seen)
+    assert np.allclose(sixteen.E[measured], eight.E[measured], rtol=2e-6)
+    assert np.allclose(sixteen.E, eight.E, rtol=0.02)  # a clipped level begins half a level earlier
+
+
+def test_a_gray_stack_gives_the_channel_of_three_equal_ones():
+    images = np.random.default_rng(5).integers(0, 256, (3, 20, 30), np.uint8)
+    gray = merge_seen(images, [1, 2, 8], FILM)
+    rgb = merge_seen(np.stack([images] * 3, axis=-1), [1, 2, 8], np.stack([FILM] * 3, axis=-1))
+    assert gray.E.shape == (20, 30) and rgb.E.shape == (20, 30, 3)
+    assert np.array_equal(gray.seen, rgb.seen)
+    assert all(np.array_equal(rgb.E[..., c], gray.E) for c in range(3))
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_doubled_times_halve_the_map(method):
+    images = np.random.default_rng(6).integers(0, 256, (4, 20, 30, 3), np.uint8)
+    once = merge_seen(images, [1, 2, 8, 16], FILM, method=method)
+    twice = merge_seen(images, [2, 4, 16, 32], FILM, method=method)
+    assert np.array_equal(once.seen, twice.seen) and np.allclose(once.E, 2 * twice.E, rtol=2e-6)
+
+
+def test_the_scale_of_the_weights_does_not_matter():
+    images = np.random.default_rng(7).integers(0, 256, (3, 20, 30), np.uint8)
+    maps = [merge(images, [1, 2, 8], FILM, k * weights.hat()) for k in (1, 1e-3, 255)]
+    assert np.allclose(maps[0], maps[1], rtol=1e-5) and np.allclose(maps[0], maps[2], rtol=1e-5)
+
+
+def test_the_number_of_threads_changes_nothing():
+    images = np.random.default_rng(8).integers(0, 256, (3, 70, 30, 3), np.uint8)
+    one, three = (merge_seen(images, [1, 2, 8], FILM, threads=threads) for threads in (1, 3))
+    assert np.array_equal(one.E, three.E) and np.array_equal(one.seen, three.seen)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_what_was_given_stays_as_it_is_in_any_layout(dtype):
+    images = np.random.default_rng(9).integers(0, np.iinfo(dtype).max, (3, 40, 30, 3), dtype)
+    given, plain = np.asfortranarray(images), merge(images, [4, 2, 1], FILM)
+    given.setflags(write=False)
+    assert np.array_equal(merge(given, [4, 2, 1], FILM), plain) and np.array_equal(given, images)
+    wide = np.repeat(images, 2, axis=2)[:, :, ::2]
+    assert np.array_equal(merge(wide, [4, 2, 1], FILM), plain)
+    assert np.array_equal(merge(list(images), [4, 2, 1], FILM), plain)
+
+
+# What no frame measures
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_pixel_clipped_in_every_frame_takes_the_shortest_ones_bound_and_says_so(method):
+    found = merge_seen(row([255, 100], [255, 200]), [0.25, 0.5], FILM, method=method)
+    assert np.isclose(found.E[0, 0], np.exp(FILM[TOP]) / 0.25, rtol=1e-6)
+    assert found.seen.tolist() == [[Seen.CLIPPED, Seen.MEASURED]]
+
+
+@pytest.mark.parametrize(("level", "bound"), [(255, TOP), (0, 1)])
+def test_each_channel_has_its_own_bound(level, bound):
+    g = np.stack([FILM, LINEAR, FILM + 1], axis=-1)
+    E = merge(np.full((1, 2, 2, 3), level, np.uint8), [0.5], g)
+    assert np.allclose(E, np.exp(g[bound]) / 0.5, rtol=1e-6)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_pixel_dark_in_every_frame_takes_the_longest_ones_bound_and_says_so(method):
+    found = merge_seen(row([0, 10], [0, 20]), [0.25, 0.5], FILM, method=method)
+    assert np.isclose(found.E[0, 0], np.exp(FILM[1]) / 0.5, rtol=1e-6)
+    assert found.seen.tolist() == [[Seen.DARK, Seen.MEASURED]]
+
+
+def test_a_pixel_that_leaps_from_dark_to_clipped_lies_between_its_two_bounds():
+    found = merge_seen(row([0, 10], [255, 20]), [0.25, 1024], FILM)
+    low, high = np.exp(FILM[TOP]) / 1024, np.exp(FILM[1]) / 0.25
+    assert low < high and np.isclose(found.E[0, 0], np.sqrt(low * high), rtol=1e-6)
+    assert found.seen[0, 0] == Seen.DARK | Seen.CLIPPED
+
+
+STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
+
+
+@given(STACKS, st.sampled_from(sorted(METHODS)), st.data())
+def test_no_sun_is_dark_and_no_shadow_bright(images, method, data):
+    """All that is measured lies between what a dark pixel takes and what a clipped one takes."""
+    times = np.array(data.draw(st.lists(st.floats(1e-3, 30), min_size=len(images), max_size=len(images))))
+    found = merge_seen(images, times, FILM, method=method, mend=False)
+    low, high = np.exp(FILM[1]) / times.max(), np.exp(FILM[TOP]) / times.min()
+    assert found.E.dtype == np.float32 and np.all(np.isfinite(found.E))
+    assert np.all(found.E >= low * (1 - 1e-5)) and np.all(found.E <= high * (1 + 1e-5))
+    clipped = (images >= TOP).all(axis=0)
+    assert np.allclose(found.E[clipped], high) and np.all(found.seen[clipped.any(axis=-1)] & Seen.CLIPPED)
+
+
+@given(
+    arrays(
+        np.uint16,
+        st.tuples(*[st.integers(1, 4)] * 3),
+        elements=st.sampled_from([0, 1, 257, 40000, 64000, 65535]),
+    ),
+    st.sampled_from(sorted(METHODS)),
+    st.data(),
+)
+def test_any_16_bit_stack_with_any_mask_gives_a_finite_map_that_is_not_negative(images, method, data):
+    valid = data.draw(arrays(bool, images.shape))
+    times = 2.0 ** np.arange(len(images))
+    found = merge_seen(images, times, responses.true_g("gamma", 65536), method=method, valid=valid)
+    assert np.all(np.isfinite(found.E)) and np.all(found.E >= 0)
+    assert np.array_equal((found.seen & Seen.UNSEEN) > 0, ~valid.any(axis=0) & (found.seen != Seen.STUCK))
+    assert np.all((found.E > 0) | (found.seen != Seen.MEASURED))
+
+
+@pytest.mark.parametrize("level", [0, 255])
+def test_a_black_or_white_stack_is_finite_and_says_that_nothing_was_measured(level):
+    found = merge_seen(np.full((3, 4, 5, 3), level, np.uint8), [1, 2, 4], FILM)
+    assert np.all(np.isfinite(found.E)) and np.ptp(found.E) == 0
+    assert np.all(found.seen == (Seen.CLIPPED if level else Seen.DARK))
+
+
+def test_a_sun_in_a_photographed_scene_is_no_darker_than_its_sky():
+    y, x = np.mgrid[-40:40, -60:60]
+    E = (2 + 60 * np.exp(-np.hypot(y, x) / 12) + 1e5 * (np.hypot(y, x) < 6)).astype(np.float32)
+    taken = camera.shoot(E, [1 / 256, 1 / 64, 1 / 16, 1 / 4], full_well=20_000, read_noise=5, rng=1)
+    found = merge_seen(taken.images, taken.times, FILM)
+    sun = np.hypot(y, x) < 5
+    assert np.all(found.seen[sun] == Seen.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
+
+
+# Clipped in one channel
+
+
+def test_a_frame_with_one_clipped_channel_is_left_out_for_all_three():
+    images = np.array([[[[100, 60, 40]]], [[[255, 200, 160]]]], np.uint8)
+    short_alone = merge(images[:1], [1], LINEAR)
+    assert np.array_equal(merge(images, [1, 3.5], LINEAR), short_alone)
+    images[1, 0, 0, 0] = TOP - 1  # a level that is not clipped
+    assert not np.allclose(merge(images, [1, 3.5], LINEAR), short_alone, rtol=1e-3)
+
+
+def test_where_every_frame_clips_a_channel_the_others_keep_their_measurement():
+    images = np.array([[[[255, 100, 0]]], [[[255, 200, 1]]]], np.uint8)
+    found = merge_seen(images, [1, 2], LINEAR)
+    assert np.allclose(found.E[0, 0], [LINEAR_AT_TOP, 100 / 128, 1 / 128 / 2], rtol=1e-5)
+    assert found.seen[0, 0] == Seen.CLIPPED
+
+
+LINEAR_AT_TOP = TOP / 128
+
+
+def test_highlights_keep_the_colour_of_their_light():
+    E = (np.geomspace(0.5, 50, 400)[None, :, None] * np.array([1.0, 0.7, 0.5])).astype(np.float32)
+    taken = camera.shoot(np.repeat(E, 9, axis=0), 4.0 ** np.arange(-4, 1), full_well=50_000, rng=2)
+    found = merge_seen(taken.images, taken.times, FILM)
+    tint = np.median(found.E, axis=0)[np.median(found.seen, axis=0) == Seen.MEASURED]
+    assert np.allclose(tint[:, 1:] / tint[:, :1], [0.7, 0.5], rtol=0.06)
+
+
+# Stuck pixels
+
+
+def flat_scene(shape=(12, 14, 3)):
+    """Return three photographs of soft light, two stops apart, without noise."""
+    light = np.linspace(0.3, 0.6, int(np.prod(shape[:2])), dtype=np.float32).reshape(shape[:2])
+    return camera.shoot(np.stack([light] * 3, axis=-1), [1 / 16, 1 / 4, 1])
+
+
+@pytest.mark.parametrize(
+    ("level", "where"), [(255, (5, 6)), (200, (5, 6)), (255, (0, 0)), (255, (11, 7)), (0, (4, 13))]
+)
+def test_a_stuck_pixel_takes_its_neighbours_median_and_says_so(level, where):
+    taken = flat_scene()
+    y, x = where
+    images = taken.images.copy()
+    images[:, y, x, 1] = level  # hot or dead in every frame
+    clean, found = (merge_seen(Z, taken.times, FILM) for Z in (taken.images, images))
+    assert found.seen[y, x] == Seen.STUCK and np.count_nonzero(found.seen) == 1
+    assert np.allclose(found.E[y, x], clean.E[y, x], rtol=0.1)
+    others = np.ones(found.seen.shape, bool)
+    others[y, x] = False
+    assert np.array_equal(found.E[others], clean.E[others])
+    left = merge_seen(images, taken.times, FILM, mend=False)
+    assert left.seen[y, x] != Seen.STUCK and not np.allclose(left.E[y, x, 1], clean.E[y, x, 1], rtol=0.1)
+
+
+def test_the_hot_pixels_of_a_camera_do_not_reach_the_map():
+    light = np.linspace(0.2, 0.8, 60 * 80, dtype=np.float32).reshape(60, 80)
+    taken = camera.shoot(light, 4.0 ** np.arange(-3, 1), hot=0.002, full_well=50_000, rng=3)
+    found = merge_seen(taken.images, taken.times, FILM)
+    hot = taken.images[0] == 255
+    assert 3 < hot.sum() < 30 and np.array_equal(found.seen == Seen.STUCK, hot)
+    ratio = found.E / light
+    assert np.all(np.abs(ratio / np.median(ratio) - 1) < 0.1)
+
+
+def test_a_true_highlight_of_one_pixel_that_a_frame_measures_stays():
+    E = np.full((9, 9), 0.3, np.float32)
+    E[4, 4] = 12
+    taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
+    found = merge_seen(taken.images, taken.times, FILM)
+    assert not found.seen.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 40, rtol=0.03)
+
+
+def test_around_a_true_highlight_that_no_frame_measures_nothing_changes():
+    E = np.full((9, 9), 0.3, np.float32)
+    dark = merge(camera.shoot(E, [1 / 16, 1 / 4, 1]).images, [1 / 16, 1 / 4, 1], FILM)
+    E[3:5, 4:6] = 1000
+    taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
+    found = merge_seen(taken.images, taken.times, FILM)
+    assert np.all(found.seen[E == 1000] == Seen.CLIPPED) and np.array_equal(found.E[E < 1], dark[E < 1])
+
+
+def test_without_two_exposures_nothing_counts_as_stuck():
+    E = np.full((9, 9), 0.1, np.float32)
+    E[4, 4] = 0.8
+    for times in ([1.0], [1.0, 1.0], [1.0, 1.1]):
+        found = merge_seen(camera.shoot(E, times).images, times, FILM)
+        assert not found.seen.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 8, rtol=0.03)
+
+
+# Masks and weights
+
+
+def test_a_frame_counts_where_it_shows_something_and_nowhere_else():
+    images = np.random.default_rng(10).integers(1, TOP, (3, 20, 30), np.uint8)
+    valid = np.ones(images.shape, bool)
+    valid[0, :, :10], valid[2, :, 20:] = False, False
+    found = merge(images, [1, 2, 4], FILM, valid=valid, mend=False)
+    assert np.array_equal(found[:, :10], merge(images[1:, :, :10], [2, 4], FILM, mend=False))
+    assert np.array_equal(found[:, 20:], merge(images[:2, :, 20:], [1, 2], FILM, mend=False))
+    assert np.array_equal(found[:, 10:20], merge(images[:, :, 10:20], [1, 2, 4], FILM, mend=False))
+
+
+def test_a_pixel_that_no_frame_shows_is_0_and_says_so():
+    images = np.full((2, 3, 4, 3), 100, np.uint8)
+    valid = np.ones((2, 3, 4), bool)
+    valid[:, 1, 2] = False
+    found = merge_seen(images, [1, 2], FILM, valid=valid)
+    assert (
+        np.all(found.E[1, 2] == 0) and found.seen[1, 2] == Seen.UNSEEN and np.count_nonzero(found.seen) == 1
+    )
+
+
+def test_the_bounds_come_from_frames_that_show_the_pixel():
+    valid = np.array([[[False, True]], [[True, True]]])
+    found = merge_seen(row([255, 255], [255, 255]), [1, 4], FILM, valid=valid)
+    assert np.allclose(found.E, np.exp(FILM[TOP]) * np.array([[1 / 4, 1]]))
+
+
+def test_a_masked_pixel_is_not_mistaken_for_a_stuck_one():
+    taken = flat_scene()
+    images, valid = taken.images.copy(), np.ones(taken.images.shape[:3], bool)
+    images[[0, 2], 5, 6], valid[[0, 2], 5, 6] = 255, False
+    found = merge_seen(images, taken.times, FILM, valid=valid)
+    assert not found.seen.any()
+    assert np.array_equal(found.E[5, 6], merge(taken.images[1:2], taken.times[1:2], FILM)[5, 6])
+
+
+def test_a_level_that_weighs_nothing_still_counts_where_there_is_no_other():
+    w = weights.cut(weights.flat(), above=0.8, below=0.2)
+    found = merge_seen(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
+    assert not found.seen.any() and np.allclose(found.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4)
+
+
+def test_the_response_decides_each_channel():
+    images = np.full((2, 3, 4, 3), 100, np.uint8)
+    E = merge(images, [1, 1], np.stack([FILM, LINEAR, FILM + 1], axis=-1))
+    assert np.allclose(E, np.exp([FILM[100], LINEAR[100], FILM[100] + 1]), rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("given", "said"),
+    [
+        ({"images": np.zeros((2, 4, 5))}, "uint8 or uint16"),
+        ({"times": [1]}, "expected 2 exposure times"),
+        ({"times": [1, 0]}, "positive exposure times"),
+        ({"times": [1, np.nan]}, "positive exposure times"),
+        ({"g": np.full(256, np.nan)}, "finite table"),
+        ({"g": np.zeros((256, 2))}, r"response \(n,\) or \(n, 3\)"),
+        ({"images": np.zeros((2, 4, 5), np.uint8), "g": np.zeros((256, 3))}, r"response \(n,\) for gray"),
+        ({"w": -np.ones(256)}, "not negative"),
+        ({"w": np.zeros(256)}, "not all 0"),
+        ({"w": np.ones((256, 3))}, r"weights \(n,\)"),
+        ({"method": "guess"}, "method out of log, likelihood, mean, shot, got 'guess'"),
+        ({"valid": np.ones((4, 5))}, r"mask of shape \(2, 4, 5\), got"),
+        ({"top": 0}, "top as a fraction"),
+        ({"top": 1.5}, "top as a fraction"),
+    ],
+)
+def test_what_does_not_fit_together_is_refused(given, said):
+    knobs = {"images": np.zeros((2, 4, 5, 3), np.uint8), "times": [1, 2], "g": FILM} | given
+    with pytest.raises(ValueError, match=said):
+        merge_seen(**knobs)

@@ -1,0 +1,54 @@
+"""Weights: symmetric, 1 in the middle, nothing at both ends."""
+
+import numpy as np
+import pytest
+
+from hdrlab.core import weights
+
+TABLES = [weights.hat, weights.gaussian, weights.flat]
+
+
+@pytest.mark.parametrize("n", [256, 65536])
+@pytest.mark.parametrize("table", TABLES)
+def test_a_weight_is_symmetric_within_0_and_1_and_0_at_both_ends_alone(table, n):
+    w = table(n)
+    assert w.shape == (n,) and np.allclose(w, w[::-1])
+    assert w[0] == w[-1] == 0 and np.all(w[1:-1] > 0) and np.isclose(w.max(), 1, atol=1e-3)
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_16_bits_weigh_like_8_at_the_levels_they_share(table):
+    ratio = table(65536)[257:-257:257] / table(256)[1:-1]
+    assert np.allclose(ratio, ratio[0], rtol=1e-9)
+
+
+def test_the_hat_is_the_papers_triangle():
+    w = weights.hat()
+    assert np.allclose(w[:128] * 127, np.arange(128)) and np.allclose(w[128:] * 127, np.arange(127, -1, -1))
+
+
+def test_the_gaussian_falls_to_one_over_e_halfway():
+    n = 65537  # has a level in the middle and halfway
+    assert np.isclose(weights.gaussian(n)[n // 4], (np.exp(-1) - np.exp(-4)) / (1 - np.exp(-4)), atol=1e-6)
+
+
+def test_a_cut_zeroes_what_lies_beyond_and_nothing_else():
+    w = weights.cut(weights.flat(), above=0.98, below=0.1)
+    assert np.flatnonzero(w)[[0, -1]].tolist() == [26, 249]  # 25.5 / 255 and 249.9 / 255
+    assert np.all(w[26:250] == 1)
+
+
+def test_a_level_at_the_cut_itself_stays():
+    assert weights.cut(np.ones(5), above=0.75, below=0.25).tolist() == [0, 1, 1, 1, 0]
+
+
+def test_a_cut_leaves_its_table_alone():
+    w = weights.hat()
+    weights.cut(w, above=0.5)
+    assert np.array_equal(w, weights.hat())
+
+
+@pytest.mark.parametrize(("above", "below"), [(0.2, 0.5), (1.1, 0), (0.9, -0.1), (0.5, 0.5), (np.nan, 0)])
+def test_a_cut_that_leaves_nothing_is_refused(above, below):
+    with pytest.raises(ValueError, match="0 <= below < above <= 1, got"):
+        weights.cut(weights.hat(), above=above, below=below)
