@@ -1,0 +1,59 @@
+// Shared by the widgets: a canvas that is an image to a screen reader, and native, named controls.
+// Prepended to each widget's own script, because a widget is one module and loads nothing from elsewhere.
+
+function element(parent, tag, properties = {}) {
+  const node = document.createElement(tag);
+  for (const [name, value] of Object.entries(properties)) {
+    if (name.includes("-") || name === "role") node.setAttribute(name, value);
+    else node[name] = value;
+  }
+  parent.append(node);
+  return node;
+}
+
+// The page around a widget (JupyterLab) has shortcuts for the keys that move a slider: keep them here.
+function start(el) {
+  el.replaceChildren();
+  const root = element(el, "div", { className: "hdrlab", "data-lm-suppress-shortcuts": "true" });
+  root.addEventListener("keydown", (event) => event.stopPropagation());
+  return root;
+}
+
+function slider(parent, name, count) {
+  const row = element(parent, "label", { className: "hdrlab-slider" });
+  element(row, "span", { textContent: name });
+  const input = element(row, "input", { type: "range", min: 0, max: count - 1, step: 1, value: 0 });
+  const value = element(row, "span", { className: "hdrlab-value", "aria-hidden": "true" });
+  return {
+    input,
+    show(position, text) {
+      input.value = position;
+      input.setAttribute("aria-valuetext", text);
+      value.textContent = text;
+    },
+  };
+}
+
+function picture(parent) {
+  const canvas = element(parent, "canvas", { role: "img", "aria-label": "" });
+  let asked = 0;
+  function paint(bitmap, alt) {
+    if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
+    if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
+    canvas.getContext("2d").drawImage(bitmap, 0, 0);
+    canvas.setAttribute("aria-label", alt);
+  }
+  return {
+    // Decoding takes its time: a picture asked for earlier must not land on one asked for later.
+    async show(bitmap, alt) {
+      const turn = ++asked;
+      const decoded = bitmap instanceof Promise ? await bitmap : bitmap;
+      if (turn === asked) paint(decoded, alt);
+    },
+  };
+}
+
+// Binary traits arrive as a view into a larger buffer: Blob takes the view, not the whole buffer.
+function decode(bytes, type) {
+  return createImageBitmap(new Blob([bytes], { type }));
+}

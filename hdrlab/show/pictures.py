@@ -1,0 +1,126 @@
+"""Pictures for a page, each with alt text: a reader who cannot see one still learns what it shows.
+
+drawn  what a draw function returns: a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure
+alt    alt text: what is in the picture, in a sentence
+"""
+
+import io
+import sys
+from collections.abc import Callable, Iterable
+from html import escape
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.io import web
+
+
+class Picture(NamedTuple):
+    """Pictures side by side, as a notebook and its exported page show them; as text, their alt texts."""
+
+    frames: tuple[bytes, ...]
+    alts: tuple[str, ...]
+    captions: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return "; ".join(self.alts)
+
+    def _repr_html_(self) -> str:
+        figures = "".join(map(_figure, self.frames, self.alts, self.captions))
+        columns = "repeat(auto-fit,minmax(min(320px,100%),1fr))"
+        return f'<div style="display:grid;grid-template-columns:{columns};gap:0.75em">{figures}</div>'
+
+
+def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
+    """Return `drawn` as a Picture, for the last line of a notebook's cell."""
+    return Picture((encode(drawn),), (require_alt(alt),), (caption,))
+
+
+def strip(
+    f: Callable[..., Any], draw: Callable[[Any], object], /, *, alt: str, **values: Iterable[Any]
+) -> Picture:
+    """Return draw(f(name=value)) for a few values of one parameter, side by side: a slider on paper.
+
+    Parameters
+    ----------
+    f : function
+        Computes a result; its other parameters keep their defaults.
+    draw : function
+        Takes what `f` returns, and returns a uint8 picture, an Axes or a Figure.
+    alt : str
+        What the pictures show; each one's value is added to it.
+    **values : iterable
+        One parameter of `f` and the values to show it at.
+
+    Raises
+    ------
+    ValueError
+        For no or several parameters, no values, an empty alt text, or a `draw` that returns something else.
+
+    Examples
+    --------
+    >>> def square(level):
+    ...     return np.full((8, 8), level, np.uint8)
+    >>> strip(square, lambda picture: picture, alt="A gray square", level=[0, 128])
+    A gray square, level = 0; A gray square, level = 128
+    """
+    if len(values) != 1:
+        raise ValueError(
+            f"expected one parameter with its values, got {len(values)}: {', '.join(values) or 'none'}"
+        )
+    ((name, each),) = values.items()
+    each = list(each)
+    if not each:
+        raise ValueError(f"expected at least one value for {name}, got none")
+    frames = tuple(encode(draw(f(**{name: value}))) for value in each)
+    captions = tuple(f"{name} = {short(value)}" for value in each)
+    return Picture(frames, tuple(f"{require_alt(alt)}, {caption}" for caption in captions), captions)
+
+
+def encode(drawn: object) -> bytes:
+    """Return what a draw function returned as WebP: a plot without loss, a photograph in small."""
+    return web.webp(render(drawn), lossless=not isinstance(drawn, np.ndarray))
+
+
+def render(drawn: object) -> NDArray[np.uint8]:
+    """Return what a draw function returned as a picture (H, W) or (H, W, 3) uint8, or raise a ValueError."""
+    figure = getattr(drawn, "figure", None)
+    if hasattr(figure, "savefig"):
+        return _pixels(figure)
+    if isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and _is_picture(drawn.shape):
+        return drawn
+    came = f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
+    raise ValueError(f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}")
+
+
+def require_alt(alt: str) -> str:
+    """Return the alt text, or raise a ValueError where it says nothing."""
+    if not isinstance(alt, str) or not alt.strip():
+        raise ValueError(f"expected an alt text that says what the picture shows, got {alt!r}")
+    return alt
+
+
+def short(value: object) -> str:
+    """Return a value as a reader wants it beside a slider: numbers to four digits."""
+    return f"{value:.4g}" if isinstance(value, float | np.floating) else str(value)
+
+
+def _is_picture(shape: tuple[int, ...]) -> bool:
+    return 0 not in shape and (len(shape) == 2 or (len(shape) == 3 and shape[-1] == 3))
+
+
+def _pixels(figure: Any) -> NDArray[np.uint8]:
+    file = io.BytesIO()
+    figure.savefig(file, format="rgba", dpi="figure")
+    width, height = (int(side) for side in figure.canvas.get_width_height(physical=True))
+    if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
+        sys.modules["matplotlib.pyplot"].close(figure)
+    return np.frombuffer(file.getvalue(), np.uint8).reshape(height, width, 4)[..., :3]
+
+
+def _figure(frame: bytes, alt: str, caption: str) -> str:
+    image = f'<img alt="{escape(alt)}" src="{web.data_uri(frame)}" style="max-width:100%;height:auto">'
+    below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
+    return f'<figure style="margin:0">{image}{below}</figure>'

@@ -1,0 +1,64 @@
+"""Where sliders can stand: every range becomes a list of values, and a position is an index into each list.
+
+grids  name -> the values of one parameter, in the order of its slider
+at     one index per parameter
+"""
+
+import inspect
+from collections.abc import Callable, Iterable, Sequence
+from typing import Any
+
+import numpy as np
+
+Grids = dict[str, list[Any]]
+
+
+def values(grids: Grids, at: Sequence[int]) -> dict[str, Any]:
+    """Return each parameter's value at a position."""
+    return {name: each[k] for (name, each), k in zip(grids.items(), at, strict=True)}
+
+
+def grid(name: str, given: Any) -> list[Any]:
+    """Return the positions of one slider: the values of a list, or the steps of a range."""
+    if not isinstance(given, tuple):
+        each = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else []
+        if len(each) < 2:
+            raise ValueError(
+                f"expected {name} as (low, high), (low, high, step) or a list of values, got {given!r}"
+            )
+        return each
+    low, high, step = given if len(given) == 3 else (*given, None) if len(given) == 2 else (0, 0, None)
+    whole = all(isinstance(end, int | np.integer) for end in (low, high))
+    step = step if step is not None else 1 if whole else (high - low) / 100
+    if not (np.isfinite([low, high, step]).all() and low < high and 0 < step <= high - low):
+        raise ValueError(f"expected {name} as a range (low, high[, step]) with low < high, got {given!r}")
+    count = int(np.floor((high - low) / step + 1e-9)) + 1
+    return [low + k * step for k in range(count)]
+
+
+def start(f: Callable[..., Any], grids: Grids) -> list[int]:
+    """Return the position nearest to each parameter's default, or the middle where it has none."""
+    parameters = inspect.signature(f).parameters
+    takes_any = any(p.kind is p.VAR_KEYWORD for p in parameters.values())
+    unknown = [name for name in grids if name not in parameters and not takes_any]
+    if unknown:
+        raise ValueError(
+            f"expected parameters of the function, {', '.join(parameters)}; got {', '.join(unknown)}"
+        )
+    return [_nearest(grid, getattr(parameters.get(name), "default", None)) for name, grid in grids.items()]
+
+
+def _nearest(grid: list[Any], value: Any) -> int:
+    if value in grid:
+        return grid.index(value)
+    numbers = all(isinstance(each, int | float | np.number) for each in [*grid, value])
+    return int(np.argmin(np.abs(np.array(grid) - value))) if numbers else len(grid) // 2
+
+
+def few(grids: Grids, at: list[int], stored: int) -> list[list[int]]:
+    """Return a few positions along each slider while the others stay at the start, the start among them."""
+    chosen = {tuple(at): None}
+    for k, grid in enumerate(grids.values()):
+        for position in np.linspace(0, len(grid) - 1, min(stored, len(grid))).round().astype(int):
+            chosen[(*at[:k], int(position), *at[k + 1 :])] = None
+    return [list(position) for position in chosen]

@@ -1,0 +1,73 @@
+// Parameters of a function: Python computes each picture. Where no Python answers, the nearest stored picture is shown.
+
+const PATIENCE = 3000; // ms without an answer before a page that had a kernel counts as one without
+
+const same = (a, b) => a.length === b.length && a.every((value, i) => value === b[i]);
+
+function render({ model, el }) {
+  const root = start(el);
+  const [names, values] = [model.get("names"), model.get("values")];
+  const view = picture(root);
+  const note = element(root, "p", { className: "hdrlab-note", role: "status" });
+  const controls = element(root, "div", { className: "hdrlab-controls" });
+  const bars = names.map((name, k) => slider(controls, name, values[k].length));
+  const texts = (at) => at.map((position, k) => `${names[k]} = ${values[k][position]}`).join(", ");
+  let [answered, timer, moved] = [false, null, 0];
+
+  // Stored positions lie along one slider each: the slider that was moved decides which is the nearest.
+  function distance(a, b) {
+    const share = (position, k) => Math.abs(position - b[k]) / (values[k].length - 1);
+    return a.reduce((sum, position, k) => sum + (k === moved ? 100 : 1) * share(position, k), 0);
+  }
+
+  function showStored() {
+    const [at, stored] = [model.get("at"), model.get("stored_at")];
+    const away = stored.map((other) => distance(other, at));
+    const nearest = away.indexOf(Math.min(...away));
+    view.show(decode(model.get("stored")[nearest], "image/jpeg"), `${model.get("alt")}, ${texts(stored[nearest])}`);
+    note.textContent = `No Python answers: the nearest stored picture, ${texts(stored[nearest])}.`;
+  }
+
+  function showBars() {
+    model.get("at").forEach((position, k) => bars[k].show(position, values[k][position]));
+  }
+
+  function showFrame() {
+    view.show(decode(model.get("frame"), "image/jpeg"), `${model.get("alt")}, ${texts(model.get("shown"))}`);
+    note.textContent = model.get("problem");
+  }
+
+  function answer() {
+    answered = true;
+    if (same(model.get("shown"), model.get("at"))) clearTimeout(timer);
+    showFrame();
+  }
+
+  function giveUp() {
+    answered = false;
+    showStored();
+  }
+
+  function move(k) {
+    moved = k;
+    model.set("at", bars.map((bar) => Number(bar.input.value)));
+    model.save_changes();
+    showBars();
+    clearTimeout(timer);
+    if (answered) timer = setTimeout(giveUp, PATIENCE);
+    else showStored();
+  }
+
+  bars.forEach((bar, k) => bar.input.addEventListener("input", () => move(k)));
+  model.on("change:at", showBars);
+  model.on("change:answers", answer);
+  showBars();
+  showFrame();
+  return () => {
+    clearTimeout(timer);
+    model.off("change:at", showBars);
+    model.off("change:answers", answer);
+  };
+}
+
+export default { render };

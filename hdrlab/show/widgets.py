@@ -1,0 +1,174 @@
+"""Widgets: steps to play back and forth, and parameters to tune, of any function with any drawing.
+
+play  draws every state once and moves through the frames in the browser: at once, and with no kernel too
+tune  calls a function on each move of a slider; a few positions are stored for a page that has no kernel
+
+Neither knows an algorithm: `states` is any iterable (the library's `<verb>_steps`, or a generator of yours),
+`f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure.
+"""
+
+from collections.abc import Callable, Iterable
+from itertools import islice
+from pathlib import Path
+from typing import Any, TypeVar
+
+import anywidget
+import traitlets
+
+from hdrlab.io import web
+from hdrlab.show import positions
+from hdrlab.show.pictures import encode, render, require_alt, short
+
+State = TypeVar("State")
+
+HERE = Path(__file__).parent
+MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
+
+
+def _script(name: str) -> str:
+    return (HERE / "canvas.js").read_text("utf-8") + (HERE / name).read_text("utf-8")
+
+
+class Player(anywidget.AnyWidget):
+    """Frames to move through; `index` is the one that is shown."""
+
+    _esm = _script("play.js")
+    _css = HERE / "widgets.css"
+    frames = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP
+    alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    name = traitlets.Unicode("step").tag(sync=True)
+    index = traitlets.Int(0).tag(sync=True)
+
+
+def play(
+    states: Iterable[State],
+    draw: Callable[[State], object],
+    *,
+    alt: str | Callable[[State], str],
+    name: str = "step",
+) -> Player:
+    """Return a widget that plays draw(state) for each state.
+
+    Parameters
+    ----------
+    states : iterable
+        The states of an algorithm, 1 to 200 of them.
+    draw : function
+        Takes a state, and returns a uint8 picture, an Axes or a Figure.
+    alt : str, or function of a state
+        What the picture shows. To a str the step's number is added.
+    name : str
+        What the slider counts.
+
+    Raises
+    ------
+    ValueError
+        For no states or too many, an empty alt text, or a `draw` that returns something else.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> player = play(range(3), lambda k: np.full((4, 4), 80 * k, np.uint8), alt="A square, ever lighter")
+    >>> player.alts[1]
+    'A square, ever lighter, step 2'
+    """
+    frames, alts = [], []
+    for k, state in enumerate(islice(states, MOST + 1)):
+        frames.append(encode(draw(state)))
+        alts.append(
+            require_alt(alt(state) if callable(alt) else alt) + ("" if callable(alt) else f", {name} {k + 1}")
+        )
+    if not 0 < len(frames) <= MOST:
+        raise ValueError(f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}")
+    return Player(frames=frames, alts=alts, name=name)
+
+
+class Tuner(anywidget.AnyWidget):
+    """Sliders on a function's parameters: `at` is where they stand, `frame` the picture of `shown`."""
+
+    _esm = _script("tune.js")
+    _css = HERE / "widgets.css"
+    names = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)  # each position's text
+    at = traitlets.List(traitlets.Int()).tag(sync=True)  # the browser moves this
+    shown = traitlets.List(traitlets.Int()).tag(sync=True)
+    frame = traitlets.Bytes().tag(sync=True)  # JPEG
+    alt = traitlets.Unicode().tag(sync=True)
+    problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
+    answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
+    stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
+    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)
+
+    def __init__(self, picture: Callable[[list[int]], bytes], grids: positions.Grids, **traits: Any):
+        self._picture, self._grids = picture, grids
+        texts = [[short(value) for value in grid] for grid in grids.values()]
+        super().__init__(names=list(grids), values=texts, **traits)
+        self.observe(self._answer, "at")
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The values at which the sliders stand, by name."""
+        return positions.values(self._grids, self.at)
+
+    def _answer(self, _: object) -> None:
+        """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""
+        at, frame, problem = list(self.at), self.frame, ""
+        try:
+            frame = self._picture(at)
+        except Exception as error:  # it may be a student's function: its words belong beside the slider
+            problem = f"{type(error).__name__}: {error}"
+        with self.hold_sync():
+            self.frame, self.shown, self.problem, self.answers = frame, at, problem, self.answers + 1
+
+
+def tune(
+    f: Callable[..., Any],
+    draw: Callable[[Any], object],
+    /,
+    *,
+    alt: str,
+    stored: int = 5,
+    **ranges: Any,
+) -> Tuner:
+    """Return a widget with a slider per parameter, which shows draw(f(...)) of where the sliders stand.
+
+    Parameters
+    ----------
+    f : function
+        Its parameters named in `ranges` get sliders, which start at its defaults, or else in the middle.
+    draw : function
+        Takes what `f` returns, and returns a uint8 picture, an Axes or a Figure.
+    alt : str
+        What the picture shows; the parameters' values are added.
+    stored : int
+        How many positions of each slider are computed now, for a page without a kernel.
+    **ranges : (low, high), (low, high, step), or a list of values
+        A tuple is a range: of integers where both ends are, else in 100 parts; a list holds the very values.
+
+    Raises
+    ------
+    ValueError
+        For bad ranges, parameters that `f` does not have, an empty alt text, or a `draw` that returns
+        something else.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def square(level=100):
+    ...     return np.full((4, 4), level, np.uint8)
+    >>> tuner = tune(square, lambda picture: picture, alt="A gray square", level=(0, 255))
+    >>> tuner.parameters
+    {'level': 100}
+    """
+    require_alt(alt)
+    grids = {name: positions.grid(name, given) for name, given in ranges.items()}
+    if not grids:
+        raise ValueError("expected at least one range, such as smoothness=(1, 100), got none")
+
+    def picture(at: list[int]) -> bytes:
+        return web.jpeg(render(draw(f(**positions.values(grids, at)))))
+
+    at = positions.start(f, grids)
+    few = positions.few(grids, at, stored)
+    frames = [picture(position) for position in few]
+    return Tuner(picture, grids, at=at, shown=at, frame=frames[0], alt=alt, stored_at=few, stored=frames)

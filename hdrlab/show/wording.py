@@ -1,0 +1,67 @@
+"""Numbers in a reader's words: stops, shares and offsets, with true minus signs and no false rounding."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.pipeline import CONTRADICTION
+from hdrlab.radiance.bounds import Seen
+
+CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach
+KINDS = {
+    Seen.MEASURED: ("measured", "at least one frame shows it neither clipped nor dark"),
+    Seen.CLIPPED: (
+        "clipped in every frame",
+        "at least this bright: the map holds the shortest frame’s bound",
+    ),
+    Seen.DARK: ("dark in every frame", "at most this bright: the map holds the longest frame’s bound"),
+    Seen.CLIPPED | Seen.DARK: ("clipped or dark in every frame", "bounded, but measured by none"),
+    Seen.STUCK: ("stuck", "do not follow the exposure: the map holds the median of the neighbours"),
+    Seen.UNSEEN: ("shown by no frame", "the map holds 0"),
+}
+
+
+def share(mask: ArrayLike) -> str:
+    """Return how much of a mask is True, in percent; rounding makes neither nothing nor everything of it.
+
+    Examples
+    --------
+    >>> [share(np.arange(100_000) < count) for count in (0, 1, 33_333, 99_999, 100_000)]
+    ['0 %', '< 0.01 %', '33.33 %', '> 99.99 %', '100 %']
+    """
+    part, whole = np.count_nonzero(mask), np.size(mask)
+    percent = 100 * part / whole
+    if part in (0, whole):
+        return f"{percent:.0f} %"
+    return "< 0.01 %" if percent < 0.01 else "> 99.99 %" if percent > 99.99 else f"{percent:.2f} %"
+
+
+def signed(value: float, digits: int = 0) -> str:
+    """Return a number with its sign, a true minus; zero has none.
+
+    Examples
+    --------
+    >>> signed(-2), signed(0.126, 2), signed(-0.001, 2)
+    ('−2', '+0.13', '0.00')
+    """
+    text = f"{value:+.{digits}f}"
+    return text.replace("-", "−") if float(text) else text[1:]
+
+
+def stops(value: float) -> str:
+    """Return a number of stops, or that it is not known."""
+    return "not known" if np.isnan(value) else f"{value:.3f} stops"
+
+
+def offset(pixels: ArrayLike) -> str:
+    """Return (dy, dx) as '(+4, −1)'."""
+    dy, dx = np.asarray(pixels).tolist()
+    return f"({signed(dy)}, {signed(dx)})"
+
+
+def verdict(spread: float) -> str:
+    """Return what a spread in stops says of the map."""
+    if np.isnan(spread):
+        return "no level stands in two frames"
+    if spread <= CLOSE:
+        return "they agree"
+    return "they agree roughly" if spread <= CONTRADICTION else "they contradict each other"

@@ -1,0 +1,48 @@
+"""The report as a reader sees it: on a wide screen and on a telephone."""
+
+import numpy as np
+import pytest
+
+from hdrlab import pipeline
+from hdrlab.core.bracket import bracket
+from hdrlab.show.report import write_report
+
+
+@pytest.fixture(scope="module")
+def report(tmp_path_factory):
+    ramp = np.linspace(2, 110, 200 * 300).reshape(200, 300).astype(np.uint8)
+    names = [
+        "a_long_name_of_a_photograph_" * 3 + ".jpg",
+        "averylongnamewithoutanyplacetobreakit" * 3 + ".jpg",
+    ]
+    found = pipeline.assemble(
+        bracket([ramp, 2 * ramp], [1 / 8000, 1 / 4000], names), align="none", response="linear"
+    )
+    found = found._replace(doubts=(f"{names[1]} is in doubt",), notes=(f"{names[0]} is dark",))
+    return write_report(tmp_path_factory.mktemp("report"), found, pipeline.develop(found.E))
+
+
+@pytest.mark.parametrize("width", [1280, 400])
+def test_the_report_fits_the_screen_and_asks_for_nothing(report, page, width):
+    page.set_viewport_size({"width": width, "height": 900})
+    page.goto(report.as_uri())
+    assert page.evaluate("document.documentElement.scrollWidth") <= width
+    assert [one for one in page.requests if not one.startswith("data:")] == [report.as_uri()]
+    assert page.problems == []
+
+
+def test_every_picture_of_the_report_is_decoded(report, page):
+    page.goto(report.as_uri())
+    sizes = page.evaluate("[...document.images].map((image) => image.complete && image.naturalWidth)")
+    assert len(sizes) == 5 and all(sizes)
+
+
+def test_no_text_of_the_report_is_smaller_than_a_telephone_can_show(report, page):
+    page.set_viewport_size({"width": 400, "height": 900})
+    page.goto(report.as_uri())
+    smallest = page.evaluate(
+        """Math.min(...[...document.body.querySelectorAll('*')]
+            .filter((el) => [...el.childNodes].some((node) => node.nodeType === 3 && node.data.trim()))
+            .map((el) => parseFloat(getComputedStyle(el).fontSize)))"""
+    )
+    assert smallest >= 13

@@ -1,0 +1,183 @@
+"""The widgets' scripts on a plain page: no kernel answers, and no server is asked for anything."""
+
+import base64
+import json
+
+import anywidget
+import numpy as np
+import pytest
+
+from hdrlab.show import widgets
+
+# What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
+PAGE = """<!DOCTYPE html><html lang="en"><title>A widget</title><style>{css}</style>
+<div id="at"></div><script type="module">
+const unpack = (value) => {{
+  if (Array.isArray(value)) return value.map(unpack);
+  if (value?.base64 === undefined) return value;
+  const bytes = Uint8Array.from(atob(value.base64), (letter) => letter.charCodeAt(0));
+  const larger = new Uint8Array(bytes.length + 11);
+  larger.set(bytes, 7);
+  return new DataView(larger.buffer, 7, bytes.length);
+}};
+const state = Object.fromEntries(Object.entries({state}).map(([name, value]) => [name, unpack(value)]));
+const listeners = {{}};
+window.model = {{
+  saved: 0,
+  get: (name) => state[name],
+  set: (name, value) => {{ state[name] = value; (listeners["change:" + name] ?? []).forEach((f) => f()); }},
+  save_changes: () => {{ window.model.saved += 1; }},
+  on: (name, f) => (listeners[name] ??= []).push(f),
+  off: () => {{}},
+}};
+window.reached = [];
+document.addEventListener("keydown", (event) => window.reached.push(event.key));
+const script = URL.createObjectURL(new Blob([{script}], {{ type: "text/javascript" }}));
+const widget = (await import(script)).default;
+widget.render({{ model: window.model, el: document.getElementById("at") }});
+</script></html>"""
+
+
+def square(level=100):
+    return np.full((40, 60), level, np.uint8)
+
+
+def open_page(page, widget):
+    def packed(value):
+        if isinstance(value, bytes):
+            return {"base64": base64.b64encode(value).decode()}
+        return [packed(each) for each in value] if isinstance(value, list) else value
+
+    own = set(widget.trait_names(sync=True)) - set(anywidget.AnyWidget.class_trait_names())
+    state = {name: packed(getattr(widget, name)) for name in own if not name.startswith("_")}
+    texts = {"state": json.dumps(state), "script": json.dumps(str(widget._esm)), "css": str(widget._css)}
+    page.set_content(PAGE.format(**texts))
+    page.wait_for_function("document.querySelector('canvas')?.getAttribute('aria-label')", timeout=5_000)
+
+
+def level(page):
+    return page.evaluate(
+        "document.querySelector('canvas').getContext('2d').getImageData(30, 20, 1, 1).data[0]"
+    )
+
+
+def alt(page):
+    return page.get_by_role("img").get_attribute("aria-label")
+
+
+def until_level(page, expected):
+    page.wait_for_function(
+        """(expected) => Math.abs(document.querySelector('canvas').getContext('2d')
+            .getImageData(30, 20, 1, 1).data[0] - expected) < 3""",
+        arg=expected,
+        timeout=5_000,
+    )
+
+
+@pytest.fixture
+def player(page):
+    open_page(page, widgets.play(range(0, 250, 50), square, alt="A square"))
+    yield page
+    assert page.problems == []
+    assert [url for url in page.requests if not url.startswith(("blob:", "data:"))] == []
+
+
+@pytest.fixture
+def tuner(page):
+    open_page(page, widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)))
+    yield page
+    assert page.problems == []
+
+
+def test_arrow_keys_move_through_the_steps_and_reach_nobody_else(player):
+    slider = player.get_by_role("slider", name="step")
+    slider.focus()
+    for k in (1, 2, 3):
+        player.keyboard.press("ArrowRight")
+        until_level(player, 50 * k)
+        assert slider.get_attribute("aria-valuetext") == f"{k + 1} of 5"
+        assert alt(player) == f"A square, step {k + 1}"
+    player.keyboard.press("Home")
+    until_level(player, 0)
+    assert player.evaluate("window.reached") == []
+    assert player.evaluate("window.model.get('index')") == 0
+
+
+def test_the_button_plays_to_the_last_step_and_then_from_the_start(player):
+    button = player.get_by_role("button")
+    button.press("Space")
+    assert button.inner_text() == "Pause"
+    until_level(player, 200)
+    player.wait_for_function("document.querySelector('button').textContent === 'Play'")
+    button.click()
+    until_level(player, 100)
+    button.click()
+    assert button.inner_text() == "Play" and alt(player) != "A square, step 5"
+
+
+def test_python_moves_the_step_too(player):
+    player.evaluate("window.model.set('index', 3)")
+    until_level(player, 150)
+    assert player.get_by_role("slider").input_value() == "3"
+
+
+def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named(tuner):
+    slider = tuner.get_by_role("slider", name="level")
+    slider.focus()
+    tuner.keyboard.press("End")
+    until_level(tuner, 200)
+    assert alt(tuner) == "A square, level = 200"
+    for _ in range(9):
+        tuner.keyboard.press("ArrowLeft")
+    assert slider.get_attribute("aria-valuetext") == "191"
+    status = tuner.get_by_role("status").inner_text()
+    assert status == "No Python answers: the nearest stored picture, level = 200."
+    assert tuner.evaluate("window.reached") == []
+
+
+def test_without_a_kernel_each_of_two_sliders_has_its_own_stored_pictures(page):
+    def shade(level=100, more=0):
+        return square(level + more)
+
+    open_page(
+        page, widgets.tune(shade, lambda drawn: drawn, alt="Gray", stored=2, level=(0, 200), more=(0, 55))
+    )
+    page.get_by_role("slider", name="level").press("End")
+    until_level(page, 200)
+    page.get_by_role("slider", name="more").press("End")
+    until_level(page, 155)
+    assert alt(page) == "Gray, level = 100, more = 55"
+
+
+def test_an_answer_replaces_the_stored_picture(tuner):
+    slider = tuner.get_by_role("slider")
+    slider.focus()
+    tuner.keyboard.press("End")
+    until_level(tuner, 200)
+    tuner.evaluate("""() => {
+        const model = window.model;
+        model.set("frame", model.get("stored")[1]);
+        model.set("shown", model.get("at"));
+        model.set("answers", model.get("answers") + 1);
+    }""")
+    until_level(tuner, 0)  # what the first stored picture beside the start holds
+    assert tuner.get_by_role("status").inner_text() == ""
+    before = tuner.evaluate("window.model.saved")
+    tuner.keyboard.press("ArrowLeft")
+    assert tuner.evaluate("window.model.saved") == before + 1
+    assert tuner.get_by_role("status").inner_text() == ""  # a kernel that has answered is waited for
+
+
+def test_a_problem_of_the_function_is_told_beside_the_sliders(tuner):
+    tuner.evaluate("""() => {
+        window.model.set("problem", "ValueError: too light");
+        window.model.set("answers", 1);
+    }""")
+    assert tuner.get_by_role("status").inner_text() == "ValueError: too light"
+
+
+def test_controls_are_large_enough_and_fit_a_narrow_page(player):
+    player.set_viewport_size({"width": 400, "height": 700})
+    for role in ("slider", "button"):
+        box = player.get_by_role(role).bounding_box()
+        assert box["height"] >= 24 and box["x"] >= 0 and box["x"] + box["width"] <= 400

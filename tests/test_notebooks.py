@@ -1,0 +1,90 @@
+"""What every notebook keeps to, read from its file; nbval runs them."""
+
+import ast
+from pathlib import Path
+
+import nbformat
+import pytest
+
+NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
+PICTURES = {"picture", "strip", "play", "tune"}
+LONGEST = 100  # letters: what JupyterLab shows at 1280 px without scrolling
+
+pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
+
+
+def cells_of(path, kind):
+    return [cell for cell in nbformat.read(path, as_version=4).cells if cell.cell_type == kind]
+
+
+def calls_of(cell):
+    """Return the calls that make a picture: pictures.picture(...), widgets.play(...)."""
+    calls = [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Call)]
+    return [call for call in calls if isinstance(call.func, ast.Attribute) and call.func.attr in PICTURES]
+
+
+def kinds_of(cell):
+    return {call.func.attr for call in calls_of(cell)}
+
+
+def test_a_notebook_is_valid_and_its_cells_have_ids_that_last(path):
+    notebook = nbformat.read(path, as_version=4)
+    nbformat.validate(notebook)
+    ids = [cell.id for cell in notebook.cells]
+    assert len(set(ids)) == len(ids) and all(name.replace("-", "").isalnum() for name in ids)
+    assert notebook.metadata.kernelspec.name == "python3"
+
+
+def test_a_notebook_carries_no_outputs(path):
+    for cell in cells_of(path, "code"):
+        assert cell.outputs == [] and cell.execution_count is None, cell.id
+    assert set(nbformat.read(path, as_version=4).metadata) <= {"kernelspec", "language_info"}
+
+
+def test_no_function_of_a_notebook_is_longer_than_five_lines(path):
+    for cell in cells_of(path, "code"):
+        for node in ast.walk(ast.parse(cell.source)):
+            if isinstance(node, ast.FunctionDef):
+                assert node.end_lineno - node.lineno < 5, f"{cell.id}: {node.name}"
+
+
+def test_a_cell_of_code_fits_the_page(path):
+    for cell in cells_of(path, "code"):
+        lines = cell.source.splitlines()
+        assert len(lines) <= 12 and max(map(len, lines)) <= LONGEST, cell.id
+
+
+def test_every_picture_has_alt_text(path):
+    for cell in cells_of(path, "code"):
+        for call in calls_of(cell):
+            texts = [word.value for word in call.keywords if word.arg == "alt"]
+            assert len(texts) == 1, f"{cell.id}: {call.func.attr}"
+            assert not isinstance(texts[0], ast.Constant) or len(texts[0].value) > 10, cell.id
+    for cell in cells_of(path, "markdown"):
+        assert "![](" not in cell.source and ("<img" not in cell.source or "alt=" in cell.source), cell.id
+
+
+def test_a_question_stands_before_each_picture(path):
+    """Each picture follows a text that asks; a strip may also follow the slider it stands in for."""
+    asked = False
+    for cell in nbformat.read(path, as_version=4).cells:
+        if cell.cell_type == "markdown":
+            asked = "?" in cell.source or (asked and not cell.source.startswith("#"))
+        else:
+            assert asked or not calls_of(cell), cell.id
+
+
+def test_a_static_strip_stands_beside_each_widget(path):
+    """Nothing but text comes between a widget and its strip."""
+    code = cells_of(path, "code")
+    for cell, following in zip(code, [*code[1:], None], strict=True):
+        if kinds_of(cell) & {"play", "tune"}:
+            assert following is not None and "strip" in kinds_of(cell) | kinds_of(following), cell.id
+
+
+def test_a_notebook_unfolds_answers_asks_three_exercises_and_takes_the_readers_photographs(path):
+    text = "\n".join(cell.source for cell in cells_of(path, "markdown"))
+    assert text.count("<details><summary>") == text.count("</details>") > 0
+    exercises = text.split("## Exercises", 1)[1].splitlines()
+    assert sum(line[:2] in ("1.", "2.", "3.") for line in exercises) == 3
+    assert sum('FOLDER = ""' in cell.source for cell in cells_of(path, "code")) == 1
