@@ -1,0 +1,1 @@
+"""The course around the library: its notebooks, and what comes with them."""

@@ -1,0 +1,61 @@
+"""The main job on an embedded scene: photograph a room whose radiance is known, assemble, compare.
+
+The camera keeps its response to itself, the hand shakes, the sensor is noisy and has a few stuck pixels: all
+that a real bracket has, and the truth besides.
+"""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+
+from hdrlab import pipeline
+from hdrlab.align.shift import crop
+from hdrlab.capture import camera, responses, scenes
+from hdrlab.core.errors import Truth
+from hdrlab.io.photos import write_picture
+from hdrlab.io.radiance import write_radiance
+from hdrlab.show.report import write_report
+
+STEPS = 9
+OPERATOR = "reinhard"
+CAMERA = {"response": "film", "full_well": 60_000, "read_noise": 6, "hot": 2e-5}
+
+
+def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
+    """Write the demo's files into `out`, and yield a line about each step when it is done."""
+    rng = np.random.default_rng(seed)
+    out.mkdir(parents=True, exist_ok=True)
+    scene = scenes.room()
+    yield f"scene      a room with a window, {scenes.decades(scene):.1f} decades"
+    times = camera.times_around(scene)
+    shaken = camera.shake(len(times), rng=rng)
+    bracket = camera.shoot(scene, times, offsets=shaken, rng=rng, **CAMERA)
+    yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
+    for assembly in pipeline.assemble_steps(bracket):
+        yield f"{assembly.stage:<10} {_said(assembly)}"
+    picture = pipeline.develop(assembly.E, OPERATOR)
+    yield f"picture    {OPERATOR}, {picture.shape[1]} x {picture.shape[0]}"
+    for suffix in (".hdr", ".exr", ".pfm"):
+        write_radiance(out / f"radiance{suffix}", assembly.E)
+    write_picture(out / "picture.png", picture)
+    yield f"files      radiance.hdr, .exr, .pfm and picture.png in {out}"
+    seen = camera.views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
+    truth = Truth(seen, responses.true_g(CAMERA["response"]), shaken)
+    recipe = {"tonemap": OPERATOR, "seed": seed, **CAMERA}
+    page = write_report(out, assembly, picture, recipe=recipe, truth=truth)
+    yield f"report     {page}"
+
+
+def _said(assembly: pipeline.Assembly) -> str:
+    """Return what a stage of the pipeline has to say."""
+    match assembly.stage:
+        case "align":
+            return "moved by " + ", ".join(f"({dy}, {dx})" for dy, dx in assembly.offsets) + " pixels"
+        case "response":
+            darkest, brightest = assembly.g.reshape(256, -1)[[10, 250]].mean(axis=1)
+            return f"levels 10 and 250 lie {(brightest - darkest) / np.log(2):.1f} stops apart"
+        case "merge":
+            return f"{np.mean(assembly.seen == 0):.2%} of the pixels measured"
+        case _:
+            return f"the frames agree to {assembly.spread:.3f} stops"

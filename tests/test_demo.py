@@ -1,0 +1,49 @@
+"""The demo: the main job on a scene whose radiance is known."""
+
+import cv2
+import numpy as np
+import pytest
+
+from hdrlab import demo
+from hdrlab.io.radiance import read_radiance
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory):
+    out = tmp_path_factory.mktemp("demo") / "new" / "folder"
+    lines = list(demo.demo_steps(out))
+    return out, lines
+
+
+def test_the_demo_announces_as_many_steps_as_it_takes(results):
+    assert len(results[1]) == demo.STEPS
+
+
+def test_the_demo_writes_three_maps_a_picture_and_a_report(results):
+    names = sorted(file.name for file in results[0].iterdir())
+    assert names == ["picture.png", "radiance.exr", "radiance.hdr", "radiance.pfm", "report.html"]
+
+
+def test_the_three_maps_hold_the_same_radiance(results):
+    E = {suffix: read_radiance(results[0] / f"radiance{suffix}") for suffix in (".hdr", ".exr", ".pfm")}
+    assert np.array_equal(E[".exr"], E[".pfm"])
+    brightest = E[".pfm"].max(
+        axis=-1, keepdims=True
+    )  # RGBE shares one exponent, so that one decides the step
+    assert np.all(np.abs(E[".hdr"] - E[".pfm"]) <= brightest / 128)
+
+
+def test_the_picture_uses_the_display_from_dark_to_bright(results):
+    picture = cv2.imread(str(results[0] / "picture.png"))
+    assert picture.min() < 20 and picture.max() > 235 and 60 < picture.mean() < 200
+
+
+def test_the_report_is_one_file_that_asks_for_nothing_outside_itself(results):
+    page = (results[0] / "report.html").read_text(encoding="utf8")
+    assert "http://" not in page.replace("http://www.w3.org", "") and "https://" not in page
+    assert page.count("<img") == page.count("alt=")
+
+
+def test_the_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
+    list(demo.demo_steps(tmp_path))
+    assert (tmp_path / "radiance.pfm").read_bytes() == (results[0] / "radiance.pfm").read_bytes()
