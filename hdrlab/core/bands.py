@@ -1,0 +1,41 @@
+"""An equation over a picture, a band of rows at a time, which stays in the processor's cache.
+
+Written for a whole picture, an equation of neighbours gives the same answer in the rows of a band if the
+slab it is given reaches `margin` rows further on either side, and ends only where the picture does.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+BAND = 32  # rows
+
+
+def banded(equation: Callable[..., NDArray[Any]], *pictures: NDArray[Any], margin: int = 0) -> NDArray[Any]:
+    """Return equation(*pictures), (H, W) of the type of the first, computed in bands.
+
+    Parameters
+    ----------
+    equation : function of slabs (..., h, W), one of each picture, to (h, W)
+    pictures : (H, W) each, or planes (..., H, W)
+    margin : rows above and below a pixel that the equation looks at
+
+    Returns
+    -------
+    (H, W)
+
+    Examples
+    --------
+    >>> u, down = np.arange(300.0).reshape(100, 3) ** 2, lambda u: np.gradient(u, axis=0)
+    >>> np.array_equal(banded(down, u, margin=1), down(u))
+    True
+    """
+    n = pictures[0].shape[-2]
+    whole = np.empty(pictures[0].shape[-2:], pictures[0].dtype)
+    for top in range(0, n, BAND):
+        start, stop = max(top - margin, 0), min(top + BAND + margin, n)
+        slab = equation(*(picture[..., start:stop, :] for picture in pictures))
+        whole[top : top + BAND] = slab[top - start : top - start + BAND]
+    return whole

@@ -1,0 +1,1 @@
+"""Better pictures without a radiance map: numbers to numbers, one paper per module."""

@@ -1,0 +1,178 @@
+"""Exposure fusion (Mertens, Kautz, Van Reeth, Pacific Graphics 2007; Computer Graphics Forum 28(1), 2009).
+
+Z_j       photograph j                  (H, W[, 3]) uint8 or uint16, as it came from the camera
+F_j       the same in planes            (1 or 3, H, W) float32 in [0, 1]
+C, S, E   contrast, saturation, well-exposedness    (H, W), >= 0: what makes a pixel worth keeping
+W_j       weight of photograph j        (H, W), C^wC S^wS E^wE; after `normalised` the sum over j is 1
+W_j,k     its Gaussian pyramid          level k
+L_j,k     Laplacian pyramid of F_j      level k
+R         fused picture                 (H, W[, 3]) float32, about [0, 1]
+
+Neither exposure times nor a response are needed: pixels are never turned into light. Blending the photographs
+themselves, R = sum_j W_j F_j, shows seams wherever a weight jumps; blending their Laplacian pyramids shows
+none, as each detail is blended by weights as smooth as it is wide.
+"""
+
+from collections.abc import Iterator, Sequence
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core import pyramid
+from hdrlab.core.arrays import Array, as_stack, levels
+from hdrlab.core.bands import banded
+from hdrlab.core.steps import last
+
+Float = NDArray[np.float32]
+
+LUMA = np.array([0.299, 0.587, 0.114], np.float32)  # ITU-R BT.601: the gray of encoded values
+SIGMA = 0.2  # width of the curve of well-exposedness
+BAND = 16  # rows
+HALF = np.float32(0.5)
+LEAST = 1e-12  # weight of a pixel that is flat, gray or clipped in every photograph
+
+
+class State(NamedTuple):
+    """The fusion after one more photograph.
+
+    Attributes
+    ----------
+    image : j
+    weights : W_j,k, the pyramid of its normalised weight, a list of (h, w), the finest level first
+    details : L_j,k, its own pyramid, a list of (1 or 3, h, w)
+    blended : the sum of W_i,k L_i,k over i <= j, a list of the same shapes
+    """
+
+    image: int
+    weights: list[Float]
+    details: list[Float]
+    blended: list[Float]
+
+
+def planes(Z: Array) -> Float:
+    """Return F = Z / top level, the channels as planes."""
+    Z = Z[..., None] if Z.ndim == 2 else Z
+    F = np.empty((Z.shape[2], *Z.shape[:2]), np.float32)
+    for top in range(0, len(Z), BAND):  # in bands that fit the cache: every third value is slow to pick
+        band = Z[top : top + BAND].astype(np.float32) * np.float32(1 / (levels(Z) - 1))
+        F[:, top : top + BAND] = np.moveaxis(band, -1, 0)
+    return F
+
+
+def contrast(F: Float) -> Float:
+    """Return C = |Y(up) + Y(down) + Y(left) + Y(right) - 4 Y|, Y the gray picture [Mertens07 sec. 3.1].
+
+    Which is a Laplacian filter. At the edges Y is reflected.
+    """
+    Y = F[0] if len(F) == 1 else LUMA[0] * F[0] + LUMA[1] * F[1] + LUMA[2] * F[2]
+    around = np.pad(Y, 1, mode="reflect")
+    vertical, horizontal = around[:-2, 1:-1] + around[2:, 1:-1], around[1:-1, :-2] + around[1:-1, 2:]
+    return np.abs(vertical + horizontal - 4 * Y)
+
+
+def saturation(F: Float) -> Float:
+    """Return S, the standard deviation of R, G and B [Mertens07 sec. 3.1]; 1 where there are no colours.
+
+    As ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3 it is 0 in a gray pixel; through the mean of the three it
+    would be what rounding left, and decide alone in places that are gray in every photograph.
+    """
+    if len(F) == 1:
+        return np.ones_like(F[0])
+    R, G, B = F
+    return np.sqrt((R - G) ** 2 + (G - B) ** 2 + (B - R) ** 2) * np.float32(1 / 3)
+
+
+def exposedness(F: Float) -> Float:
+    """Return E = product over the channels of exp(-(F - 0.5)^2 / (2 sigma^2)) [Mertens07 sec. 3.1]."""
+    return np.exp(sum((plane - HALF) ** 2 for plane in F) * np.float32(-0.5 / SIGMA**2))
+
+
+def weight(F: Float, powers: Sequence[float] = (1, 1, 1)) -> Float:
+    """Return W = C^wC S^wS E^wE [Mertens07 eq. 1], and a trace, so that no pixel is without any weight."""
+    W = np.full(F.shape[1:], 1, np.float32)
+    for measure, power in zip((contrast, saturation, exposedness), powers, strict=True):
+        if power:
+            W *= measure(F) if power == 1 else measure(F) ** np.float32(power)
+    return W + np.float32(LEAST)
+
+
+def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[Float]:
+    """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07 eq. 2].
+
+    Every weight is made twice, the first time for the sum alone, so that they never stand in memory together.
+    """
+    total: Float = np.zeros(images.shape[1:3], np.float32)
+    for Z in images:
+        total += banded(partial(weight, powers=powers), planes(Z), margin=1)
+    for Z in images:
+        W: Float = banded(partial(weight, powers=powers), planes(Z), margin=1)
+        yield W / total
+
+
+def fuse_steps(
+    images: ArrayLike | Sequence[ArrayLike],
+    *,
+    contrast: float = 1.0,
+    saturation: float = 1.0,
+    exposedness: float = 1.0,
+) -> Iterator[State]:
+    """Yield the State after each photograph; the parameters are those of `fuse`.
+
+    R_k = sum_j W_j,k L_j,k at every level [Mertens07 eq. 3]: a photograph adds its term to all of them.
+    """
+    stack, powers = as_stack(images), (contrast, saturation, exposedness)
+    if not all(0 <= power < np.inf for power in powers):
+        raise ValueError(f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}")
+    depth = min(stack.shape[1:3]).bit_length()  # down to one or two rows or columns
+    blended: list[Float] = []
+    for j, W in enumerate(weights(stack, powers)):
+        Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(planes(stack[j]), depth)
+        terms = (w * detail for w, detail in zip(Wk, Lk, strict=True))
+        blended = [b + term for b, term in zip(blended, terms, strict=True)] if blended else list(terms)
+        yield State(j, Wk, Lk, blended)
+
+
+def fuse(
+    images: ArrayLike | Sequence[ArrayLike],
+    *,
+    contrast: float = 1.0,
+    saturation: float = 1.0,
+    exposedness: float = 1.0,
+) -> Float:
+    """Return one picture that takes each place from the photographs that show it best.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs of one scene from one place, with different exposures, in any order.
+    contrast, saturation, exposedness : float
+        Powers of the three measures in the weight; 0 leaves one out. Gray photographs have no saturation.
+
+    Returns
+    -------
+    R : (H, W) or (H, W, 3) float32
+        Encoded like the photographs, 1 = their top level. It is not clipped, and does leave [0, 1] next to
+        strong edges, where the details of one photograph stand on the light of another: real brackets reach
+        -0.5 and 1.8, in a few pixels. Clip it for a display.
+
+    Raises
+    ------
+    ValueError
+        For images that are no stack of photographs, and for powers that are negative or not finite.
+
+    References
+    ----------
+    Mertens, Kautz, Van Reeth, Exposure fusion, Pacific Graphics 2007. Two things it leaves open are as in
+    OpenCV: the pyramids go down to one or two rows or columns, and all filters reflect at the edges.
+
+    Examples
+    --------
+    >>> dark, bright = np.full((8, 8), 20, np.uint8), np.full((8, 8), 120, np.uint8)
+    >>> fuse([dark, bright], contrast=0)[0, 0].round(2)  # 20 is badly exposed, 120 well
+    np.float32(0.43)
+    """
+    steps = fuse_steps(images, contrast=contrast, saturation=saturation, exposedness=exposedness)
+    R = pyramid.collapsed(last(steps).blended)
+    return R[0] if len(R) == 1 else np.moveaxis(R, 0, -1).copy()

@@ -1,0 +1,187 @@
+"""Gradient domain compression (Fattal, Lischinski, Werman, SIGGRAPH 2002).
+
+lL      ln luminance, 0 at white           (H, W); H in the paper, l in the slides
+lL_k    level k of its Gaussian pyramid    (ceil(H / 2^k), ceil(W / 2^k)), k = 0 ... d, none of them below 32
+slope   |grad lL_k|                        same, nats per pixel of the picture
+phi_k   attenuation by the slope there     same, 1 where the slope is alpha times its mean
+Phi_k   attenuation by all levels >= k     same; Phi = Phi_0
+G       attenuated gradient, (Gy, Gx)      (2, H, W)
+lLd     the picture with this gradient     (H, W), ln display luminance but for a constant; I in the paper
+Ld      display luminance                  (H, W) in [0, 1]
+beta    power                              a slope comes out to the power of beta, level by level
+
+Large contrasts have steep slopes at some level, and only slopes are attenuated: never a pixel by itself.
+"""
+
+from collections.abc import Iterator
+from functools import partial
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core import poisson, pyramid
+from hdrlab.core.arrays import as_luminance
+from hdrlab.core.bands import banded
+from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.steps import last
+
+Float = NDArray[np.float32]
+
+LAWS = ("exposure",)
+SMALLEST = 32  # pixels: the shorter side of the coarsest level is at least this
+DARK = 1e-3  # a pixel without light is taken to be this much darker than white, or as dark as the darkest
+TINY = float(np.finfo(np.float32).tiny)
+
+
+class Level(NamedTuple):
+    """The attenuation after one more level, from the coarsest, k = d, to the picture itself, k = 0.
+
+    Attributes
+    ----------
+    k : level
+    lL : (h, w), ln luminance at this level
+    slope : (h, w), length of its gradient
+    phi : (h, w), attenuation by this level
+    Phi : (h, w), attenuation by this level and all coarser ones
+    """
+
+    k: int
+    lL: Float
+    slope: Float
+    phi: Float
+    Phi: Float
+
+
+def log_luminance(L: Float) -> Float:
+    """Return lL = ln(L / Lwhite), Lwhite the brightest L but for 0.01 % of the pixels, so its unit cancels.
+
+    Pixels above it are cut, as the display would cut them; so are the darkest, and with them the zeros.
+    """
+    white = brightest(L)
+    black = min(darkest(L), DARK * white)
+    white = max(white, TINY)
+    floor, scale = np.float32(max(black / white, TINY)), np.float32(1 / white)
+    return banded(lambda L: np.log(np.maximum(np.minimum(L, np.float32(white)) * scale, floor)), L)
+
+
+def slope(lL: Float, k: int = 0) -> Float:
+    """Return |grad lL_k|, by central differences / 2^(k+1) [Fattal02 sec. 4].
+
+    A step at level k is 2^k pixels of the picture, and a central difference takes two.
+    """
+    around = np.pad(lL, 1, mode="symmetric")
+    dy, dx = around[2:, 1:-1] - around[:-2, 1:-1], around[1:-1, 2:] - around[1:-1, :-2]
+    return np.sqrt(dy * dy + dx * dx) * np.float32(0.5 ** (k + 1))
+
+
+def attenuation(
+    slope: Float, mean: float, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
+) -> Float:
+    """Return phi = a / slope (slope / a)^beta, a = alpha mean [Fattal02 sec. 4; Battiato eq. 1.41].
+
+    The mean is that of the level's slopes. Where the slope goes to zero the formula goes to infinity, and
+    would lift the noise of an even sky: below `noise` means it stays what it is there.
+    """
+    if mean == 0:
+        return np.ones_like(slope)
+    steep = np.maximum(slope, np.float32(noise * mean))
+    return np.power(steep / np.float32(alpha * mean), np.float32(beta - 1))
+
+
+def attenuation_steps(
+    lL: Float, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
+) -> Iterator[Level]:
+    """Yield the Level of k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k [Battiato eq. 1.42].
+
+    It is enlarged by linear interpolation. The knobs are those of `attenuation`.
+    """
+    levels = pyramid.gaussian(lL, pyramid.depth(lL.shape, SMALLEST))
+    Phi = np.ones(pyramid.half(levels[-1].shape), np.float32)
+    while levels:
+        k, lL = len(levels) - 1, levels.pop()
+        steepness = banded(partial(slope, k=k), lL, margin=1)
+        mean = float(steepness.mean(dtype=np.float64))
+        phi = banded(partial(attenuation, mean=mean, alpha=alpha, beta=beta, noise=noise), steepness)
+        Phi = pyramid.enlarged(Phi, lL.shape, taps=pyramid.LINEAR) * phi
+        yield Level(k, lL, steepness, phi, Phi)
+
+
+def attenuated(lL: Float, Phi: Float) -> Float:
+    """Return G = Phi grad lL, by forward differences [Fattal02 sec. 4; Battiato eq. 1.38, 1.39]."""
+    return poisson.gradient(lL) * Phi
+
+
+def divergence(lL: Float, Phi: Float) -> Float:
+    """Return div G, for `poisson.solve`: Laplacian lLd = div G [Fattal02 eq. 3; Battiato eq. 1.40]."""
+    return banded(lambda lL, Phi: poisson.divergence(attenuated(lL, Phi)), lL, Phi, margin=1)
+
+
+def display(lLd: Float, *, black: float = 0.001, white: float = 0.005) -> Float:
+    """Return Ld = (exp lLd - b) / (w - b), cut to [0, 1].
+
+    A fraction `black` of the pixels has exp lLd below b, a fraction `white` above w. An even picture, where
+    these are less than a factor of two apart, is not stretched over the whole display.
+    """
+    bright = np.exp(lLd - lLd.max())
+    top = brightest(bright, cut=white)
+    low = min(darkest(bright, cut=black), top / 2)
+    scale = np.float32(1 / (top - low))
+    return banded(lambda bright: np.clip((bright - np.float32(low)) * scale, 0, 1), bright)
+
+
+def tonemap(
+    L: ArrayLike,
+    *,
+    alpha: float = 0.1,
+    beta: float = 0.9,
+    noise: float = 0.01,
+    black: float = 0.001,
+    white: float = 0.005,
+) -> Float:
+    """Return display luminance in which steep slopes of ln L are flattened, and gentle ones kept.
+
+    Parameters
+    ----------
+    L : (H, W) luminance, finite and not negative, any linear unit
+    alpha : the slope that is left as it is, in mean slopes of each level. Another alpha multiplies Phi, hence
+        lLd, by one number: it is the same picture with another contrast, as by a gamma
+    beta : the power that slopes are raised to, 0 < beta <= 1; the paper has 0.8 to 0.9, 1 changes nothing
+    noise : the slope below which attenuation stays what it is, in mean slopes of each level
+    black, white : fractions of the pixels that become black and white
+
+    Returns
+    -------
+    (H, W) float32 in [0, 1], 1 = white. The paper adds colour with a saturation of 0.4 to 0.6.
+
+    Raises
+    ------
+    ValueError
+        For luminance that is not (H, W), finite and positive or zero, and knobs out of their range.
+
+    References
+    ----------
+    Fattal, Lischinski, Werman, Gradient domain high dynamic range compression, SIGGRAPH 2002. The noise floor
+    and the cut at both ends are additions of pfstools.
+
+    Examples
+    --------
+    >>> L = np.repeat([[1.0, 100.0, 1e4, 1e6]], 16, axis=1) * np.ones((64, 1))
+    >>> Ld = tonemap(L)
+    >>> bool(Ld[0, 24] > 100 * L[0, 24] / L.max())  # what was lost in the dark is there
+    True
+    """
+    L = as_luminance(L)
+    _check(alpha, beta, noise, black, white)
+    if L.max() == 0:
+        return np.zeros_like(L)
+    lL = log_luminance(L)
+    Phi = last(attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise)).Phi
+    return display(poisson.solve(divergence(lL, Phi)), black=black, white=white)
+
+
+def _check(alpha: float, beta: float, noise: float, black: float, white: float) -> None:
+    if not (0 < alpha < np.inf and 0 < beta <= 1 and 0 < noise < np.inf):
+        raise ValueError(f"expected alpha > 0, 0 < beta <= 1, noise > 0, got {alpha=}, {beta=}, {noise=}")
+    if not (0 <= black < 0.5 and 0 <= white < 0.5):
+        raise ValueError(f"expected fractions black and white in 0 ... 0.5, got {black=}, {white=}")
