@@ -1,0 +1,31 @@
+"""A curve through evenly spaced knots, read for every pixel of a picture: np.interp, many times as fast.
+
+knots  value at t = 0, 1, ..., n   (n + 1,); lines between them, level beyond them
+t      where to read               any shape, float32
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Float = NDArray[np.float32]
+
+
+def lines(knots: ArrayLike) -> NDArray[np.complex64]:
+    """Return each knot with the rise to the next as imaginary part: one look-up gets both ends of a line."""
+    knots = np.asarray(knots, np.float64)
+    return (knots + 1j * np.append(np.diff(knots), 0)).astype(np.complex64)
+
+
+def read(knots: ArrayLike, t: ArrayLike) -> Float:
+    """Return the curve's value at each t.
+
+    Examples
+    --------
+    >>> read([0, 10, 40], [-1, 0.5, 1.5, 7]).tolist()
+    [0.0, 5.0, 25.0, 40.0]
+    """
+    table = lines(knots)
+    t = np.clip(np.asarray(t, np.float32), 0, len(table) - 1)
+    left = np.floor(t)
+    line = table.take(left.astype(np.intp), mode="clip")
+    return line.real + (t - left) * line.imag

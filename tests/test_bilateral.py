@@ -1,0 +1,157 @@
+"""hdrlab.core.bilateral: the definition against scikit-image, the grid against the definition."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.ndimage import gaussian_filter
+from skimage.restoration import denoise_bilateral
+
+from hdrlab.core import bilateral
+from hdrlab.core.colour import luminance
+from hdrlab.io import rgbe
+
+
+def room(shape=(70, 90), seed=0):
+    """Return log10 luminance of about five decades: soft light, two hard edges, texture."""
+    rng = np.random.default_rng(seed)
+    y, x = np.indices(shape) / max(shape)
+    light = 1.5 * np.exp(-8 * ((x - 0.6) ** 2 + (y - 0.3) ** 2)) + 2 * (x > 0.8) - 1.5 * (y > 0.5)
+    return (light + 0.1 * rng.standard_normal(shape)).astype(np.float32)
+
+
+def rms(a, b):
+    return float(np.sqrt(np.mean((a - b) ** 2)))
+
+
+def spatial_weights(win_size, sigma, *, dtype=float):
+    """Return g over the window, as scikit-image's table of it should be.
+
+    Its own runs from -n // 2, one row and column too many for an odd n, and is then read with rows of n: a
+    Gaussian sheared over the window.
+    """
+    far = np.arange(win_size) - win_size // 2
+    return np.exp(-(far[:, None] ** 2 + far**2) / (2 * sigma**2)).astype(dtype).ravel()
+
+
+@pytest.mark.parametrize(("sigma_s", "sigma_r"), [(1.5, 0.2), (3, 0.4), (5, 1.0)])
+def test_the_definition_is_scikit_images_within_a_thousandth(sigma_s, sigma_r, monkeypatch):
+    """Away from the edge, beyond which scikit-image takes a constant for picture."""
+    monkeypatch.setattr("skimage.restoration._denoise._compute_spatial_lut", spatial_weights)
+    v, r = room().astype(np.float64), int(np.ceil(3 * sigma_s))
+    theirs = denoise_bilateral(v - v.min(), 2 * r + 1, sigma_r, sigma_s, bins=100_000) + v.min()
+    inside = (slice(r, -r), slice(r, -r))
+    assert np.abs(bilateral.brute(v, sigma_s=sigma_s, sigma_r=sigma_r).mean - theirs)[inside].max() < 1e-3
+
+
+@pytest.mark.parametrize("sigma_s", [1, 2.9, 4, 6, 8.5, 12])
+def test_the_grid_is_the_definition_within_a_hundredth_of_sigma_r(sigma_s):
+    """Root mean square; 0.004 decades for the sigma_r of tone mapping."""
+    v = room()
+    fast, brute = (f(v, sigma_s=sigma_s, sigma_r=0.4) for f in (bilateral.fast, bilateral.brute))
+    assert rms(fast.mean, brute.mean) < 0.004
+    assert np.abs(fast.mean - brute.mean).max() < 0.1
+    assert np.median(np.abs(fast.k / brute.k - 1)) < 0.1
+
+
+@pytest.mark.parametrize("name", ["memorial", "lobby"])
+def test_on_photographs_the_base_is_within_five_thousandths_of_a_decade(shared, name):
+    path = shared("memorial") / "memorial.hdr" if name == "memorial" else shared("hdri_cc0") / f"{name}.hdr"
+    L = luminance(rgbe.read(path))[::4, ::4]
+    v = np.log10(np.maximum(L, L[L > 0].min()))
+    for sigma_s in (3, 6):
+        fast, brute = (f(v, sigma_s=sigma_s, sigma_r=0.4) for f in (bilateral.fast, bilateral.brute))
+        assert rms(fast.mean, brute.mean) < 0.005
+
+
+@pytest.mark.parametrize("method", [bilateral.brute, bilateral.fast])
+def test_a_constant_stays_and_all_neighbours_weigh_in_full(method):
+    found = method(np.full((61, 73), 3.7), sigma_s=5, sigma_r=0.4)
+    assert np.allclose(found.mean, 3.7, atol=0.02 * 0.4)
+    assert found.k[30, 36] == pytest.approx(2 * np.pi * 5**2, rel=0.02)
+    assert found.k[0, 0] == pytest.approx(found.k[30, 36] / 4, rel=0.3), "beyond the corner there is nothing"
+
+
+@pytest.mark.parametrize("method", [bilateral.brute, bilateral.fast])
+@pytest.mark.parametrize("sigma_s", [2, 7])
+def test_a_pixel_unlike_all_others_is_its_own_mean_and_says_so(method, sigma_s):
+    v = np.zeros((50, 60))
+    v[20, 33] = 5
+    found = method(v, sigma_s=sigma_s, sigma_r=0.4)
+    assert found.mean[20, 33] == pytest.approx(5, abs=0.02) and found.k[20, 33] == pytest.approx(1, abs=0.25)
+    v[20, 33] = found.mean[20, 33] = 0
+    assert np.abs(found.mean).max() < 0.01, "and nobody else notices"
+
+
+@pytest.mark.parametrize("method", [bilateral.brute, bilateral.fast])
+def test_a_great_sigma_r_is_the_gaussian(method):
+    v = room((60, 80))
+    plain = gaussian_filter(v.astype(np.float64), 4, truncate=3, mode="constant")
+    weight = gaussian_filter(np.ones(v.shape), 4, truncate=3, mode="constant")
+    assert rms(method(v, sigma_s=4, sigma_r=100).mean, plain / weight) < 0.02
+
+
+def test_a_hard_edge_stays_and_texture_goes():
+    rng = np.random.default_rng(1)
+    v = np.where(np.arange(80) < 40, 0.0, 3.0) + 0.1 * rng.standard_normal((60, 80))
+    mean = bilateral.fast(v, sigma_s=6, sigma_r=0.4).mean
+    assert np.abs(mean[:, :40]).max() < 0.06 and np.abs(mean[:, 40:] - 3).max() < 0.06
+
+
+@settings(max_examples=40, deadline=None)
+@given(
+    height=st.integers(1, 40),
+    width=st.integers(1, 40),
+    sigma_s=st.floats(0.02, 30),
+    sigma_r=st.floats(0.1, 10),
+)
+def test_any_shape_and_width_stays_within_the_signals_own_range(height, width, sigma_s, sigma_r):
+    v = room((height, width))
+    found = bilateral.fast(v, sigma_s=sigma_s, sigma_r=sigma_r)
+    assert found.mean.shape == found.k.shape == v.shape and found.mean.dtype == np.float32
+    slack = 0.05 * sigma_r  # half a bin of the histograms, at most
+    assert np.all((found.mean >= v.min() - slack) & (found.mean <= v.max() + slack))
+    assert np.all(found.k > 0)
+
+
+def test_the_level_of_the_signal_does_not_matter():
+    v = room()
+    here, there = (bilateral.fast(v + c, sigma_s=6, sigma_r=0.4) for c in (0, 40))
+    assert np.allclose(there.mean - 40, here.mean, atol=1e-3)
+
+
+def test_the_grid_holds_every_pixel_once():
+    v = room((33, 47))
+    a = bilateral.axes(v, sigma_s=8, sigma_r=0.4)
+    counts = np.stack(list(bilateral.histograms(v, a)))
+    assert counts.sum() == v.size and counts.shape[:2] == (a.Y, a.X)
+    assert a.h == 3 and bilateral.axes(v, sigma_s=3, sigma_r=0.4).h == 1
+
+
+def test_closeness_is_the_gaussian_of_the_distance_between_bin_and_level():
+    a = bilateral.axes(room(), sigma_s=8, sigma_r=0.4)
+    w, away = np.split(bilateral.closeness(a), 2, axis=1)
+    assert w[0, 0] == 1 and away[0, 0] == 0
+    one = bilateral.LEVELS * bilateral.BINS  # sigma_r away
+    assert w[one, 0] == pytest.approx(np.exp(-0.5)) and away[one, 0] == pytest.approx(0.4 * np.exp(-0.5))
+
+
+@pytest.mark.parametrize("method", [bilateral.brute, bilateral.fast])
+def test_what_is_no_signal_is_refused(method):
+    for v in (
+        np.ones(4),
+        np.ones((2, 2, 3)),
+        np.ones((0, 3)),
+        np.full((3, 3), np.nan),
+        np.full((3, 3), np.inf),
+    ):
+        with pytest.raises(ValueError, match="finite signal"):
+            method(v, sigma_s=2, sigma_r=0.4)
+    for sigma_s, sigma_r in ((0, 1), (1, 0), (-1, 1), (np.nan, 1), (1, np.inf)):
+        with pytest.raises(ValueError, match="sigmas above 0"):
+            method(np.ones((3, 3)), sigma_s=sigma_s, sigma_r=sigma_r)
+
+
+def test_a_signal_too_long_for_the_grid_is_refused():
+    with pytest.raises(ValueError, match="a range of at most 5 for"):
+        bilateral.fast(np.array([[0, 6]]), sigma_s=1, sigma_r=0.01)
