@@ -1,0 +1,127 @@
+"""Spatially nonuniform scaling (Chiu, Herf, Shirley, Swamy, Wang, Zimmerman, Graphics Interface 1993).
+
+L     luminance          (H, W) >= 0, any linear unit
+s     scale              (H, W), 1 / unit of L
+k     headroom           a pixel that is k times as bright as its neighbourhood becomes white
+base  edge-aware mean    (H, W), the mean of neighbours alike: what s should have been taken from
+Ld    display luminance  s L, (H, W), 1 = white
+
+The eye does not mind a scale that varies slowly. Where L jumps, the blur begins to change before L does: the
+dark side of an edge is held back by the bright one, and the other way round. That is the halo.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_luminance
+from hdrlab.core.bands import banded
+from hdrlab.core.bilateral import fast
+from hdrlab.core.blur import gaussian
+from hdrlab.core.extremes import brightest
+from hdrlab.core.steps import last
+
+Float = NDArray[np.float32]
+
+LAWS = ("exposure",)
+WIDTH = 0.08  # sigma of the blur, of the longer side: narrower, every place is as bright as every other
+LIMIT = np.float32(1e30)
+TINY = 1e-37
+
+
+class State(NamedTuple):
+    """The scale s and the picture Ld = s L, each (H, W), after a number of smoothing passes."""
+
+    s: Float
+    Ld: Float
+
+
+def width(L: Float, sigma: float | None = None) -> float:
+    """Return sigma in pixels; None is 2 % of the longer side."""
+    return WIDTH * max(L.shape) if sigma is None else sigma
+
+
+def scale(L: Float, *, headroom: float = 8.0, sigma: float | None = None) -> Float:
+    """Return s = 1 / (k blur(L)) [Battiato08 eq. 1.28, whose further factor L is a misprint].
+
+    The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur reaches.
+    """
+    Lblur = gaussian(np.minimum(L, np.float32(brightest(L))), width(L, sigma))
+    return 1 / np.maximum(np.float32(headroom) * Lblur, TINY)
+
+
+def clamp(s: Float, L: Float) -> Float:
+    """Return min(s, 1 / L): no pixel above white [Chiu93 sec. 3]."""
+    return np.minimum(s, 1 / np.maximum(L, TINY))
+
+
+def smooth(s: Float) -> Float:
+    """Return s averaged with its neighbours, weights 1 2 1 down and across: rounds the clamp's edges."""
+    s = np.pad(s, 1, mode="edge")
+    s = s[:-2] + 2 * s[1:-1] + s[2:]
+    return (s[:, :-2] + 2 * s[:, 1:-1] + s[:, 2:]) * np.float32(1 / 16)
+
+
+def tonemap_steps(
+    L: Float, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16
+) -> Iterator[State]:
+    """Yield the State with the clamped scale, and after each smoothing pass, which is clamped again."""
+    s = clamp(scale(L, headroom=headroom, sigma=sigma), L)
+    yield State(s, s * L)
+    for _ in range(passes):
+        s = banded(lambda s, L: clamp(smooth(s), L), s, L, margin=1)
+        yield State(s, s * L)
+
+
+def halo(
+    L: Float, s: Float, *, headroom: float = 8.0, sigma: float | None = None, contrast: float = 0.4
+) -> Float:
+    """Return log2(s k base), in stops: how much brighter a pixel is than if its own kind alone had scaled it.
+
+    Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the blur, of
+    neighbours that differ by about `contrast` decades.
+    """
+    lL = np.log10(np.maximum(L, 1e-6 * max(brightest(L, cut=0.5), TINY)))
+    base = fast(lL, sigma_s=width(L, sigma), sigma_r=contrast).mean
+    return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))
+
+
+def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16) -> Float:
+    """Return display luminance by a scale that follows the brightness of the neighbourhood.
+
+    Parameters
+    ----------
+    L : (H, W) luminance, finite and not negative, any linear unit
+    headroom : k; 2 makes the neighbourhood's mean 0.5 and leaves little room above, 8 is the usual
+    sigma : standard deviation of the neighbourhood, pixels; None takes 8 % of the longer side
+    passes : smoothing passes over the clamped scale; the paper has many more
+
+    Returns
+    -------
+    (H, W) float32 in [0, 1], 1 = white
+
+    Raises
+    ------
+    ValueError
+        For luminance that is not (H, W), finite and positive or zero, and knobs out of range.
+
+    References
+    ----------
+    Chiu, Herf, Shirley, Swamy, Wang, Zimmerman, Spatially nonuniform scaling functions for high contrast
+    images, Graphics Interface 1993.
+
+    Examples
+    --------
+    >>> tonemap(np.full((20, 30), 5.0), headroom=4)[10, 15].item()
+    0.25
+    """
+    L = as_luminance(L)
+    if not (headroom > 0 and width(L, sigma) > 0 and passes >= 0):
+        raise ValueError(
+            f"expected headroom > 0, sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
+        )
+    with np.errstate(over="ignore"):  # in medians of L, and brighter ones like any other, sums stay finite
+        relative = np.minimum(L / np.float32(max(brightest(L, cut=0.5), TINY)), LIMIT)
+    return np.clip(last(tonemap_steps(relative, headroom=headroom, sigma=sigma, passes=passes)).Ld, 0, 1)
