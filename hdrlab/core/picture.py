@@ -1,0 +1,61 @@
+"""A finished picture in plain figures: what was clipped, how bright it is, how much it varies.
+
+picture  (H, W) gray or (H, W, 3) RGB, uint8, as it is sent to the display
+y        gray level, 0 to 255     (H, W) float64
+p        share of the pixels at each level
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.core.colour import LUMINANCE
+
+Float = NDArray[np.float64]
+
+
+class Statistics(NamedTuple):
+    """Plain figures of a picture (H, W[, 3]) uint8.
+
+    Attributes
+    ----------
+    black : fraction of pixels at 0 in every channel: all is lost there
+    white : fraction of pixels at 255 in a channel or more: what lay above is lost
+    mean : gray level, 0 to 255
+    contrast : standard deviation of the gray level
+    entropy : of the 256 gray levels, 0 to 8 bits per pixel
+    """
+
+    black: float
+    white: float
+    mean: float
+    contrast: float
+    entropy: float
+
+
+def as_picture(picture: ArrayLike) -> NDArray[np.uint8]:
+    """Return a picture as an array, or raise a ValueError that says what came."""
+    array = np.asarray(picture)
+    fits = array.ndim in (2, 3) and array.shape[2:] in ((), (3,)) and array.size > 0
+    if array.dtype != np.uint8 or not fits:
+        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(array)}")
+    return array
+
+
+def gray(picture: ArrayLike) -> Float:
+    """Return y = 0.2126 R + 0.7152 G + 0.0722 B of the levels as they are shown; a gray picture as it is."""
+    levels: Float = as_picture(picture).astype(np.float64)
+    return levels @ LUMINANCE if levels.ndim == 3 else levels
+
+
+def statistics(picture: ArrayLike) -> Statistics:
+    """Return plain figures of a picture (H, W) or (H, W, 3) uint8; a ValueError for anything else."""
+    picture = as_picture(picture)
+    y = gray(picture)
+    channels = picture.reshape(*picture.shape[:2], -1)
+    p = np.bincount(np.rint(y).astype(np.intp).ravel(), minlength=256) / y.size
+    bits = -np.sum(p[p > 0] * np.log2(p[p > 0])) + 0.0  # of a constant 0, and not -0
+    black, white = np.all(channels == 0, axis=-1), np.any(channels == 255, axis=-1)
+    return Statistics(*map(float, (black.mean(), white.mean(), y.mean(), y.std(), bits)))
