@@ -19,7 +19,8 @@ from hdrlab.show.report import write_report
 
 STEPS = 9
 OPERATOR = "reinhard"
-CAMERA = {"response": "film", "full_well": 60_000, "read_noise": 6, "hot": 2e-5}
+RESPONSE = "film"
+NOISE = {"full_well": 60_000.0, "read_noise": 6.0, "hot": 2e-5}
 
 
 def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
@@ -30,7 +31,7 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     yield f"scene      a room with a window, {scenes.decades(scene):.1f} decades"
     times = camera.times_around(scene)
     shaken = camera.shake(len(times), rng=rng)
-    bracket = camera.shoot(scene, times, offsets=shaken, rng=rng, **CAMERA)
+    bracket = camera.shoot(scene, times, response=RESPONSE, offsets=shaken, rng=rng, **NOISE)  # type: ignore[arg-type]
     yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
     for assembly in pipeline.assemble_steps(bracket):
         yield f"{assembly.stage:<10} {_said(assembly)}"
@@ -41,8 +42,8 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     write_picture(out / "picture.png", picture)
     yield f"files      radiance.hdr, .exr, .pfm and picture.png in {out}"
     seen = camera.views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
-    truth = Truth(seen, responses.true_g(CAMERA["response"]), shaken)
-    recipe = {"tonemap": OPERATOR, "seed": seed, **CAMERA}
+    truth = Truth(seen, responses.true_g(RESPONSE), shaken)
+    recipe = {"tonemap": OPERATOR, "seed": seed, "camera": RESPONSE, **NOISE}
     page = write_report(out, assembly, picture, recipe=recipe, truth=truth)
     yield f"report     {page}"
 

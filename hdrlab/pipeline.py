@@ -4,6 +4,7 @@ Each stage may be a method's name or a function of the same signature, so a read
 library's does. `assemble_steps` yields what is known after each stage; `assemble` returns the last of it.
 """
 
+import sys
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -45,10 +46,10 @@ class Assembly(NamedTuple):
     stage: str
     bracket: Bracket
     offsets: NDArray[np.int64]
-    g: NDArray[np.float64] | None = None
-    E: NDArray[np.float32] | None = None
-    seen: NDArray[np.uint8] | None = None
-    medians: NDArray[np.float64] | None = None
+    g: NDArray[np.float64] = None  # type: ignore[assignment]  # typed as what each stage makes of it
+    E: NDArray[np.float32] = None  # type: ignore[assignment]
+    seen: NDArray[np.uint8] = None  # type: ignore[assignment]
+    medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
 
@@ -177,7 +178,7 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
 
 
 def develop(
-    E: ArrayLike, tonemap: Method = "reinhard", *, saturation: float = 1.0, **knobs: Any
+    E: ArrayLike, tonemap: Method = "reinhard", *, saturation: float | None = None, **knobs: Any
 ) -> NDArray[np.uint8]:
     """Return the picture of a radiance map: tone-mapped luminance, its colours, sRGB in 8 bits.
 
@@ -187,8 +188,8 @@ def develop(
         Radiance, any linear unit.
     tonemap : str or function
         A method of `tonemap`, or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
-    saturation : float
-        1 keeps the ratios of the channels.
+    saturation : float, optional
+        1 keeps the ratios of the channels, 0 is gray; the SATURATION of the operator's module, or else 1.
     **knobs
         Those of the operator.
 
@@ -201,5 +202,8 @@ def develop(
     ValueError
         For radiance that is not finite or negative, and for knobs out of their range.
     """
+    operator = catalogue.method("tonemap", tonemap)
+    if saturation is None:
+        saturation = getattr(sys.modules[operator.__module__], "SATURATION", 1.0)
     L = colour.luminance(E)
-    return colour.render(E, L, catalogue.method("tonemap", tonemap)(L, **knobs), saturation=saturation)
+    return colour.render(E, L, operator(L, **knobs), saturation=saturation)

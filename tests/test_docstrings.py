@@ -49,15 +49,17 @@ def test_a_module_is_short_enough_to_be_read(name):
     assert source(name).count("\n") <= LONGEST
 
 
-VERBS = ["align", "recover", "merge_seen", "tonemap", "shoot", "assemble", "read", "write"]
+VERBS = ["align", "recover", "merge_seen", "tonemap", "shoot", "assemble"]
+IO_VERBS = ["read", "write"]
 
 
 @pytest.mark.parametrize("name", MODULES)
 def test_a_verb_names_its_parameters_results_and_errors(name):
-    if name == "hdrlab.cli":
+    if name.startswith("hdrlab.cli"):
         return  # its functions are commands, whose words are for the shell
+    verbs = VERBS + IO_VERBS * name.startswith("hdrlab.io.")
     for node in ast.parse(source(name)).body:
-        if isinstance(node, ast.FunctionDef) and node.name in VERBS:
+        if isinstance(node, ast.FunctionDef) and node.name in verbs:
             said = ast.get_docstring(node)
             sections = ["Parameters", "Raises"] + (["Returns"] if node.name != "write" else [])
             missing = [section for section in sections if f"{section}\n---" not in said]

@@ -8,12 +8,13 @@ stays legible on a telephone and which a screen reader can read.
 """
 
 import io
-from typing import NamedTuple
+from typing import NamedTuple, cast
 
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
+from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
@@ -100,7 +101,7 @@ def photograph(image: Image, side: int, alt: str) -> Illustration:
 
 def plot(ax: Axes, alt: str) -> Illustration:
     """Return the figure of these Axes as SVG: sharp at every size; the same lines give the same bytes."""
-    figure, file = ax.get_figure(root=True), io.BytesIO()
+    figure, file = cast(Figure, ax.get_figure(root=True)), io.BytesIO()
     with matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
         figure.savefig(file, format="svg", metadata={"Date": None})
     width, height = (round(96 * inches) for inches in figure.get_size_inches())

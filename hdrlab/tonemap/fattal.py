@@ -29,6 +29,7 @@ from hdrlab.core.steps import last
 Float = NDArray[np.float32]
 
 LAWS = ("exposure",)
+SATURATION = 0.6  # gradients of luminance were compressed, those of colour were not [Fattal02 sec. 5]
 SMALLEST = 32  # pixels: the shorter side of the coarsest level is at least this
 DARK = 1e-3  # a pixel without light is taken to be this much darker than white, or as dark as the darkest
 TINY = float(np.finfo(np.float32).tiny)
@@ -152,7 +153,7 @@ def tonemap(
 
     Returns
     -------
-    (H, W) float32 in [0, 1], 1 = white. The paper adds colour with a saturation of 0.4 to 0.6.
+    (H, W) float32 in [0, 1], 1 = white. The paper adds colour with an exponent of 0.4 to 0.6: SATURATION.
 
     Raises
     ------

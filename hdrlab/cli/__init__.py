@@ -1,0 +1,52 @@
+"""The `hdrlab` command: the library's verbs with files around them.
+
+Nothing is computed here. Chapters are imported inside the commands, so that `hdrlab --help` answers at once.
+Bad input ends in one line on standard error and exit code 2, Ctrl-C in 130; files are written whole or not
+at all.
+"""
+
+import sys
+from collections.abc import Sequence
+
+import click
+
+from hdrlab import __version__
+from hdrlab.cli import curves, lessons, maps, photographs
+
+
+def run(arguments: Sequence[str] | None = None) -> None:
+    """Run the command and exit: 0 where all went well, 2 for bad input, 130 after Ctrl-C."""
+    try:
+        sys.exit(main.main(arguments, prog_name="hdrlab", standalone_mode=False))
+    except click.exceptions.Abort:
+        click.echo("hdrlab: interrupted", err=True)
+        sys.exit(130)
+    except click.ClickException as error:
+        click.echo(f"hdrlab: {error.format_message()}", err=True)
+        sys.exit(error.exit_code)
+    except OSError as error:
+        about = f"{error.filename}: {error.strerror}" if error.filename else error
+        click.echo(f"hdrlab: {about}", err=True)
+        sys.exit(2)
+    except (ValueError, MemoryError) as error:
+        click.echo(f"hdrlab: {error}", err=True)
+        sys.exit(2)
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"], "show_default": True})
+@click.version_option(__version__, prog_name="hdrlab")
+def main() -> None:
+    """High dynamic range imaging: photographs to a radiance map to a picture."""
+
+
+for command in (
+    lessons.demo,
+    lessons.lab,
+    photographs.assemble,
+    curves.calibrate,
+    maps.tonemap,
+    maps.compare,
+    maps.convert,
+    maps.info,
+):
+    main.add_command(command)

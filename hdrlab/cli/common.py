@@ -1,0 +1,53 @@
+"""What the commands share: kinds of options, progress, and text that becomes values."""
+
+from collections.abc import Iterable
+from pathlib import Path
+from typing import Any, TypeVar
+
+import click
+
+Item = TypeVar("Item")
+FILE = click.Path(path_type=Path)
+SUFFIXES = ".hdr, .exr or .pfm"
+CLEAN = click.option(
+    "--clean", is_flag=True, help="Take NaN and negative values for 0, infinite ones for the largest."
+)
+
+
+def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
+    """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
+    from tqdm import tqdm
+
+    return tqdm(items, what, total, leave=False, delay=1, disable=None)
+
+
+def size(E: Any) -> str:
+    """Return what a radiance map is, in words: its size and its decades."""
+    from hdrlab.capture.scenes import decades
+
+    return f"{E.shape[1]} x {E.shape[0]}, {decades(E):.1f} decades"
+
+
+def colour(text: str | None) -> tuple[int, int, int] | None:
+    """Return RRGGBB as three levels, or raise a ValueError; None passes."""
+    if text is None:
+        return None
+    try:
+        red, green, blue = bytes.fromhex(text.removeprefix("#"))
+    except ValueError:
+        raise ValueError(f"--mask: expected a colour as RRGGBB, such as 0000FF, got {text!r}") from None
+    return red, green, blue
+
+
+def knob(text: str) -> tuple[str, Any]:
+    """Return knob=value as a name and a number, a word, True, False or None."""
+    name, equals, value = text.partition("=")
+    if not equals or not name.isidentifier():
+        raise ValueError(f"--set: expected knob=value, such as key=0.36, got {text!r}")
+    if value in ("true", "false", "none"):
+        return name, {"true": True, "false": False, "none": None}[value]
+    try:
+        number = float(value)
+    except ValueError:
+        return name, value
+    return name, int(number) if value.lstrip("+-").isdigit() else number

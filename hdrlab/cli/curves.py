@@ -1,0 +1,162 @@
+"""The command that finds a camera's response, and what `assemble` needs to use one that was saved."""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from hdrlab.cli import common
+from hdrlab.core import catalogue
+
+if TYPE_CHECKING:
+    from hdrlab.pipeline import Assembly
+
+METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
+SUFFIXES = ".csv, .npz, .m (pfstools) or .luminance.csv (Luminance HDR)"
+
+
+class Response(click.ParamType):
+    """The name of a response method, or a file with a curve."""
+
+    name = "NAME|FILE"
+
+    def convert(self, value: Any, param: click.Parameter | None, ctx: click.Context | None) -> str | Path:
+        """Return a method's name as it is, and anything with the suffix of a curve as a path."""
+        names = ["auto", *catalogue.names("response")]
+        if value in names:
+            return str(value)
+        from hdrlab.io import curves
+
+        if str(value).lower().endswith(tuple(curves.FORMS)):
+            return Path(value)
+        self.fail(f"expected one of {', '.join(names)}, or a file: {SUFFIXES}; got {value!r}", param, ctx)
+
+
+def given(response: str | Path) -> str | Callable[..., Any]:
+    """Return what `pipeline.assemble` takes as response: a method's name, or a function with a saved curve."""
+    if isinstance(response, str):
+        return response
+    from hdrlab.io.curves import read_curve
+
+    g = read_curve(response)
+    return lambda *_, **__: g
+
+
+@click.command()
+@click.argument("photos", nargs=-1, required=True, type=common.FILE)
+@click.option("-o", "--out", multiple=True, type=common.FILE, help=f"Curve to write: {SUFFIXES}. Repeatable.")
+@click.option("--times", type=common.FILE, help="Exposure times, as for assemble.")
+@click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
+@click.option("--align", type=click.Choice([*catalogue.names("align"), "none"]), default="mtb")
+@click.option("--response", type=click.Choice([*METHODS, "all"]), default="debevec")
+@click.option("--plot", type=common.FILE, help="Picture of curve, band and residuals: .png or .svg.")
+@click.option("--rounds", type=click.IntRange(0), default=50, help="Of the bootstrap; 0 for no band.")
+@click.option("--seed", default=1, help="Of the bootstrap.")
+def calibrate(
+    photos: tuple[Path, ...],
+    out: tuple[Path, ...],
+    times: Path | None,
+    mask: str | None,
+    align: str,
+    response: str,
+    plot: Path | None,
+    rounds: int,
+    seed: int,
+) -> None:
+    """Find the camera's response in PHOTOS (files, or one folder), and how far it is to be trusted.
+
+    The table says at which levels exposure doubles. With --response all every method is tried: their curves
+    are compared, plotted over each other, and written with the method's name in the file's name.
+    """
+    from hdrlab import pipeline
+    from hdrlab.io import curves
+    from hdrlab.io import photos as files
+    from hdrlab.show import calibration
+
+    for path in out:
+        curves.suffix_of(path)  # an unknown suffix is better known before the work than after it
+    if plot:
+        calibration.check_suffix(plot)
+    bracket = files.read_bracket(
+        photos[0] if len(photos) == 1 else photos,
+        times,
+        mask=common.colour(mask),
+        progress=lambda paths: common.progress(paths, "reading"),
+    )
+    state = pipeline.aligned(bracket, align)
+    for said in (*state.notes, *state.doubts):
+        click.echo(f"note: {said}", err=True)
+    if response == "all":
+        _every(state, out, plot)
+    else:
+        _one(state, response, out, plot, rounds, seed)
+
+
+def _assembled(state: "Assembly", response: Any) -> "Assembly":
+    """Return the Assembly of an aligned bracket under a response."""
+    from hdrlab import pipeline
+
+    return pipeline.assemble(state.bracket, align="none", response=response)
+
+
+def _one(
+    state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None, rounds: int, seed: int
+) -> None:
+    from hdrlab.response import bootstrap, residuals
+    from hdrlab.show import calibration
+
+    images, times, names, valid, _ = state.bracket
+    assembly = _assembled(state, name)
+    g = assembly.g
+    for doubt in assembly.doubts:
+        click.echo(f"warning: {doubt}", err=True)
+    band = None
+    if rounds:
+        method = catalogue.method("response", name)
+        steps = bootstrap.bootstrap_steps(method, images, times, rounds=rounds, rng=seed, valid=valid)
+        band = bootstrap.band(common.progress(steps, "bootstrap", rounds))
+    r = residuals.residuals(images, times, g, valid=valid)
+    click.echo(f"{name}, from {len(times)} photographs")
+    click.echo("\n".join(calibration.summary(g, r, assembly.spread, names, band)))
+    _write(out, g)
+    if plot:
+        calibration.write_plot(plot, calibration.calibration(g, r, times, band=band, title=name))
+        click.echo(plot)
+
+
+def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
+    from hdrlab.core.errors import well_seen
+    from hdrlab.io import curves
+    from hdrlab.show import calibration
+
+    found = {}
+    for name in common.progress(METHODS, "methods"):
+        try:
+            found[name] = _assembled(state, name)
+        except ValueError as error:
+            click.echo(f"{name} refuses this bracket: {error}")
+    if not found:
+        raise ValueError("no method finds a response in this bracket")
+    g = {name: one.g for name, one in found.items()}
+    for name, one in found.items():
+        click.echo(f"{name:<12}{calibration.reach(one.g):6.2f} stops, frames agree to {one.spread:.3f} stops")
+    well = well_seen(state.bracket.images, state.bracket.valid)
+    click.echo("\nRMSE of exposure over the levels 10 to 250, percent of the largest, worst channel")
+    click.echo("\n".join(calibration.matrix(list(g), calibration.rmse(g))))
+    click.echo("\nradiance maps: median difference, stops")
+    maps = {name: one.E for name, one in found.items()}
+    click.echo("\n".join(calibration.matrix(list(g), calibration.apart(maps, well), 3)))
+    for name in g:
+        _write(tuple(curves.named(path, name) for path in out), g[name])
+    if plot:
+        calibration.write_plot(plot, calibration.overlay(g, title=f"{len(g)} methods on one bracket"))
+        click.echo(plot)
+
+
+def _write(out: tuple[Path, ...], g: Any) -> None:
+    from hdrlab.io import curves
+
+    for path in out:
+        curves.write_curve(path, g)
+        click.echo(path)

@@ -1,0 +1,35 @@
+"""Commands that begin with nothing: a demonstration, and the notebooks."""
+
+import sys
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common
+
+
+@click.command()
+@click.option("--out", type=common.FILE, default="hdrlab-demo", help="Folder for the results.")
+@click.option("--seed", default=1, help="Of noise and hand shake.")
+def demo(out: Path, seed: int) -> None:
+    """Photograph a room with a bright window, and assemble the photographs again."""
+    from hdrlab import demo as room
+
+    for line in common.progress(room.demo_steps(out, seed=seed), "demo", room.STEPS):
+        click.echo(line)
+
+
+@click.command()
+@click.option("--folder", type=common.FILE, default="hdrlab-notebooks", help="Your copy of the notebooks.")
+@click.option("--copy-only", is_flag=True, help="Copy the notebooks and do not start JupyterLab.")
+@click.argument("options", nargs=-1, type=click.UNPROCESSED)
+def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
+    """Open JupyterLab on a copy of the notebooks. What you changed in it stays; OPTIONS go to JupyterLab."""
+    import subprocess
+
+    from hdrlab.course import materials
+
+    new = materials.copy_notebooks(folder)
+    click.echo(f"{folder}: {len(new)} new notebooks")
+    if not copy_only:
+        sys.exit(subprocess.call([sys.executable, "-m", "jupyterlab", f"--notebook-dir={folder}", *options]))

@@ -1,0 +1,83 @@
+"""Commands that begin with a radiance map, or say what a file is."""
+
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common
+from hdrlab.core import catalogue
+
+
+@click.command()
+@click.argument("source", type=common.FILE)
+@click.option("-o", "--out", required=True, type=common.FILE, help="Picture to write: .png, .jpg or .tif.")
+@click.option("--operator", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
+@click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
+@click.option(
+    "--saturation", type=float, help="1 keeps the colours' ratios, 0 is gray.  [default: the operator's]"
+)
+@common.CLEAN
+def tonemap(
+    source: Path, out: Path, operator: str, knobs: tuple[str, ...], saturation: float | None, clean: bool
+) -> None:
+    """Make a picture of the radiance map SOURCE."""
+    from hdrlab import pipeline
+    from hdrlab.io import photos as files
+    from hdrlab.io import radiance
+    from hdrlab.io.terminal import elapsed
+
+    E = radiance.read_radiance(source, clean=clean)
+    settings = dict(common.knob(one) for one in knobs)
+    catalogue.check_knobs("tonemap", operator, settings)
+    with elapsed(operator):
+        files.write_picture(out, pipeline.develop(E, operator, saturation=saturation, **settings))
+    click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {operator}")
+
+
+@click.command()
+@click.argument("source", type=common.FILE)
+@click.option("-o", "--out", required=True, type=common.FILE, help="Contact sheet to write: .png.")
+@click.option("--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]")
+@click.option("--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see below.")
+@common.CLEAN
+def compare(source: Path, out: Path, operators: str | None, size: int, clean: bool) -> None:
+    """Make a contact sheet of the radiance map SOURCE under every operator, with time and quality.
+
+    The operators see the map at up to --size pixels along a side: time and quality are of that size.
+    """
+    from hdrlab.io import radiance
+    from hdrlab.show import contact, figures, sheet
+
+    sheet.check_suffix(out)
+    names = operators.replace(" ", "").split(",") if operators else catalogue.names("tonemap")
+    E = figures.fit(radiance.read_radiance(source, clean=clean), size)
+    entries = common.progress(contact.entry_steps(E, names), "comparing", len(names))
+    sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {common.size(E)}"))
+    click.echo(f"{out}: {len(names)} operators, {common.size(E)}")
+
+
+@click.command()
+@click.argument("source", type=common.FILE)
+@click.argument("target", type=common.FILE)
+@click.option("--half", is_flag=True, help="Half floats in .exr: half the size, values up to 65504.")
+@common.CLEAN
+def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
+    """Write the radiance map SOURCE in the format of TARGET: .hdr, .exr or .pfm."""
+    from hdrlab.io import radiance
+
+    E = radiance.read_radiance(source, clean=clean)
+    radiance.write_radiance(target, E, half=half)
+    click.echo(f"{target}: {common.size(E)}")
+
+
+@click.command()
+@click.argument("files", nargs=-1, required=True, type=common.FILE)
+def info(files: tuple[Path, ...]) -> None:
+    """Say what FILES are: radiance maps or photographs, their size, values and exposure."""
+    from hdrlab.io.describe import describe_file
+
+    for file in files:
+        said = describe_file(file)
+        click.echo(said.pop("file"))
+        for key, value in said.items():
+            click.echo(f"  {key:<12} {value}")

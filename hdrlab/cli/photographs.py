@@ -1,0 +1,87 @@
+"""Commands that begin with photographs."""
+
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common, curves
+from hdrlab.core import catalogue
+
+
+@click.command()
+@click.argument("photos", nargs=-1, required=True, type=common.FILE)
+@click.option(
+    "-o", "--out", required=True, type=common.FILE, help=f"Radiance map to write: {common.SUFFIXES}."
+)
+@click.option(
+    "--times", type=common.FILE, help="Exposure times: a CSV, or lines of `name 1/seconds`. Beats EXIF."
+)
+@click.option(
+    "--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture (borders of scans)."
+)
+@click.option("--align", type=click.Choice([*catalogue.names("align"), "none"]), default="mtb")
+@click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
+@click.option("--weight", type=click.Choice(["gaussian", "hat", "flat"]), default="gaussian")
+@click.option("--merge", type=click.Choice(["log", "likelihood", "mean", "shot"]), default="log")
+@click.option("--tonemap", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
+@click.option(
+    "--picture", type=common.FILE, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
+)
+@click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
+@click.option("--anyway", is_flag=True, help="Write the map even where the photographs put it in doubt.")
+def assemble(
+    photos: tuple[Path, ...],
+    out: Path,
+    times: Path | None,
+    mask: str | None,
+    tonemap: str,
+    picture: Path | None,
+    report: Path | None,
+    anyway: bool,
+    merge: str,
+    response: str | Path,
+    **methods: str,
+) -> None:
+    """Assemble PHOTOS (files, or one folder) into a radiance map.
+
+    Exposure comes from EXIF (time, ISO, f-number), or from --times.
+    """
+    from hdrlab import pipeline
+    from hdrlab.core.steps import last
+    from hdrlab.io import photos as files
+    from hdrlab.io import radiance
+
+    recover = curves.given(response)
+    radiance.format_of(out)  # an unknown suffix is better known before the work than after it
+    bracket = files.read_bracket(
+        photos[0] if len(photos) == 1 else photos,
+        times,
+        mask=common.colour(mask),
+        progress=lambda paths: common.progress(paths, "reading"),
+    )
+    methods["method"] = merge
+    assembly = last(
+        common.progress(
+            pipeline.assemble_steps(bracket, response=recover, **methods), "assembling", len(pipeline.STAGES)
+        )
+    )
+    for note in assembly.notes:
+        click.echo(f"note: {note}", err=True)
+    if assembly.doubts and not anyway:
+        raise ValueError(
+            "; ".join(assembly.doubts) + " (nothing was written; --anyway writes the map as it is)"
+        )
+    for doubt in assembly.doubts:
+        click.echo(f"warning: {doubt}", err=True)
+    radiance.write_radiance(out, assembly.E)
+    if picture or report:
+        rendered = pipeline.develop(assembly.E, tonemap)
+        if picture:
+            files.write_picture(picture, rendered)
+        if report:
+            from hdrlab.show.report import write_report
+
+            write_report(
+                report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": tonemap}
+            )
+    click.echo(f"{out}: {common.size(assembly.E)}, frames agree to {assembly.spread:.3f} stops")
