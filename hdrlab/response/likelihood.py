@@ -1,0 +1,120 @@
+"""How likely the levels of a bracket are, for a response, ratios and a noise: the model behind `marginal`.
+
+Z      pixel levels   (N, P), 0 ... 255: pixel i in frame q, frames from short to long
+f      polynomial     M -> exposure, f(0) = 0, f(1) = 1, coefficients c: see `polynomial`
+tau    ln exposures   (P,), of each frame over the longest, tau[-1] = 0
+sigma  noise          standard deviation of M at every brightness, before it is cut into levels
+x      nodes          (K,) brightnesses that a pixel may have in frame `at` (K,); p (K,) how often it does
+m      prediction     (P, K), brightness of node k in frame q
+
+Each pixel has an exposure that we do not know, and sum over:
+
+    P(Z_i) = sum_k p_k prod_q P(Z_iq | m_qk),     P(z | m) = mass of Normal(m, sigma) in the cell of level z.
+
+The end cells are open, so clamping and rounding are part of the model, and dark and clipped pixels say what
+they know instead of being cut.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import csr_array
+from scipy.special import ndtr
+
+from hdrlab.response.polynomial import basis, brightness, slope, value
+
+Float = NDArray[np.float64]
+Index = NDArray[np.intp]
+EDGES = np.concatenate([[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]])  # of the levels' cells, in M
+STRAY = 1e-12  # probability of a level that the noise does not explain: a pixel that moved pulls at nothing
+
+
+class Nodes(NamedTuple):
+    """Brightness x (K,) in frame `at` (K,): an exposure each, which moves with c and tau."""
+
+    x: Float
+    at: Index
+
+
+class Support(NamedTuple):
+    """The nodes worth a thought. Pixel i has k[start[i] : start[i + 1]]; levels (P, ...) are its Z there."""
+
+    start: Index
+    k: Index
+    levels: Index
+
+
+def nodes(c: Float, tau: Float, count: int) -> Nodes:
+    """Return `count` nodes evenly over the brightness of the longest frame; where it clips, of the next, ...
+
+    So p and the response hardly disturb each other: a frame's own levels say much of p, and nothing of f.
+    """
+    x = (np.arange(count) + 0.5) / count
+    clipped_next = np.append(np.exp(tau[:-1] - tau[1:]), 0)  # exposure from which only this frame is left
+    own = [x[value(x, c) > least] for least in clipped_next]
+    return Nodes(np.concatenate(own), np.repeat(np.arange(len(own)), [len(one) for one in own]))
+
+
+def predict(c: Float, tau: Float, at: Nodes) -> tuple[Float, Float]:
+    """Return m = f^-1(e_q / e_at f(x)), (P, K), and its derivatives by (c, tau[:-1]), (P, K, A - 1).
+
+    f(m) = rho f(x) gives f'(m) dm = (rho b_n(x) - b_n(m)) dc_n + rho f(x) d ln rho. Clipped, m stays.
+    """
+    order, P = len(c) + 1, len(tau)
+    rho = np.exp(tau[:, None] - tau[at.at])
+    X = rho * value(at.x, c)
+    m = brightness(X, c)
+    dc = rho[..., None] * basis(at.x, order) - basis(m, order)
+    own = np.arange(P)[:, None] == np.arange(P - 1)
+    dtau = X[..., None] * (own[:, None, :].astype(float) - own[at.at])
+    return m, np.where(X < 1, 1 / slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)
+
+
+def masses(m: Float, sigma: float) -> tuple[Float, Float, Float]:
+    """Return P(z | m) (P, K, 256), and the derivatives of its logarithm by m and by ln sigma."""
+    u = (EDGES - m[..., None]) / sigma
+    bell = np.exp(-(u**2) / 2) / np.sqrt(2 * np.pi)
+    P = np.diff(ndtr(u)) + STRAY
+    tilt = bell * np.where(np.isfinite(u), u, 0)
+    return P, -np.diff(bell) / (sigma * P), -np.diff(tilt) / P
+
+
+def support(Z: Index, P: Float, *, least: float = 1e-7, block: int = 1000) -> Support:
+    """Return for each pixel the nodes with at least that fraction of its best node's likelihood."""
+    tables = P.swapaxes(1, 2).astype(np.float32)  # (P, 256, K): a pixel's likelihood is a product of rows
+    kept = []
+    for z in np.split(Z, range(block, len(Z), block)):
+        likelihood = np.prod([table[levels] for table, levels in zip(tables, z.T, strict=True)], axis=0)
+        kept.append(likelihood > least * likelihood.max(axis=1, keepdims=True))
+    counts = np.concatenate([one.sum(axis=1) for one in kept])
+    k = np.concatenate([one.nonzero()[1] for one in kept])
+    return Support(np.append(0, np.cumsum(counts)), k, np.repeat(Z, counts, axis=0).T)
+
+
+def posterior(P: Float, p: Float, near: Support) -> tuple[Float, Float]:
+    """Return ln P(Z_i) (N,) and each supporting node's share of it, p_k prod_q P(Z_iq | m_qk) / P(Z_i)."""
+    joint = p[near.k]
+    for q in range(len(P)):
+        joint = joint * P[q][near.k, near.levels[q]]
+    total = np.add.reduceat(joint, near.start[:-1])
+    return np.log(total), joint / np.repeat(total, np.diff(near.start))
+
+
+def scores(weights: Float, near: Support, J: Float, dm: Float, ds: Float) -> Float:
+    """Return the derivatives of ln P(Z_i) by (c, tau[:-1], ln sigma), (N, A).
+
+    Fisher's identity: the derivative for a known node, averaged over the nodes by their shares.
+    """
+    shape = len(near.start) - 1, J.shape[1]
+    S = np.zeros((shape[0], J.shape[2] + 1))
+    for q in range(len(J)):
+        at = near.k, near.levels[q]
+        S[:, :-1] += csr_array((weights * dm[q][at], near.k, near.start), shape=shape) @ J[q]
+        S[:, -1] += np.add.reduceat(weights * ds[q][at], near.start[:-1])
+    return S
+
+
+def density(weights: Float, near: Support, count: int) -> Float:
+    """Return p_k, the mean over the pixels of node k's shares: the step of EM."""
+    return np.bincount(near.k, weights, count) / (len(near.start) - 1)

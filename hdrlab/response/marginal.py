@@ -1,0 +1,235 @@
+"""Self-calibration by marginal maximum likelihood: the same camera as in `mitsunaga`, every pixel as it is.
+
+Z      pixel levels   (N, P), 0 ... 255: pixel i in frame q, frames from short to long
+c      coefficients   (order - 1,) of the polynomial f: see `polynomial`
+R      ratios         (P - 1,), exposure of frame q over that of frame q + 1
+sigma  noise          standard deviation of brightness, 0 ... 1
+theta  unknowns       (A,) = (c, tau[:-1], ln sigma), tau the ln exposures over the longest
+p      density        (K,), how often a pixel has which exposure: see `likelihood`
+s      scores         (N, A), derivatives of ln P(Z_i) by theta
+
+The turns of `mitsunaga` take each M for exact on both sides of eq. 5. But f(M) errs by the noise of M times
+the slope of f, and pixels chosen by their own value are chosen by their own noise; both tilt the valley of
+the u-ambiguity, and no stop can mend that. Here the exposure of a pixel is integrated over, the noise is
+part of the model, and nothing is cut or averaged. Steps of EM for p and of Fisher scoring for theta take
+turns, from where `mitsunaga` stopped.
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_mask, as_stack, describe
+from hdrlab.core.bracket import short_to_long
+from hdrlab.core.sampling import by_grid
+from hdrlab.core.steps import last
+from hdrlab.response import mitsunaga
+from hdrlab.response.likelihood import (
+    Nodes,
+    Support,
+    density,
+    masses,
+    nodes,
+    posterior,
+    predict,
+    scores,
+    support,
+)
+from hdrlab.response.pairs import HIGHEST
+from hdrlab.response.polynomial import GRID, rising, slope
+
+Float = NDArray[np.float64]
+Index = NDArray[np.intp]
+LEAST = 2e-3  # slope of f
+FINEST = 2e-3  # sigma, half a level: below it the nodes stand too far apart
+
+
+class State(NamedTuple):
+    """After a step: c (order - 1,), R (P - 1,), sigma, log-likelihood, and the gain the step promised."""
+
+    c: Float
+    R: Float
+    sigma: float
+    likelihood: float
+    promise: float
+
+
+class Task(NamedTuple):
+    """What stays while theta climbs: nodes, their support, and a prior on theta with its stiffness (A, A)."""
+
+    at: Nodes
+    near: Support
+    prior: Float
+    stiffness: Float
+
+
+class Point(NamedTuple):
+    """Unknowns theta (A,), the log-likelihood there, the shares of the supporting nodes, scores (N, A)."""
+
+    theta: Float
+    likelihood: float
+    weights: Float
+    scores: Float
+
+
+def unpack(theta: Float, frames: int) -> tuple[Float, Float, float]:
+    """Return c, tau and sigma of theta."""
+    cut = len(theta) - frames
+    return theta[:cut], np.append(theta[cut:-1], 0), float(np.exp(theta[-1]))
+
+
+def evaluate(theta: Float, p: Float, task: Task) -> Point:
+    """Return the Point at theta for a density p."""
+    c, tau, sigma = unpack(theta, len(task.near.levels))
+    m, J = predict(c, tau, task.at)
+    P, dm, ds = masses(m, sigma)
+    ln, weights = posterior(P, p, task.near)
+    penalty = ((theta - task.prior) @ task.stiffness @ (theta - task.prior)) / 2
+    return Point(theta, float(ln.sum() - penalty), weights, scores(weights, task.near, J, dm, ds))
+
+
+def stiffness(A: int, frames: int, trust: float) -> Float:
+    """Return the (A, A) matrix that says: each ln R has its prior, with standard deviation `trust`."""
+    D = np.zeros((frames - 1, A))
+    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(
+        frames - 1, frames, 1
+    )  # ln R_q = tau_q - tau_q+1
+    D[:, -1] = 0  # where ln sigma stands, for tau of the longest frame is 0
+    return D.T @ D / trust**2
+
+
+def ascend(here: Point, task: Task) -> tuple[Point, float]:
+    """Return the Point after a step of Fisher scoring, and the gain in log-likelihood that it promised.
+
+    The step is F^-1 s, with s the sum of the scores and F = sum s_i s_i^T, the information in the pixels,
+    both with the prior's share. It is halved until f rises everywhere and the likelihood does.
+    """
+    s = here.scores.sum(axis=0) - task.stiffness @ (here.theta - task.prior)
+    F = here.scores.T @ here.scores + task.stiffness
+    step = np.linalg.solve(F + 1e-9 * np.diag(np.diag(F)) + 1e-12 * np.eye(len(F)), s)
+    p = density(here.weights, task.near, len(task.at.x))
+    for half in range(12):
+        theta = here.theta + step / 2**half
+        theta[-1] = max(theta[-1], np.log(FINEST))
+        if slope(GRID, unpack(theta, len(task.near.levels))[0]).min() >= LEAST:
+            there = evaluate(theta, p, task)
+            if there.likelihood >= here.likelihood:
+                return there, float(s @ step)
+    return here, 0.0
+
+
+def begin(Z: Index, theta: Float, count: int, blur: float) -> tuple[Nodes, Support, Float]:
+    """Return nodes, their support under `blur` times the noise, and p after five steps of EM."""
+    c, tau, sigma = unpack(theta, Z.shape[1])
+    at = nodes(c, tau, count)
+    m = predict(c, tau, at)[0]
+    near = support(Z, masses(m, blur * sigma)[0])
+    P, p = masses(m, sigma)[0], np.full(len(at.x), 1 / len(at.x))
+    for _ in range(5):
+        p = density(posterior(P, p, near)[1], near, len(p))
+    return at, near, p
+
+
+def fit_steps(
+    Z: ArrayLike,
+    c: ArrayLike,
+    R: ArrayLike,
+    *,
+    stated: ArrayLike | None = None,
+    trust: float = np.inf,
+    sigma: float = 0.005,
+    count: int = 400,
+    enough: float = 0.01,
+    most: int = 30,
+) -> Iterator[State]:
+    """Yield the State after each step from c and R on, until a step promises less than `enough`.
+
+    Twice: first with a wide support, for theta is far; then with nodes and support where it has come to.
+    Each ln R is drawn to the `stated` one (R itself by default) as to a measurement with error `trust`.
+    """
+    Z, c, R = np.asarray(Z), np.asarray(c, dtype=np.float64), np.asarray(R, dtype=np.float64)
+    stated = R if stated is None else np.asarray(stated, dtype=np.float64)
+    if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
+        raise ValueError(f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}")
+    theta, prior = (np.r_[rising(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(sigma)] for r in (R, stated))
+    stiff = stiffness(len(theta), Z.shape[1], trust)
+    for blur in (3.0, 2.0):
+        at, near, p = begin(Z, theta, count, blur)
+        task = Task(at, near, prior, stiff)
+        here = evaluate(theta, p, task)
+        for _ in range(most):
+            here, promise = ascend(here, task)
+            theta = here.theta
+            own, tau, noise = unpack(theta, Z.shape[1])
+            yield State(own, np.exp(tau[:-1] - tau[1:]), noise, here.likelihood, promise)
+            if promise < enough:
+                break
+
+
+def fit(Z: ArrayLike, c: ArrayLike, R: ArrayLike, **knobs: Any) -> State:
+    """Return the last State of `fit_steps`."""
+    return last(fit_steps(Z, c, R, **knobs))
+
+
+def calibrate(
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    order: int = HIGHEST,
+    trust: float = 0.005,
+    pixels: int = 10_000,
+    valid: ArrayLike | None = None,
+) -> list[State]:
+    """Return the last State of each channel of a bracket, starting where `mitsunaga` stops.
+
+    For cameras that are polynomials of this order. It is no `recover`: for others, the misfit costs more
+    than the noise that it takes care of, and `mitsunaga` comes nearer; and it takes seconds a channel.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs, aligned; 16 bits are read at 256 levels.
+    times : (P,) float
+        Exposure times in seconds, at least two different ones.
+    order : int
+        Of the polynomial.
+    trust : float
+        How far the ratios may be from those of the times, as a standard deviation of ln R. Where no
+        polynomial is the camera, its misfit tilts the valley as noise did: then the times know better.
+    pixels : int
+        How many to take, on an even grid.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Returns
+    -------
+    list of State
+        One a channel; `polynomial.curve(state.c)` is the response g.
+
+    Raises
+    ------
+    ValueError
+        For fewer than two photographs or two times, or photographs that share no levels worth using.
+
+    References
+    ----------
+    The model is that of Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999; the estimator is ours.
+
+    Examples
+    --------
+    >>> ramp = np.linspace(1, 100, 2500).reshape(50, 50)  # a linear camera
+    >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
+    >>> state = calibrate(images, [0.01, 0.02, 0.04], order=2)[0]
+    >>> from hdrlab.response.polynomial import curve
+    >>> bool(abs(curve(state.c)[200] - np.log(200 / 128)) < 0.01)
+    True
+    """
+    start = mitsunaga.calibrate(images, times, order=order, valid=valid)
+    stack, times = as_stack(images), np.asarray(times, dtype=np.float64)
+    by_time = short_to_long(stack, times)
+    Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
+    stated = times[by_time][:-1] / times[by_time][1:]
+    channels = zip(np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0), start.c, strict=True)
+    return [fit(own, c, start.R, stated=stated, trust=trust) for own, c in channels]

@@ -1,0 +1,87 @@
+"""Responses as polynomials, in a basis that stays well conditioned (Mitsunaga and Nayar, CVPR 1999, sec. 3).
+
+M    brightness     0 ... 1: pixel level over the highest one
+X    exposure       0 ... 1, where 1 just reaches the highest level
+f    M -> X         the inverse response: f(0) = 0, f(1) = 1, rising
+N    order          of the polynomial
+c    coefficients   (N - 1,)
+b_n  basis          M (1 - M) T_n(2 M - 1), n = 0 ... N - 2, with T_n the Chebyshev polynomials
+
+f(M) = M + sum_n c_n b_n(M). Every polynomial of order N through (0, 0) and (1, 1) can be written so, and no
+other can: the scale of eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of
+eq. 3 are so alike that at N = 10 their normal equations lose all digits; these b_n swing, and keep most.
+"""
+
+import numpy as np
+from numpy.polynomial.chebyshev import chebder, chebvander
+from numpy.typing import ArrayLike, NDArray
+
+Float = NDArray[np.float64]
+GRID = np.linspace(0, 1, 2049)
+
+
+def basis(M: ArrayLike, order: int) -> Float:
+    """Return b_n(M), (..., N - 1)."""
+    M = np.asarray(M, dtype=np.float64)
+    return (M * (1 - M))[..., None] * _chebyshev(M, order)
+
+
+def value(M: ArrayLike, c: ArrayLike) -> Float:
+    """Return f(M) = M + sum_n c_n b_n(M) [Mitsunaga99 eq. 3]."""
+    M, c = np.asarray(M, dtype=np.float64), np.asarray(c, dtype=np.float64)
+    return np.asarray(M + basis(M, len(c) + 1) @ c)
+
+
+def slope(M: ArrayLike, c: ArrayLike) -> Float:
+    """Return f'(M), by the product rule."""
+    M, c = np.asarray(M, dtype=np.float64), np.asarray(c, dtype=np.float64)
+    order = len(c) + 1
+    T = _chebyshev(M, order) @ c
+    dT = 2 * _chebyshev(M, order) @ np.r_[chebder(c), 0][: len(c)] if len(c) > 1 else 0.0
+    return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)
+
+
+def _chebyshev(M: Float, order: int) -> Float:
+    return np.asarray(chebvander(2 * M - 1, max(order - 2, 0))[..., : order - 1], dtype=np.float64)
+
+
+def brightness(X: ArrayLike, c: ArrayLike) -> Float:
+    """Return M = f^-1(X) of a rising f, read off a fine grid; 1 for exposures beyond 1, which clip."""
+    return np.interp(np.asarray(X), value(GRID, c), GRID)
+
+
+def rising(c: ArrayLike, *, least: float = 0.01) -> Float:
+    """Return c drawn towards 0, the straight line, just so far that f' >= least everywhere.
+
+    Drawn by s, f' becomes 1 + s (f' - 1).
+    """
+    c = np.asarray(c, dtype=np.float64)
+    lowest = slope(GRID, c).min()
+    return c if lowest >= least else c * (1 - least) / (1 - lowest)
+
+
+def curve(c: ArrayLike, n: int = 256, *, least: float = 1e-4) -> Float:
+    """Return g = ln f (n,), g[n // 2] = 0, where f climbs by at least `least` / (n - 1) from level to level.
+
+    A polynomial may dip where no pixel held it; a g that falls has no inverse, and f / f' would change its
+    sign. The clamp acts on the increments, so the curve keeps its shape wherever it rises. Level 0 holds what
+    is darker than half a level; it gets the middle of that.
+    """
+    M = np.arange(n) / (n - 1)
+    f = np.concatenate([[0], np.cumsum(np.maximum(np.diff(value(M, c)), least / (n - 1)))])
+    f[0] = f[1] / 4
+    return np.log(f / f[n // 2])
+
+
+def random(rng: np.random.Generator, *, order: int = 5, least: float = 0.02) -> Float:
+    """Return c of a rising curve drawn at random.
+
+    Powers M ... M^N get coefficients uniform in -1 ... 1, scaled to f(1) = 1; drawn again until f' >= least.
+    """
+    n = np.arange(1, order + 1)
+    while True:
+        a = rng.uniform(-1, 1, order)
+        if np.min(GRID[:, None] ** (n - 1) @ (n * a / a.sum())) >= least:
+            break
+    at = (np.arange(order - 1) + 0.5) / (order - 1)  # N - 1 points fix the N - 1 numbers c
+    return np.asarray(np.linalg.solve(basis(at, order), at[:, None] ** n @ (a / a.sum()) - at))
