@@ -206,7 +206,7 @@ def test_what_makes_no_map_is_refused(images, times, knobs, said):
 
 
 def test_an_unknown_operator_or_light_that_is_none_makes_no_picture(room):
-    with pytest.raises(ValueError, match="method of tonemap out of curves, .*reinhard"):
+    with pytest.raises(ValueError, match="method of tonemap out of .*curves.*reinhard"):
         develop(room, "magic")
     with pytest.raises(ValueError, match="1 NaN"):
         develop(np.array([[1.0, np.nan]]))

@@ -1,0 +1,187 @@
+"""How much longer was the next frame? Exposure ratios of a linear camera (Cerman and Hlavac 2006, sec. 5).
+
+h     histograms        (n,) of a darker frame A and a brighter one B
+T     transfer          (n,), the level in B of what has level m in A, and back: see `core.transfer`
+k     exposure ratio    t_B / t_A > 1
+x, y  equations         y = k x, with weights v: the square roots of the histogram's shares
+V     mean square error of the equations in use
+
+A linear camera's level is its exposure, so T is a straight line through 0, and its slope is k. Each level of
+A gives an equation k m = T(m), each level of B gives z = k T^-1(z). Ranks alone make T: the frames need not
+be aligned, and no time need be known. Rounds throw out equations that miss by much more than the rest.
+
+Two schemes differ in where they read the ranks. The paper's takes a level's cumulated count for the level's
+own, though it belongs to the level's upper edge; so for a true ratio of 4 its pairs lie on T = 4 m + 1.5. The
+corrected one takes the middle of each step, stays away from the noise of the darkest levels, and keeps more
+equations: a limit of 3 V drops good ones.
+"""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core import transfer
+from hdrlab.core.arrays import Array, as_mask, as_stack, levels
+from hdrlab.core.steps import last
+
+Float = NDArray[np.float64]
+SATURATED = 0.98  # of the top level: above, noise hides clipped pixels
+FEWEST = 8  # levels of the darker frame that the brighter one must show, too
+
+
+class Scheme(NamedTuple):
+    """How ranks become equations: the transfer, the lowest levels (of 256), and outliers beyond limit V."""
+
+    transfer: transfer.Transfer
+    dark: float
+    bright: float
+    limit: float
+
+
+SCHEMES = {
+    "paper": Scheme(transfer.literal, 1, 1, 3.0),
+    "mid-step": Scheme(transfer.mid_step, 16, 64, 9.0),
+}
+
+
+class Equations(NamedTuple):
+    """y = k x with weights v, each (K,): first those of A's levels, then those of B's."""
+
+    x: Float
+    y: Float
+    v: Float
+
+
+class State(NamedTuple):
+    """The ratio k after a round, which equations (K,) were in use, and their mean square error V."""
+
+    k: float
+    used: NDArray[np.bool_]
+    V: float
+
+
+def equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") -> Equations:
+    """Return k m = T(m) and z = k T^-1(z), weighted by the square roots of histograms [Cerman06 eq. 4].
+
+    Levels are those of 256, whatever the depth.
+    """
+    if scheme not in SCHEMES:
+        raise ValueError(f"expected a scheme out of {', '.join(SCHEMES)}, got {scheme!r}")
+    how, h_A, h_B = SCHEMES[scheme], np.asarray(h_A, np.float64), np.asarray(h_B, np.float64)
+    n = len(h_A)
+    level, top = np.arange(n) * (255 / (n - 1)), 255 * SATURATED
+    T, back = how.transfer(h_A, h_B) * (255 / (n - 1)), how.transfer(h_B, h_A) * (255 / (n - 1))
+    a = (h_A > 0) & (level >= how.dark) & (T >= how.bright) & (T < top)  # NaN is neither
+    b = (h_B > 0) & (level >= how.bright) & (level < top) & (back >= how.dark)
+    v = np.sqrt(np.concatenate([h_A[a] / h_A.sum(), h_B[b] / h_B.sum()]))
+    return Equations(np.concatenate([level[a], back[b]]), np.concatenate([T[a], level[b]]), v)
+
+
+def overlap(found: Equations) -> int:
+    """Return how many levels (of 256) of the darker frame have a place in the brighter one."""
+    return len(np.unique(np.round(found.x)))
+
+
+def solve(found: Equations, used: NDArray[np.bool_]) -> float:
+    """Return k of least squares, sum v^2 x y / sum v^2 x^2."""
+    v2 = found.v[used] ** 2
+    return float(np.sum(v2 * found.x[used] * found.y[used]) / np.sum(v2 * found.x[used] ** 2))
+
+
+def square_errors(found: Equations, k: float) -> Float:
+    """Return (v (y - k x))^2 of all equations."""
+    return (found.v * (found.y - k * found.x)) ** 2
+
+
+def ratio_steps(
+    found: Equations, *, limit: float = 9.0, tolerance: float = 1e-6, rounds: int = 100
+) -> Iterator[State]:
+    """Yield the State of the first solution, of all equations, and after each round without outliers."""
+    used = np.ones(len(found.x), bool)
+    k = solve(found, used)
+    yield State(k, used, float(np.mean(square_errors(found, k))))
+    for _ in range(rounds):
+        errors = square_errors(found, k)
+        used = errors <= limit * np.mean(errors[used])
+        k, before = solve(found, used), k
+        yield State(k, used, float(np.mean(square_errors(found, k)[used])))
+        if abs(k - before) < tolerance:
+            return
+
+
+def ratio(A: ArrayLike, B: ArrayLike, *, scheme: str = "mid-step") -> float:
+    """Return how much longer than A frame B was exposed; the parameters are those of `ratios`."""
+    return float(ratios(as_stack([A, B]), scheme=scheme)[0])
+
+
+def ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | None = None) -> Float:
+    """Return the exposure ratios of a linear camera's photographs from their histograms.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs of the same light, not necessarily aligned, each pixel proportional to exposure.
+    scheme : {"mid-step", "paper"}
+        The corrected scheme, or Cerman and Hlavac's.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Returns
+    -------
+    (P - 1,) float64
+        Exposure of each frame over that of the one before: below 1 where it is the darker one.
+
+    Raises
+    ------
+    ValueError
+        For frames that do not overlap in brightness, and for arrays that are no stack of photographs.
+
+    References
+    ----------
+    Cerman and Hlavac, Exposure time estimation for high dynamic range imaging with hand held camera, 2006.
+
+    Examples
+    --------
+    >>> light = np.random.default_rng(0).uniform(0, 250, (200, 200))
+    >>> images = np.round(light * np.array([0.25, 1])[:, None, None]).astype(np.uint8)
+    >>> images[1] = images[1, ::-1]  # upside down
+    >>> bool(abs(ratios(images) - 4).max() < 0.01)
+    True
+    """
+    stack = as_stack(images)
+    if len(stack) < 2:
+        raise ValueError(f"expected at least two photographs, got {len(stack)}")
+    mask = as_mask(valid, stack)
+    shown = slice(None) if mask is None else mask.all(axis=0)
+    h = [
+        [transfer.histogram(Z, levels(stack)) for Z in frame[shown].reshape(-1, stack[0, 0, 0].size).T]
+        for frame in stack
+    ]
+    return np.array([_between(a, b, scheme) for a, b in pairwise(h)])
+
+
+def _between(h_A: list[Array], h_B: list[Array], scheme: str) -> float:
+    """Return k of two frames from their channels' histograms: all channels have the same one."""
+    if _mean(h_A) > _mean(h_B):
+        return 1 / _between(h_B, h_A, scheme)
+    parts = [equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
+    found = Equations._make(np.concatenate(column) for column in zip(*parts, strict=True))
+    if overlap(found) < FEWEST:
+        raise ValueError(
+            f"expected frames that overlap in brightness, by {FEWEST} levels of the darker one, "
+            f"got an overlap of {overlap(found)}"
+        )
+    return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k
+
+
+def _mean(h: list[Array]) -> float:
+    """Return the mean level of a frame."""
+    return float(np.sum(h, axis=0) @ np.arange(len(h[0])))
+
+
+def times(k: ArrayLike) -> Float:
+    """Return each frame's exposure over the first one's (P,): t_1 = 1, t_j+1 = k_j t_j [Cerman06 sec. 5]."""
+    return np.cumprod(np.concatenate([[1.0], np.asarray(k, np.float64)]))

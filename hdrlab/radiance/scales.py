@@ -1,0 +1,76 @@
+"""What a response leaves open: units of exposure and of colours (Mitsunaga and Nayar 1999, sec. 6.3 and 6.4).
+
+t   exposure times        (P,), seconds
+M   measured brightness   (N, 3), 0 ... 1
+I   radiance              (N, 3), each channel in a unit of its own
+k   channel scales        (3,), k_green = 1
+
+Each channel's response is known up to a factor, and so is the radiance: a picture recovered channel by
+channel has a tint that no photograph had. If the camera, whatever its curve, kept the chromaticity of what it
+saw, then k I must point along M, for all pixels together.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import least_squares
+
+from hdrlab.core.arrays import describe
+
+Float = NDArray[np.float64]
+
+
+def scaled_exposures(times: ArrayLike) -> Float:
+    """Return t / mean(t), so that radiance is in the unit of a mean exposure [Mitsunaga99 sec. 6.3]."""
+    t = np.asarray(times, np.float64)
+    if t.ndim != 1 or len(t) == 0 or not np.all(np.isfinite(t) & (t > 0)):
+        raise ValueError(f"expected positive exposure times (P,), got {describe(t)}")
+    return t / t.mean()
+
+
+def chromaticity(M: ArrayLike) -> Float:
+    """Return M / |M|, (..., 3)."""
+    M = np.asarray(M, np.float64)
+    return M / np.linalg.norm(M, axis=-1, keepdims=True)
+
+
+def channel_scales(I: ArrayLike, M: ArrayLike) -> Float:  # noqa: E741
+    """Return k that brings k I nearest to the direction of M, by least squares [Mitsunaga99 sec. 6.4].
+
+    Parameters
+    ----------
+    I : (..., 3) float
+        Radiance as recovered, positive.
+    M : (..., 3) float
+        What a photograph shows of it, any unit, positive; leave out pixels that are black or clipped.
+
+    Returns
+    -------
+    (3,) float64
+        k, which minimises sum |k I / |k I| - M / |M||^2; k[1] = 1, as only the ratios are fixed.
+
+    Raises
+    ------
+    ValueError
+        For arrays that do not fit together, or are not positive.
+
+    Examples
+    --------
+    >>> M = np.random.default_rng(0).uniform(0.1, 1, (100, 3))
+    >>> channel_scales(M * [2, 5, 4], M).round(6)
+    array([2.5 , 1.  , 1.25])
+    """
+    I, M = np.asarray(I, np.float64), np.asarray(M, np.float64)  # noqa: E741
+    if I.shape != M.shape or I.shape[-1:] != (3,) or I.size == 0:
+        raise ValueError(
+            f"expected radiance and brightness (..., 3) alike, got {describe(I)} and {describe(M)}"
+        )
+    if not (np.all(np.isfinite(I) & (I > 0)) and np.all(np.isfinite(M) & (M > 0))):
+        raise ValueError(f"expected positive radiance and brightness, got {describe(I)} and {describe(M)}")
+    I, target = I.reshape(-1, 3), chromaticity(M.reshape(-1, 3))  # noqa: E741
+    first = np.median(np.log(target / I), axis=0)
+
+    def misses(ln_k: Float) -> Float:
+        return (chromaticity(I * np.exp([ln_k[0], 0, ln_k[1]])) - target).ravel()
+
+    ln_k = least_squares(misses, (first - first[1])[[0, 2]]).x
+    return np.exp([ln_k[0], 0.0, ln_k[1]])

@@ -1,0 +1,114 @@
+"""Units of exposure and of colours, and the weight of signal over noise."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.capture import responses
+from hdrlab.core import weights
+from hdrlab.radiance import scales
+
+
+@given(st.lists(st.floats(1e-4, 30), min_size=1, max_size=9))
+def test_scaled_exposures_have_the_mean_1_and_the_same_ratios(times):
+    t = scales.scaled_exposures(times)
+    assert np.isclose(t.mean(), 1) and np.allclose(t / t[0], np.array(times) / times[0])
+
+
+@pytest.mark.parametrize("times", [[], [1, 0], [1, -1], [1, np.nan], [[1, 2]]])
+def test_what_are_no_times_is_refused(times):
+    with pytest.raises(ValueError, match="positive exposure times"):
+        scales.scaled_exposures(times)
+
+
+@given(seed=st.integers(0, 99), red=st.floats(0.05, 20), blue=st.floats(0.05, 20))
+def test_the_scales_that_were_taken_off_are_found(seed, red, blue):
+    M = np.random.default_rng(seed).uniform(0.05, 1, (200, 3))
+    assert np.allclose(scales.channel_scales(M / [red, 1, blue], M), [red, 1, blue], rtol=1e-4)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_no_neighbour_of_the_scales_fits_better(seed):
+    rng = np.random.default_rng(seed)
+    M = rng.uniform(0.05, 1, (300, 3))
+    light = M**2.2 * [3.0, 1.0, 0.4] * np.exp(rng.normal(0, 0.1, M.shape))
+
+    def misfit(k):
+        return np.sum((scales.chromaticity(k * light) - scales.chromaticity(M)) ** 2)
+
+    k = scales.channel_scales(light, M)
+    for step in ([1.01, 1, 1], [0.99, 1, 1], [1, 1, 1.01], [1, 1, 0.99]):
+        assert misfit(k) < misfit(k * step)
+
+
+def test_pixels_of_any_brightness_count_alike_and_any_shape_serves():
+    rng = np.random.default_rng(0)
+    M = rng.uniform(0.2, 1, (6, 7, 3))
+    light = M * [2.0, 1, 0.5] * np.exp(rng.normal(0, 0.1, M.shape))
+    k = scales.channel_scales(light, M)
+    brighter = np.exp(rng.normal(0, 2, (6, 7, 1)))
+    assert np.allclose(scales.channel_scales(light * brighter, M / brighter), k, rtol=1e-5)
+    assert np.allclose(scales.channel_scales(light.reshape(-1, 3), M.reshape(-1, 3)), k)
+
+
+def test_grays_stay_gray():
+    """A neutral pixel fixes the scales: the middles of three curves that saw white light are white."""
+    k = scales.channel_scales([[0.2, 0.4, 0.8]], [[0.5, 0.5, 0.5]])
+    assert np.allclose(k, [2, 1, 0.5], rtol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("light", "M"),
+    [
+        (np.ones((4, 3)), np.ones((5, 3))),
+        (np.ones((4, 2)), np.ones((4, 2))),
+        (np.zeros((4, 3)), np.ones((4, 3))),
+        (np.ones((4, 3)), np.full((4, 3), np.nan)),
+        (np.ones((0, 3)), np.ones((0, 3))),
+    ],
+)
+def test_what_has_no_chromaticity_is_refused(light, M):
+    with pytest.raises(ValueError, match="expected"):
+        scales.channel_scales(light, M)
+
+
+# The weight f / f'
+
+
+@pytest.mark.parametrize("n", [256, 65536])
+@pytest.mark.parametrize("gamma", [0.5, 1.0, 2.2])
+def test_of_a_power_the_weight_is_the_level(gamma, n):
+    """f = M^gamma: f / f' = M / gamma, and gamma goes with the scale."""
+    g = gamma * np.log(np.maximum(np.arange(n), 0.25) / (n // 2))
+    w = weights.snr(g)
+    inner = slice(n // 12, n - 8)
+    assert np.allclose(w[inner], np.arange(n)[inner] / (n // 2), rtol=0.02)
+    assert w[0] == w[-1] == 0 and np.isclose(w[n // 2], 1)
+
+
+@pytest.mark.parametrize("name", sorted(responses.RESPONSES))
+def test_the_weight_is_the_noises_effect_upside_down(name):
+    """Noise of one level changes ln f by f' / f: weight times that is even over the levels."""
+    g = responses.true_g(name)
+    even = weights.snr(g)[20:240] * np.gradient(g)[20:240]
+    assert np.ptp(even) < 0.1 * even.mean()
+
+
+def test_where_a_curve_is_level_the_weight_stays_finite_and_positive():
+    g = responses.true_g("film").copy()
+    g[250:], g[60:75] = g[250], g[60]
+    w = weights.snr(g)
+    assert np.all(np.isfinite(w)) and np.all(w[1:-1] > 0)
+
+
+def test_colours_share_one_weight_and_the_unit_of_exposure_is_no_matter():
+    g = responses.true_g("film")
+    assert np.allclose(weights.snr(np.stack([g] * 3, axis=-1)), weights.snr(g))
+    assert np.allclose(weights.snr(g + 5), weights.snr(g))
+
+
+@pytest.mark.parametrize("g", [np.zeros(256), np.full(256, np.nan), np.zeros((2, 2, 2)), -np.arange(256.0)])
+def test_what_is_no_response_is_refused(g):
+    with pytest.raises(ValueError, match="expected a"):
+        weights.snr(g)

@@ -1,0 +1,155 @@
+"""Which pixels to trust: averages, flat patches, and the circle without vignetting."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.capture import camera, responses
+from hdrlab.response import debevec, selection
+
+INNER = (slice(2, -2), slice(2, -2))
+
+
+def noise(t, shape=(300, 300), sigma=0.01, seed=0):
+    """Return t frames of an even surface."""
+    return np.random.default_rng(seed).normal(0.5, sigma, (t, *shape))
+
+
+def test_the_published_threshold_is_36_4():
+    assert round(selection.threshold(25, psi=0.05), 1) == 36.4
+
+
+@given(s=st.integers(2, 100), psi=st.floats(0.01, 0.5))
+def test_an_estimate_of_the_noise_that_is_good_needs_no_other_threshold(s, psi):
+    exact = selection.threshold(s, psi=psi)
+    assert np.isclose(selection.threshold(s, psi=psi, estimated=1e9), exact, rtol=1e-5)
+    assert selection.threshold(s, psi=0.05, estimated=10) > selection.threshold(s, psi=0.05)
+
+
+def test_the_temporal_average_is_mean_and_unbiased_variance():
+    A = noise(7, (4, 5))
+    mean, variance, t = selection.temporal_average(A)
+    assert t == 7 and np.allclose(mean, A.mean(axis=0)) and np.allclose(variance, A.var(axis=0, ddof=1))
+    assert np.all(selection.temporal_average(A[:1], sigma=0.02).variance == 0.02**2)
+
+
+def test_the_spatial_average_is_that_of_the_patch():
+    A = noise(1, (9, 9))[0] + 1000  # far from 0, where squares would drown the differences
+    mean, variance = selection.spatial_average(A, size=5)
+    patch = A[2:7, 1:6]
+    assert np.isclose(mean[4, 3], patch.mean()) and np.isclose(variance[4, 3], patch.var(), rtol=1e-6)
+
+
+@pytest.mark.parametrize("t", [1, 2, 100])
+@pytest.mark.parametrize("psi", [0.05, 0.2])
+def test_of_flat_patches_the_test_loses_the_share_psi(t, psi):
+    kept = selection.flat(noise(t), psi=psi)[INNER].mean()
+    assert abs(kept - (1 - psi)) < 0.01
+
+
+def test_compared_with_one_frames_noise_the_average_would_pass_whatever_it_shows():
+    """Eq. 12 read literally: an edge of one sigma passes, that the corrected test rejects."""
+    A = noise(100, (60, 60))
+    A[:, :, 30:] += 0.01
+    mean, variance, _ = selection.temporal_average(A)
+    _, spread = selection.spatial_average(mean)
+    edge = (slice(2, -2), slice(29, 31))
+    assert (25 * spread <= selection.threshold() * variance)[edge].all()
+    assert not selection.flat(A)[edge].any()
+
+
+def test_edges_and_the_border_are_not_flat():
+    A = np.full((1, 40, 40), 0.3)
+    A[:, :, 20:] = 0.6
+    found = selection.flat(A)
+    expected = np.zeros((40, 40), bool)
+    expected[INNER] = True
+    expected[:, 18:22] = False
+    assert np.array_equal(found, expected)
+
+
+def test_quantisation_to_256_levels_does_not_spoil_the_test():
+    A = np.round(255 * noise(1)) / 255
+    assert abs(selection.flat(A)[INNER].mean() - 0.95) < 0.02
+
+
+# Samples from flat patches
+
+
+def patches(shape=(12, 16), size=12, seed=0):
+    """Return radiance (H, W) of even squares, four decades."""
+    rng = np.random.default_rng(seed)
+    return np.kron(10.0 ** rng.uniform(-2, 2, shape), np.ones((size, size))).astype(np.float32)
+
+
+def test_samples_come_from_within_the_squares_and_serve_any_method():
+    E = patches()
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), gray_noise=2.0, rng=0)
+    Z = selection.by_flatness(taken.images, 400)
+    assert Z.shape == (400, 5) and Z.dtype == np.intp and Z.min() >= 0 and Z.max() <= 255
+    g = debevec.recover(taken.images, taken.times, choose=selection.by_flatness)
+    assert np.abs(g - responses.true_g("film"))[20:240].max() < 0.1
+
+
+def test_what_moves_in_one_frame_is_left_out():
+    images = np.full((3, 40, 40), 100, np.uint8)
+    images[1, 10:20, 10:20] = 160
+    Z = selection.by_flatness(images, 10_000)
+    assert {tuple(z) for z in Z.tolist()} == {(100, 100, 100), (100, 160, 100)}
+
+
+def test_colour_and_masks_are_respected():
+    images = np.full((2, 30, 30, 3), 90, np.uint8)
+    images[0, :, 15:] = 200
+    valid = np.ones((2, 30, 30), bool)
+    valid[:, :, 10:] = False
+    Z = selection.by_flatness(images, 5000, valid=valid)
+    assert Z.shape[1:] == (2, 3) and np.all(Z == 90)
+
+
+@pytest.mark.parametrize(
+    ("call", "said"),
+    [
+        (lambda: selection.flat(np.zeros((4, 4))), r"\(t, H, W\)"),
+        (lambda: selection.flat(np.full((1, 4, 4), np.nan)), "finite frames"),
+        (lambda: selection.flat(np.zeros((1, 9, 9)), size=1), "patch of at least"),
+        (lambda: selection.flat(np.zeros((1, 9, 9)), sigma=0), "positive noise"),
+        (lambda: selection.threshold(1), "s of at least 2"),
+        (lambda: selection.threshold(25, psi=1), "psi"),
+        (lambda: selection.by_flatness(np.indices((2, 9, 9))[1].astype(np.uint8) * 25, 9), "flat in every"),
+        (lambda: selection.circle(np.zeros((9, 9), np.uint8), np.zeros((9, 9), np.uint8)), "neither frame"),
+    ],
+)
+def test_what_means_nothing_is_refused(call, said):
+    with pytest.raises(ValueError, match=said):
+        call()
+
+
+# Vignetting
+
+
+def apertures(edge, shape=(240, 320), seed=0):
+    """Return two frames, of which the second loses light beyond a radius."""
+    rng = np.random.default_rng(seed)
+    E = rng.uniform(10, 240, shape)
+    left = 1 - 0.4 * np.clip((selection.radius(shape) - edge) / 100, 0, 1)
+    return [
+        np.round(one + rng.normal(0, 0.7, shape)).clip(0, 255).astype(np.uint8) for one in (E / 2, E * left)
+    ]
+
+
+def test_the_radius_is_measured_from_the_middle():
+    r = selection.radius((3, 5))
+    assert r[1, 2] == 0 and r[1, 0] == 2 and np.isclose(r[0, 0], np.sqrt(5))
+
+
+@pytest.mark.parametrize("edge", [70, 110, 150])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_circle_ends_where_vignetting_begins(edge, seed):
+    assert edge - 5 < selection.circle(*apertures(edge, seed=seed)) < edge + 15
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_without_vignetting_the_circle_is_the_whole_picture(seed):
+    assert selection.circle(*apertures(1e9, seed=seed)) == selection.radius((240, 320)).max()
