@@ -34,7 +34,7 @@ class Response(click.ParamType):
 
 
 def given(response: str | Path) -> str | Callable[..., Any]:
-    """Return what `pipeline.assemble` takes as response: a method's name, or a function with a saved curve."""
+    """Return what `pipeline.assemble` takes: a method's name, or a function that returns a saved curve."""
     if isinstance(response, str):
         return response
     from hdrlab.io.curves import read_curve

@@ -1,0 +1,183 @@
+"""Response curves by their suffix: tables of our own, and the files of pfstools and of Luminance HDR.
+
+g  response  (n,) or (n, 3), ln exposure of each pixel level, g[n // 2] = 0
+f  f^-1      exp g, the exposure of each level, in any unit
+
+.csv            a line per level: the level, then g of red, green and blue, or of gray; the header says so
+.npz            NumPy's archive, with g in it
+.m              pfstools, see `pfscurves`
+.luminance.csv  Luminance HDR, see there
+
+What is read is known by its content: a .csv of Luminance HDR needs no second suffix. The first two keep every
+bit, the third 10 digits; the last is for 256 levels, and keeps 9 decimals of the exposure.
+"""
+
+import zipfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.io.files import replacing
+from hdrlab.io.pfscurves import (
+    LUMINANCE,
+    columns_of,
+    from_luminance,
+    numbers,
+    read_pfstools,
+    squeezed,
+    text_of,
+    write_luminance,
+    write_pfstools,
+)
+
+Float = NDArray[np.float64]
+LARGEST = 32 << 20  # bytes: three channels of 65536 levels take 10 million
+FURTHEST = 80  # e^80 is near the end of float32, in which other programs keep exposures
+CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
+UNIT = " (ln exposure)"
+
+
+class Form(NamedTuple):
+    """How a kind of file is written, and how it is read; what was read is yet to be checked."""
+
+    write: Callable[[Path, Float], None]
+    read: Callable[[Path], Float]
+
+
+def write_curve(path: str | Path, g: ArrayLike) -> None:
+    """Write a response in the format that the file's suffix names, whole or not at all.
+
+    Parameters
+    ----------
+    path : a .csv, .npz, .m or .luminance.csv file; what it held is replaced
+    g : (n,) or (n, 3) float, n = 256 or 65536, ln exposure of each level; Luminance HDR gets 256 of them
+
+    Raises
+    ------
+    ValueError
+        For another suffix, and for what is no response: not finite, or of another shape.
+    """
+    form = FORMS[suffix_of(path)]
+    g = as_curve(g)
+    with replacing(path) as temporary:
+        form.write(temporary, g)
+
+
+def read_curve(path: str | Path) -> Float:
+    """Read a response, in the format that the file's suffix names.
+
+    Parameters
+    ----------
+    path : a .csv, .npz, .m or .luminance.csv file
+
+    Returns
+    -------
+    (n,) or (n, 3) float64
+        g, ln exposure of each level, 0 at level n // 2 in every channel: pfstools and Luminance HDR leave
+        the channels in other proportions. Levels of no exposure, where those programs found nothing, are
+        filled from their neighbours.
+
+    Raises
+    ------
+    ValueError
+        For another suffix, and for a file that is damaged, cut short or not of its format.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "linear.m"
+    >>> write_curve(path, np.log(np.arange(1, 257) / 129))
+    >>> read_curve(path)[[0, 128, 255]].round(3)
+    array([-4.86 ,  0.   ,  0.685])
+    """
+    form = FORMS[suffix_of(path)]
+    size = Path(path).stat().st_size
+    if size > LARGEST:
+        raise ValueError(f"{path}: expected a response of at most {LARGEST} bytes, got {size}")
+    try:
+        g = as_curve(form.read(Path(path)))
+    except ValueError as error:
+        raise ValueError(f"{path}: {error}") from None
+    return g - g[len(g) // 2]
+
+
+def suffix_of(path: str | Path) -> str:
+    """Return the suffix that names a file's format, or raise a ValueError."""
+    name = Path(path).name.lower()
+    for suffix in FORMS:
+        if name.endswith(suffix):
+            return suffix
+    raise ValueError(f"{path}: expected a response curve ({', '.join(FORMS)})")
+
+
+def named(path: str | Path, name: str) -> Path:
+    """Return the path with a name before its suffix.
+
+    Examples
+    --------
+    >>> named("room.luminance.csv", "mann").name
+    'room-mann.luminance.csv'
+    """
+    path, suffix = Path(path), suffix_of(path)
+    return path.with_name(f"{path.name[: -len(suffix)]}-{name}{path.name[-len(suffix) :]}")
+
+
+def as_curve(g: ArrayLike) -> Float:
+    """Return g as float64 (n,) or (n, 3), n = 256 or 65536, within float32, or raise a ValueError."""
+    curve = np.asarray(g)
+    if curve.dtype.kind not in "iuf" or curve.ndim not in (1, 2) or curve.shape[1:] not in ((), (3,)):
+        raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
+    if len(curve) not in (256, 65536):
+        raise ValueError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
+    if not np.all(np.abs(curve) <= FURTHEST):  # NaN neither
+        raise ValueError(f"expected ln exposures from -{FURTHEST} to {FURTHEST}, got {describe(curve)}")
+    return curve.astype(np.float64)
+
+
+def _write_csv(path: Path, g: Float) -> None:
+    columns = columns_of(g)
+    header = ",".join(["level", *(name + UNIT for name in CHANNELS[columns.shape[1]])])
+    lines = [",".join([str(z), *map(repr, row)]) for z, row in enumerate(columns.tolist())]
+    path.write_text("\n".join([header, *lines, ""]), encoding="ascii")
+
+
+def _read_csv(path: Path) -> Float:
+    header, _, body = text_of(path).partition("\n")
+    if header.replace(" ", "").strip() == LUMINANCE:
+        return from_luminance(body)
+    names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
+    if tuple(names[1:]) not in CHANNELS.values() or names[0] != "level" or UNIT not in header:
+        raise ValueError(f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}")
+    table = numbers(body, len(names), ",")
+    if not np.array_equal(table[:, 0], np.arange(len(table))):
+        raise ValueError(f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ...")
+    return squeezed(table[:, 1:])
+
+
+def _write_npz(path: Path, g: Float) -> None:
+    with open(path, "wb") as file:
+        np.savez(file, g=g)
+
+
+def _read_npz(path: Path) -> Float:
+    try:
+        with zipfile.ZipFile(path) as archive:
+            claimed = archive.getinfo("g.npy").file_size
+        if claimed > LARGEST:
+            raise ValueError(f"its g claims {claimed} bytes")
+        with np.load(path, allow_pickle=False) as file:
+            return np.asarray(file["g"])
+    except Exception as error:  # a damaged zip has many ways to say so
+        raise ValueError(f"expected an NPZ archive with g in it, {error}") from error
+
+
+FORMS = {
+    ".luminance.csv": Form(write_luminance, _read_csv),
+    ".csv": Form(_write_csv, _read_csv),
+    ".npz": Form(_write_npz, _read_npz),
+    ".m": Form(write_pfstools, read_pfstools),
+}

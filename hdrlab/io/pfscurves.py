@@ -1,0 +1,131 @@
+"""Response curves in the files of pfstools and of Luminance HDR, and what every text file of curves needs.
+
+f  f^-1      (n, channels), the exposure of each level, in any unit; each channel may have its own
+g  response  (n,) or (n, 3), ln f
+
+pfstools writes a block of Octave's text format per channel (IR, IG, IB; IY for gray), each line log10 f,
+level, f; and a block W of weights, without which it refuses the file. Luminance HDR writes log10 f and f of
+red, green and blue, without levels: 4096 lines for pixel values from 0 to 1.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hdrlab.core.arrays import as_table, describe
+from hdrlab.core.weights import gaussian
+
+Float = NDArray[np.float64]
+MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels
+BLOCK = re.compile(r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M)
+WEIGHTS = (
+    "# Weighting function\n# data layout: weight | camera output\n"
+    "# name: W\n# type: matrix\n# rows: {}\n# columns: 2\n"
+)
+LUMINANCE = "log10(Ir),Ir,log10(Ig),Ig,log10(Ib),Ib"
+BINS = np.arange(256) * 4095 // 255  # where Luminance HDR looks up the 256 levels
+
+
+def write_pfstools(path: Path, g: Float) -> None:
+    """Write g as pfstools does, with 10 digits."""
+    columns = columns_of(g)
+    names = MATRICES[columns.shape[1]]
+    weights = [f" {w:.9e} {z:4d}\n" for z, w in enumerate(gaussian(len(g)).tolist())]
+    blocks = [*map(_block, names, columns.T), WEIGHTS.format(len(g)), *weights, "\n"]
+    path.write_text("".join(blocks), encoding="ascii")
+
+
+def _block(name: str, g: Float) -> str:
+    """Return a channel as a block of Octave's text format; pfstools goes by the lines of rows and columns."""
+    head = (
+        f"# Camera response curve, channel {name}\n"
+        "# data layout: log10(response) | camera output | response\n"
+        f"# name: {name}\n# type: matrix\n# rows: {len(g)}\n# columns: 3\n"
+    )
+    lines = [f" {one / np.log(10):.9e} {z:4d} {np.exp(one):.9e}\n" for z, one in enumerate(g.tolist())]
+    return head + "".join(lines) + "\n"
+
+
+def read_pfstools(path: Path) -> Float:
+    """Return ln f of a file of pfstools, or raise a ValueError."""
+    text = text_of(path).replace("\r\n", "\n")
+    heads = list(BLOCK.finditer(text))
+    rows = {int(head[2]) for head in heads}
+    if tuple(head[1] for head in heads) not in MATRICES.values() or len(rows) != 1:
+        got = ", ".join(f"{head[1]} of {head[2]} levels" for head in heads[:4]) or "none"
+        raise ValueError(f"expected a response of pfstools: channels IR, IG and IB, or IY; got {got}")
+    f = [_read_block(text[head.end() :], *rows) for head in heads]
+    return squeezed(ln_exposure(np.stack(f, axis=-1)))
+
+
+def _read_block(text: str, rows: int) -> Float:
+    """Return f (rows,) of the block whose lines begin the text."""
+    *lines, _ = text.split("\n", rows)
+    table = numbers("\n".join([*lines, ""]), 3)
+    if not np.array_equal(table[:, 1], np.arange(rows)):
+        raise ValueError(f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?")
+    return table[:, 2]
+
+
+def write_luminance(path: Path, g: Float) -> None:
+    """Write g, read at 256 levels, as Luminance HDR does, with 9 decimals and lines between the levels."""
+    columns = columns_of(as_table(g, 256))
+    fine = np.stack([np.interp(np.arange(4096), BINS, one) for one in columns.T], axis=-1)
+    fine = np.repeat(fine, 3 // fine.shape[1], axis=1)  # the program knows no gray
+    pairs = np.stack([fine / np.log(10), np.exp(fine)], axis=-1).reshape(4096, 6)
+    lines = [",".join(f"{value:.9f}" for value in row) for row in pairs.tolist()]
+    path.write_text("\n".join([LUMINANCE, *lines, ""]), encoding="ascii")
+
+
+def from_luminance(body: str) -> Float:
+    """Return g (256, 3): what the program finds for the 256 levels of a photograph."""
+    table = numbers(body, 6, ",")
+    if len(table) != 4096:
+        raise ValueError(f"expected the 4096 lines of Luminance HDR, got {len(table)}: is it cut short?")
+    return ln_exposure(table[BINS, 1::2])
+
+
+def columns_of(g: Float) -> Float:
+    """Return g as (n, channels)."""
+    return g.reshape(len(g), -1)
+
+
+def squeezed(columns: Float) -> Float:
+    """Return (n, channels) as (n,) where there is one channel."""
+    return columns[:, 0] if columns.shape[1] == 1 else columns
+
+
+def ln_exposure(f: Float) -> Float:
+    """Return ln f (n, channels), with levels of no exposure on lines between those that have one."""
+    if np.any(f < 0) or not np.all(np.any(f > 0, axis=0)):
+        raise ValueError(f"expected exposures that are not negative, and not all zero, got {describe(f)}")
+    level = np.arange(len(f))
+    filled = [np.interp(level, level[one > 0], np.log(one[one > 0])) for one in f.T]
+    return np.stack(filled, axis=-1)
+
+
+def numbers(text: str, columns: int, separator: str | None = None) -> Float:
+    """Return the numbers of a text (lines, columns), or raise a ValueError that names the line.
+
+    The last line must end too: a number that was cut short is a number still.
+    """
+    rows = []
+    if not text.endswith("\n"):
+        raise ValueError("expected a table whose last line ends: is it cut short?")
+    for count, line in enumerate(text.splitlines(), 1):
+        cells = line.split(separator)
+        try:
+            row = [float(cell) for cell in cells]
+        except ValueError:
+            row = []
+        if len(row) != columns or not np.isfinite(row).all():
+            raise ValueError(f"expected {columns} numbers in line {count} of its table, got {line[:60]!r}")
+        rows.append(row)
+    return np.array(rows, np.float64).reshape(-1, columns)
+
+
+def text_of(path: Path) -> str:
+    """Return a file's text; bytes that are none become letters that no number has."""
+    return path.read_text(encoding="latin-1")

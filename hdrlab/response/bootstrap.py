@@ -1,0 +1,158 @@
+"""How far to trust a response: the bootstrap (Efron, Annals of Statistics 1979), tile by tile.
+
+images  photographs  (P, H, W[, 3]), aligned: a pixel is the same point of the scene in every frame
+g       response     (256,) or (256, 3), ln exposure of each level, g[128] = 0
+T       tiles        (rows, columns): each frame is cut into so many, all frames alike
+G       responses    (rounds, 256[, 3]), one per round
+
+A round draws rows x columns tiles from the photographs, with replacement, lays them side by side and recovers
+the response of that picture. Tiles and not pixels, for neighbours see the same light, and single ones would
+make the band too narrow. A tile is drawn with all its exposures, so that the frames stay tied.
+
+The band is about the choice of the scene and the noise. What all tiles share it does not know: times that are
+wrong, frames that are not aligned, a model of the curve that is too stiff.
+"""
+
+from collections.abc import Callable, Iterable, Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, as_mask, as_stack, as_times
+
+Float = NDArray[np.float64]
+LEAST = 0.8  # share of the rounds that must find a response
+KEPT = slice(10, 251)  # levels whose band is summed up: noise rules below, the cut above
+
+
+class Band(NamedTuple):
+    """Responses (256,) or (256, 3), below, in the middle of and above those of the rounds, level by level."""
+
+    low: Float
+    middle: Float
+    high: Float
+
+    @property
+    def width(self) -> float:
+        """How far high lies above low, in stops: the median over the levels 10 to 250 and the channels."""
+        return float(np.median((self.high - self.low)[KEPT]) / np.log(2))
+
+
+def tiled(stack: Array, tiles: tuple[int, int]) -> Array:
+    """Return the tiles of a stack (P, H, W, ...) as (rows columns, P, h, w, ...); the rest is left out."""
+    rows, columns = tiles
+    h, w = stack.shape[1] // rows, stack.shape[2] // columns
+    cut = stack[:, : rows * h, : columns * w].reshape(len(stack), rows, h, columns, w, *stack.shape[3:])
+    return np.moveaxis(cut, (1, 3), (0, 1)).reshape(rows * columns, len(stack), h, w, *stack.shape[3:])
+
+
+def laid(drawn: Array, tiles: tuple[int, int]) -> Array:
+    """Return a stack of tiles (rows columns, P, h, w, ...) side by side: what `tiled` took apart."""
+    rows, columns = tiles
+    _, P, h, w, *rest = drawn.shape
+    grid = np.moveaxis(drawn.reshape(rows, columns, P, h, w, *rest), (0, 1), (1, 3))
+    return grid.reshape(P, rows * h, columns * w, *rest)
+
+
+def bootstrap_steps(
+    recover: Callable[..., Float],
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    rounds: int = 50,
+    rng: np.random.Generator | int | None = None,
+    tiles: tuple[int, int] = (12, 16),
+    pixels: int = 200_000,
+    valid: ArrayLike | None = None,
+) -> Iterator[Float | None]:
+    """Yield the response of each round, None where its tiles hold too little; knobs as in `bootstrap`."""
+    stack = as_stack(images)
+    t, shown = as_times(times, len(stack)), as_mask(valid, stack)
+    if rounds < 2 or min(tiles) < 1:
+        raise ValueError(f"expected two rounds or more and tiles (rows, columns), got {rounds} and {tiles}")
+    rows, columns = tiles = (min(tiles[0], stack.shape[1]), min(tiles[1], stack.shape[2]))
+    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / pixels)))
+    every = min(every, stack.shape[1] // rows, stack.shape[2] // columns)
+    parts = tiled(stack[:, ::every, ::every], tiles)
+    masks = None if shown is None else tiled(shown[:, ::every, ::every], tiles)
+    rng = np.random.default_rng(rng)
+    for _ in range(rounds):
+        drawn = rng.integers(0, len(parts), len(parts))
+        mask = None if masks is None else laid(masks[drawn], tiles)
+        try:
+            yield recover(laid(parts[drawn], tiles), t, valid=mask)
+        except ValueError:
+            yield None
+
+
+def band(curves: Iterable[Float | None], *, share: float = 0.95) -> Band:
+    """Return the Band that holds this share of the rounds' responses, at each level by itself.
+
+    Raises
+    ------
+    ValueError
+        For a share that is none, and where more than a fifth of the rounds found no response.
+    """
+    every = list(curves)
+    found = [one for one in every if one is not None]
+    if not 0 < share < 1:
+        raise ValueError(f"expected a share between 0 and 1, got {share}")
+    if len(found) < max(2, LEAST * len(every)):
+        raise ValueError(
+            f"expected a response in most rounds, got {len(found)} of {len(every)}: "
+            "too few parts of the scene are seen well in two exposures"
+        )
+    tail = 50 * (1 - share)
+    return Band(*np.percentile(np.stack(found), [tail, 50, 100 - tail], axis=0))
+
+
+def bootstrap(
+    recover: Callable[..., Float], images: ArrayLike, times: ArrayLike, *, share: float = 0.95, **knobs: Any
+) -> Band:
+    """Return the band in which a method's response to a bracket is to be trusted.
+
+    Parameters
+    ----------
+    recover : function
+        A method's `recover(images, times, *, valid) -> g`.
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs, aligned.
+    times : (P,) float
+        Exposure times in seconds.
+    share : float
+        Of the rounds' responses that the band holds.
+    rounds : int
+        How many pictures are drawn.
+    rng : Generator or int
+        Of the draw.
+    tiles : (int, int)
+        Into how many rows and columns each frame is cut.
+    pixels : int
+        An even choice of about so many stands for a frame.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Returns
+    -------
+    Band
+
+    Raises
+    ------
+    ValueError
+        For arrays that are no bracket, and where more than a fifth of the rounds found no response.
+
+    References
+    ----------
+    Efron, Bootstrap methods: another look at the jackknife, Annals of Statistics 7(1), 1979.
+
+    Examples
+    --------
+    >>> from hdrlab.response import debevec
+    >>> ramp = np.linspace(1, 100, 10_000).reshape(100, 100)  # a linear camera without noise
+    >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
+    >>> found = bootstrap(debevec.recover, images, [0.01, 0.02, 0.04], rounds=5, rng=1)
+    >>> bool(found.low[200] <= found.middle[200] <= found.high[200]), found.width < 0.05
+    (True, True)
+    """
+    return band(bootstrap_steps(recover, images, times, **knobs), share=share)

@@ -1,0 +1,120 @@
+"""What a response leaves unexplained, frame by frame and level by level.
+
+Z   pixel levels     (N, P[, 3]) integers 0 ... 255: sample i in frame j
+B   ln times         (P,)
+w   weights          (256,)
+g   response         (n,) or (n, 3), ln exposure of each level
+lE  ln irradiance    (N[, 3]), each sample's best: sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2
+r   residuals        (N, P[, 3]), g(Z_ij) - lE_i - B_j, in stops
+
+All are 0 where the camera is the one that g and the times describe. A frame that lies off as a whole has a
+wrong time; a level that lies off in all frames, a wrong g; a level that lies off differently from frame to
+frame belongs to a camera that treats each photograph in its own way. Every frame has a share in lE: where two
+contradict each other by a stop, each shows a part of it.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core import weights
+from hdrlab.core.arrays import as_stack, as_table, as_times
+from hdrlab.core.errors import HIGH, LOW
+from hdrlab.core.sampling import by_grid
+
+Float = NDArray[np.float64]
+FEWEST = 20  # samples that make a median
+
+
+def unexplained(Z: NDArray[np.intp], B: Float, g: Float, w: Float) -> Float:
+    """Return r (N, P) of one channel; NaN where w is 0, or where no other frame saw the sample well."""
+    W = w[Z] ** 2
+    G = g[Z] - B
+    with np.errstate(invalid="ignore"):
+        lE = (W * G).sum(axis=1) / W.sum(axis=1)
+    tied = (W > 0) & ((W > 0).sum(axis=1) >= 2)[:, None]
+    return np.where(tied, (G - lE[:, None]) / np.log(2), np.nan)
+
+
+def by_level(Z: NDArray[np.intp], r: Float, *, fewest: int = FEWEST) -> Float:
+    """Return the median of r over the samples of each level (256,), NaN where they are few, of one frame."""
+    known = np.isfinite(r)
+    Z, r = Z[known], r[known]
+    groups = np.split(r[np.argsort(Z, kind="stable")], np.cumsum(np.bincount(Z, minlength=256))[:-1])
+    return np.array([np.median(one) if len(one) >= fewest else np.nan for one in groups])
+
+
+def residuals(
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    *,
+    samples: int = 100_000,
+    w: ArrayLike | None = None,
+    valid: ArrayLike | None = None,
+) -> Float:
+    """Return the median residual of each frame, level and channel.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs, aligned; 16 bits are read at 256 levels.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each level; one curve serves all channels.
+    samples : int
+        How many pixels to look at, on an even grid.
+    w : (256,) float, optional
+        Weights; the hat, cut above 0.98 of the top level.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Returns
+    -------
+    (P, 256) or (P, 256, 3) float64
+        Stops; NaN at levels that fewer than 20 samples of a frame have, and where w is 0.
+
+    Raises
+    ------
+    ValueError
+        For arrays that do not fit together.
+
+    Examples
+    --------
+    >>> ramp = np.linspace(1, 100, 40_000).reshape(200, 200)
+    >>> images = np.clip(np.round(ramp * np.array([1, 2])[:, None, None]), 0, 255).astype(np.uint8)
+    >>> linear = np.log(np.maximum(np.arange(256), 0.25) / 128)
+    >>> r = residuals(images, [0.01, 0.021], linear)  # the second frame's time is 0.07 stops too long
+    >>> bool(abs(r[0, 90] - 0.05) < 0.03), bool(abs(r[1, 180] + 0.02) < 0.03)
+    (True, True)
+    """
+    stack = as_stack(images)
+    B = np.log(as_times(times, len(stack)))
+    w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
+    Z = by_grid(stack, samples, valid=valid)
+    channels = Z.reshape(*Z.shape[:2], -1)
+    count = channels.shape[-1]
+    curves = as_table(g, 256).reshape(256, -1)
+    if curves.shape[1] not in (1, count):
+        raise ValueError(f"expected a response of {count} channels, or one for all, got {curves.shape[1]}")
+    curves = np.broadcast_to(curves, (256, count))
+    found = np.empty((len(stack), 256, count))
+    for c in range(count):
+        r = unexplained(channels[..., c], B, curves[:, c], w)
+        for j in range(len(stack)):
+            found[j, :, c] = by_level(channels[:, j, c], r[:, j])
+    return found.reshape(len(stack), 256, *stack.shape[3:])
+
+
+def rms(r: ArrayLike) -> float:
+    """Return the root of the mean squared residual of the levels 10 to 250, in stops; NaN for none."""
+    known = np.asarray(r, np.float64)[:, LOW : HIGH + 1]
+    known = known[np.isfinite(known)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
+
+
+def offsets(r: ArrayLike) -> Float:
+    """Return by how many stops each frame lies off as a whole (P,): the median of its levels, or NaN."""
+    frames = np.asarray(r, np.float64)
+    known = [one[np.isfinite(one)] for one in frames]
+    return np.array([np.median(one) if one.size else np.nan for one in known])
