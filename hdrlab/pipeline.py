@@ -18,6 +18,8 @@ from hdrlab.core.arrays import levels
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.radiance import consistency
+from hdrlab.radiance import times as timing
+from hdrlab.radiance.contradictions import contradictions, doubt
 from hdrlab.radiance.merge import merge_seen
 
 Method = str | Callable[..., Any]
@@ -32,7 +34,7 @@ class Assembly(NamedTuple):
 
     Attributes
     ----------
-    stage : the one of STAGES that was done last
+    stage : the one of STAGES that was done last, or "times", after "align" where these are estimated
     bracket : the photographs, moved and cut to what all of them show
     offsets : (P, 2) int, (dy, dx) pixels, where each photograph was moved
     g : (n,) or (n, 3), response, ln exposure of each level
@@ -66,21 +68,27 @@ def assemble_steps(
     response: Method = "auto",
     weight: str = "gaussian",
     method: str = "log",
+    times: str = "stated",
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
     _check_exposures(bracket)
     if weight not in WEIGHTS:
         raise ValueError(f"expected a weight out of {', '.join(WEIGHTS)}, got {weight!r}")
+    if times not in ("stated", "estimate"):
+        raise ValueError(f"expected times out of stated, estimate, got {times!r}")
     state = aligned(bracket, align)
     yield state
-    images, times, _, valid, linear = state.bracket
     if response == "auto":
-        response = "linear" if linear else "debevec"
-    g = catalogue.method("response", response)(images, times, valid=valid)
+        response = "linear" if bracket.linear else "debevec"
+    w = WEIGHTS[weight](levels(bracket.images))
+    if times == "estimate":
+        yield (state := retimed(state, response, w, method))
+    images, seconds, _, valid, _ = state.bracket
+    g = catalogue.method("response", response)(images, seconds, valid=valid)
     yield (state := state._replace(stage="response", g=g))
-    E, seen = merge_seen(images, times, g, WEIGHTS[weight](levels(images)), method=method, valid=valid)
+    E, seen = merge_seen(images, seconds, g, w, method=method, valid=valid)
     yield (state := state._replace(stage="merge", E=E, seen=seen))
-    yield compared(state, consistency.level_medians(images, times, E, valid=valid))
+    yield compared(state, consistency.level_medians(images, seconds, E, valid=valid))
 
 
 def _check_exposures(bracket: Bracket) -> None:
@@ -120,21 +128,38 @@ def _about(verdict: pairs.Verdict, bracket: Bracket) -> str:
     return f"{moving} against {fixed}, moved by {verdict.offset} pixels: {verdict.trouble}"
 
 
+def retimed(state: Assembly, response: Method, w: NDArray[np.float64], method: str) -> Assembly:
+    """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
+    images, stated, names, valid, _ = state.bracket
+    recover = catalogue.method("response", response)
+
+    def spread(times: NDArray[np.float64]) -> float:
+        E = merge_seen(images, times, recover(images, times, valid=valid), w, method=method, valid=valid).E
+        return consistency.spread(consistency.level_medians(images, times, E, valid=valid))
+
+    g = recover(images, stated, valid=valid) if response == "linear" else None
+    found = timing.estimate(images, stated, spread, g=g, valid=valid)
+    bracket = state.bracket._replace(times=found.times)
+    notes, doubts = (*state.notes, timing.note(found, names)), (*state.doubts, *timing.doubts(found))
+    return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
+
+
 def compared(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
     """Return the Assembly with what its frames say of each level, and what that puts in doubt."""
     state = state._replace(stage="compare", medians=medians)
+    images, times, names, valid, _ = state.bracket
+    alone = "no level stands in two frames, so the times cannot be compared with the pixels"
     if np.isnan(state.spread):
-        note = "no level stands in two frames, so the times cannot be compared with the pixels"
-        return state._replace(notes=(*state.notes, note))
-    if state.spread <= CONTRADICTION:
-        return state
-    stops = zip(state.bracket.names, consistency.deviations(medians), strict=True)
-    off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
-    doubt = (
-        f"the photographs contradict their exposure times by {state.spread:.2f} stops ({off}): "
-        "check the times, and that the camera did not change ISO, aperture or its processing"
-    )
-    return state._replace(doubts=(*state.doubts, doubt))
+        return state._replace(notes=(*state.notes, alone))
+    said = doubt(contradictions(images, times, valid=valid), names)
+    if not said and state.spread > CONTRADICTION:
+        stops = zip(names, consistency.deviations(medians), strict=True)
+        off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
+        said = (
+            f"the photographs contradict their exposure times by {state.spread:.2f} stops ({off}): "
+            "check the times, and that the camera did not change ISO, aperture or its processing"
+        )
+    return state._replace(doubts=(*state.doubts, said)) if said else state
 
 
 def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
@@ -154,6 +179,9 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         real brackets contradict each other least.
     method : {"log", "likelihood", "mean", "shot"}
         How the frames are merged, see `radiance.merge`.
+    times : {"stated", "estimate"}
+        "estimate" corrects rough times by the pixels, where that makes the frames agree better: see
+        `radiance.times`.
 
     Returns
     -------

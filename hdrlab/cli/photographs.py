@@ -14,8 +14,12 @@ from hdrlab.core import catalogue
     "-o", "--out", required=True, type=common.FILE, help=f"Radiance map to write: {common.SUFFIXES}."
 )
 @click.option(
-    "--times", type=common.FILE, help="Exposure times: a CSV, or lines of `name 1/seconds`. Beats EXIF."
+    "--times",
+    metavar="exif|estimate|FILE",
+    default="exif",
+    help="Exposure times: of EXIF; these, corrected by the pixels; a CSV, or lines of `name 1/seconds`.",
 )
+@click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
 @click.option(
     "--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture (borders of scans)."
 )
@@ -32,7 +36,8 @@ from hdrlab.core import catalogue
 def assemble(
     photos: tuple[Path, ...],
     out: Path,
-    times: Path | None,
+    times: str,
+    estimate_times: bool,
     mask: str | None,
     tonemap: str,
     picture: Path | None,
@@ -44,7 +49,8 @@ def assemble(
 ) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
-    Exposure comes from EXIF (time, ISO, f-number), or from --times.
+    Exposure comes from EXIF (time, ISO, f-number), or from --times. A file that is called exif or estimate is
+    reached as ./exif.
     """
     from hdrlab import pipeline
     from hdrlab.core.steps import last
@@ -55,16 +61,16 @@ def assemble(
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
     bracket = files.read_bracket(
         photos[0] if len(photos) == 1 else photos,
-        times,
+        None if times in ("exif", "estimate") else Path(times),
         mask=common.colour(mask),
         progress=lambda paths: common.progress(paths, "reading"),
     )
     methods["method"] = merge
-    assembly = last(
-        common.progress(
-            pipeline.assemble_steps(bracket, response=recover, **methods), "assembling", len(pipeline.STAGES)
-        )
-    )
+    estimated = estimate_times or times == "estimate"
+    if estimated:
+        methods["times"] = "estimate"
+    steps = pipeline.assemble_steps(bracket, response=recover, **methods)
+    assembly = last(common.progress(steps, "assembling", len(pipeline.STAGES) + estimated))
     for note in assembly.notes:
         click.echo(f"note: {note}", err=True)
     if assembly.doubts and not anyway:
