@@ -1,11 +1,12 @@
-"""The display's part of a calibration: pictures to show during one exposure, as files and as a page that plays them.
+"""A display's part in a calibration: the pictures of one exposure, as files and as a page that plays them.
 
 pictures  (T, H, W) uint8   of `response.schedules.pictures`
 frames    of the display    that each picture stands, see `schedules.frames_per_step`
 
-The page fills the screen, draws a picture's pixel on a pixel of the display, changes only where a new frame begins, and counts
-the frames that the browser missed: a calibration with a missed one is not to be trusted. It repeats the sequence without a
-pause, so that an exposure as long as the sequence holds all of it, wherever it begins.
+The page fills the screen, draws a picture's pixel on a pixel of the display, changes only where a new frame
+begins, and counts the frames that the browser missed: a calibration with a missed one is not to be trusted.
+It repeats the sequence without a pause, so that an exposure as long as the sequence holds all of it, wherever
+it begins.
 """
 
 from pathlib import Path
@@ -61,5 +62,7 @@ def write_display(folder: str | Path, pictures: ArrayLike, *, frames: int = 4) -
     height, width = shown.shape[1:]
     pages = [web.data_uri(web.webp(picture, lossless=True)) for picture in shown]
     with replacing(folder / PAGE) as temporary:
-        temporary.write_text(template.render(pictures=pages, frames=frames, width=width, height=height), encoding="utf8")
+        temporary.write_text(
+            template.render(pictures=pages, frames=frames, width=width, height=height), encoding="utf8"
+        )
     return folder / PAGE

@@ -1,0 +1,109 @@
+"""A family of responses by formula: what a prior is made of where no measured curves are at hand.
+
+M  brightness   0 to 1
+X  exposure     f^-1(M), X(0) = 0, X(1) = 1, rising
+g  ln f^-1      (n,) over the pixel levels, g[n // 2] = 0
+
+Five kinds, each on a grid of its parameters, and each as it is and behind an S-curve that a maker of pictures
+may add:
+
+power       X = M^gamma                                     displays, and film as Mann and Picard fit it
+toe         power with a straight start, tangent to it      sRGB, Rec. 709 and their like
+film        X^gamma = a M / (1 + a - M)                     toe and shoulder over ln X, after Naka and Rushton
+logarithm   X = (e^(k M) - 1) / (e^k - 1)                   cameras of wide range
+cubic       X = (M + k M^3) / (1 + k)                       nearly linear sensors, of either bend
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+
+Float = NDArray[np.float64]
+
+
+def power(M: Float, gamma: float) -> Float:
+    """Return X = M^gamma."""
+    return M**gamma
+
+
+def toe(M: Float, gamma: float, start: float) -> Float:
+    """Return ((M + a) / (1 + a))^gamma above M = `start`, and below it its tangent, which goes through 0.
+
+    The tangent does if start gamma = start + a.
+    """
+    a = start * (gamma - 1)
+    line = ((start + a) / (1 + a)) ** gamma * M / start
+    return np.where(start < M, ((M + a) / (1 + a)) ** gamma, line)
+
+
+def film(M: Float, a: float, gamma: float) -> Float:
+    """Return X = (a M / (1 + a - M))^(1 / gamma)."""
+    return (a * M / (1 + a - M)) ** (1 / gamma)
+
+
+def logarithm(M: Float, k: float) -> Float:
+    """Return X = (e^(k M) - 1) / (e^k - 1)."""
+    return np.expm1(k * M) / np.expm1(k)
+
+
+def cubic(M: Float, k: float) -> Float:
+    """Return X = (M + k M^3) / (1 + k), rising for k >= -1/3."""
+    return (M + k * M**3) / (1 + k)
+
+
+def shoulder(M: Float, strength: float) -> Float:
+    """Return M drawn towards the S-curve M^2 (3 - 2 M), or for a negative strength away from it."""
+    return M + strength * (M**2 * (3 - 2 * M) - M)
+
+
+def formulas(M: Float) -> Iterator[Float]:
+    """Yield X of every curve of the five kinds."""
+    yield from (power(M, gamma) for gamma in np.arange(0.4, 3.01, 0.1))
+    yield from (toe(M, gamma, at) for gamma in (1.6, 2.0, 2.4, 2.8) for at in (0.02, 0.04, 0.08))
+    yield from (film(M, a, gamma) for a in (0.03, 0.1, 0.3, 1.0) for gamma in (0.7, 0.9, 1.1, 1.3, 1.5))
+    yield from (logarithm(M, k) for k in (0.5, 1, 2, 3, 4, 5, 6))
+    yield from (cubic(M, k) for k in (-0.3, -0.15, 0, 0.3, 1, 3, 8))
+
+
+def exposures(n: int = 256) -> Float:
+    """Return X (C, n) of all curves, at the middles of the levels' cells; level 0 has half a one."""
+    M = np.arange(n) / (n - 1)
+    M[0] = 0.25 / (n - 1)
+    return np.stack([X for strength in (-0.4, 0.0, 0.4) for X in formulas(shoulder(M, strength))])
+
+
+def ln_exposures(X: ArrayLike) -> Float:
+    """Return g = ln X - ln X[n // 2] of curves (C, n)."""
+    g = np.log(np.asarray(X, np.float64))
+    return g - g[:, g.shape[1] // 2, None]
+
+
+def ln_inverses(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -> Float:
+    """Return g (C, n) of measured curves: exposure (C, m), 0 to 1, and the brightness it gives, both rising.
+
+    A g has one value where the curve is flat: the middle of the exposures that give this level.
+
+    Raises
+    ------
+    ValueError
+        For curves that do not rise from 0 to 1.
+    """
+    X, M = np.atleast_2d(np.asarray(exposure, np.float64)), np.atleast_2d(np.asarray(brightness, np.float64))
+    if X.shape != M.shape or not np.all(np.isfinite(X)) or not np.all(np.isfinite(M)):
+        raise ValueError(
+            f"expected exposure and brightness (C, m), finite, got {describe(X)} and {describe(M)}"
+        )
+    if np.any(np.diff(X, axis=1) < 0) or np.any(np.diff(M, axis=1) < 0) or not np.all(M[:, 0] < M[:, -1]):
+        raise ValueError("expected curves that rise, got one that falls or is flat")
+    at = np.arange(n) / (n - 1)
+    at[0] = 0.25 / (n - 1)
+    return ln_exposures(np.maximum([_inverse(at, x, m) for x, m in zip(X, M, strict=True)], 1e-6))
+
+
+def _inverse(at: Float, X: Float, M: Float) -> Float:
+    """Return X at the brightnesses `at`; of a flat stretch, the mean of its ends."""
+    values, start, counts = np.unique(M, return_index=True, return_counts=True)
+    return np.interp(at, values, (X[start] + X[start + counts - 1]) / 2)

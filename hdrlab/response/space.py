@@ -1,0 +1,232 @@
+"""The space of camera responses, and what it says beforehand (Grossberg and Nayar, CVPR 2003).
+
+curves  (C, n)   many responses at the same n places: g over the pixel levels, or brightness over exposure
+mean    (n,)     of the curves
+H       (K, n)   principal components, orthonormal rows
+sd      (K,)     how far the curves spread along each
+c       (K,)     coefficients: curve = mean + c H  [Grossberg03 eq. 6]
+
+Responses are alike. A handful of numbers tells them apart, and a few samples of a curve, or a poor bracket,
+are enough when the rest is filled in by what responses look like: c ~ Normal(0, sd).
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core import weights
+from hdrlab.core.arrays import as_stack, as_table, as_times, describe
+from hdrlab.core.sampling import by_rank
+from hdrlab.response import families
+from hdrlab.response.debevec import rising
+
+Float = NDArray[np.float64]
+
+
+class Space(NamedTuple):
+    """mean (n,), components H (K, n), and the spread sd (K,) along each."""
+
+    mean: Float
+    H: Float
+    sd: Float
+
+
+def principal(curves: ArrayLike, count: int) -> Space:
+    """Return the Space of the `count` directions along which the curves (C, n) spread most.
+
+    With the SVD curves - mean = U S V^T, H is the first rows of V^T and sd = S / sqrt(C).
+
+    Raises
+    ------
+    ValueError
+        For curves that are not finite, or fewer than `count` + 1 of them.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 1, 11)
+    >>> space = principal([x, x**2, (x + x**2) / 2], 1)
+    >>> bool(np.allclose(rebuild(project(x**2, space), space), x**2))
+    True
+    """
+    curves = np.asarray(curves, np.float64)
+    if curves.ndim != 2 or not np.all(np.isfinite(curves)) or not 1 <= count < len(curves):
+        raise ValueError(f"expected more than {count} >= 1 finite curves (C, n), got {describe(curves)}")
+    mean = curves.mean(axis=0)
+    _, S, V = np.linalg.svd(curves - mean, full_matrices=False)
+    return Space(mean, V[:count], S[:count] / np.sqrt(len(curves)))
+
+
+def first(space: Space, count: int) -> Space:
+    """Return the Space of the first `count` components alone."""
+    if not 1 <= count <= len(space.H):
+        raise ValueError(f"expected 1 to {len(space.H)} components, got {count}")
+    return Space(space.mean, space.H[:count], space.sd[:count])
+
+
+def project(curve: ArrayLike, space: Space) -> Float:
+    """Return c = H (curve - mean), the nearest point of the space; curves (..., n) give (..., K)."""
+    curve = np.asarray(curve, np.float64)
+    if curve.shape[-1:] != space.mean.shape:
+        raise ValueError(f"expected a curve at the space's {len(space.mean)} places, got {describe(curve)}")
+    return (curve - space.mean) @ space.H.T
+
+
+def rebuild(c: ArrayLike, space: Space) -> Float:
+    """Return mean + c H [Grossberg03 eq. 6]."""
+    return space.mean + np.asarray(c, np.float64) @ space.H
+
+
+def likeliest(A: Float, b: Float, sd: Float) -> Float:
+    """Return c that minimises |A c - b|^2 + |c / sd|^2: the rows have unit noise, and c ~ Normal(0, sd)."""
+    rows = np.vstack([A, np.diag(1 / np.maximum(sd, 1e-12))])
+    return np.asarray(np.linalg.lstsq(rows, np.r_[b, np.zeros(len(sd))], rcond=None)[0], np.float64)
+
+
+def from_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: float = 0.002) -> Float:
+    """Return the likeliest curve (n,) through a few samples.
+
+    Parameters
+    ----------
+    places : (m,) float
+        Where the samples are, 0 to 1: 0 is the first of the space's n places, 1 the last.
+    values : (m,) float
+        The curve there, in the unit of the space's curves.
+    space : Space
+        The prior.
+    noise : float
+        Standard deviation of the values.
+
+    Raises
+    ------
+    ValueError
+        For samples that do not fit together, or a noise that is not positive.
+
+    Examples
+    --------
+    >>> x = np.linspace(0, 1, 256)
+    >>> space = principal([x**gamma for gamma in np.arange(0.3, 1, 0.05)], 4)
+    >>> curve = from_samples([0.2, 0.6], [0.2**0.45, 0.6**0.45], space)
+    >>> bool(np.abs(curve - x**0.45).max() < 0.03)
+    True
+    """
+    places, values = np.asarray(places, np.float64), np.asarray(values, np.float64)
+    if places.ndim != 1 or places.shape != values.shape or not np.all((places >= 0) & (places <= 1)):
+        raise ValueError(
+            f"expected places (m,) in 0 to 1 and values, got {describe(places)} and {describe(values)}"
+        )
+    if not np.all(np.isfinite(values)) or not noise > 0:
+        raise ValueError(f"expected finite values and a positive noise, got {describe(values)} and {noise}")
+    own = np.linspace(0, 1, len(space.mean))
+    A = np.column_stack([np.interp(places, own, row) for row in space.H])
+    b = values - np.interp(places, own, space.mean)
+    return rebuild(likeliest(A / noise, b / noise, space.sd), space)
+
+
+def default(count: int = 12, n: int = 256) -> Space:
+    """Return the Space of g of the curves in `families`."""
+    return principal(families.ln_exposures(families.exposures(n)), count)
+
+
+def rows(Z: NDArray[np.intp], B: Float, w: Float, space: Space) -> tuple[Float, Float]:
+    """Return A and b of sum_ij w^2 (g(Z_ij) - lE_i - B_j)^2 = |A c - b|^2, g = mean + c H [Debevec97 eq. 3].
+
+    Each sample's own unknown lE_i takes up the weighted mean of its rows; what is left has the K unknowns
+    alone.
+    """
+    W = w[Z] ** 2
+    W = W / np.maximum(W.sum(axis=1, keepdims=True), 1e-300)
+    target = B - space.mean[Z]
+    b = w[Z] * (target - np.sum(W * target, axis=1, keepdims=True))
+    heights = [row[Z] for row in space.H]
+    A = np.stack([w[Z] * (h - np.sum(W * h, axis=1, keepdims=True)) for h in heights], axis=-1)
+    return A.reshape(-1, len(space.H)), b.ravel()
+
+
+def recover(
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    basis: Space | None = None,
+    noise: float = 0.02,
+    samples: int = 1000,
+    w: ArrayLike | None = None,
+    choose: Callable[..., NDArray[np.intp]] = by_rank,
+    valid: ArrayLike | None = None,
+) -> Float:
+    """Return the likeliest response g in a space of responses, each channel by itself.
+
+    Debevec's equations with a curve of K coefficients in place of 256 levels and a smoothness.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs; 16 bits are read at 256 levels.
+    times : (P,) float
+        Exposure times in seconds, at least two different ones.
+    basis : Space, optional
+        Of g over 256 levels, `principal(families.ln_inverses(exposure, brightness), count)` of curves that
+        were measured; those of `families` by default.
+    noise : float
+        Standard deviation of ln exposure at the level of greatest weight. More noise gives the prior more
+        say.
+    samples : int
+        How many pixels to choose.
+    w : (256,) float, optional
+        Weights; the hat, cut above 0.98 of the top level.
+    choose : function
+        `sampling.by_rank` (default), `sampling.by_grid`, or your own with the same signature.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Returns
+    -------
+    (256,) or (256, 3) float64
+        g, the ln exposure of each level; g[128] = 0 in every channel.
+
+    Raises
+    ------
+    ValueError
+        For fewer than two photographs or two times, a basis that is not of 256 levels, or photographs that
+        hold no level seen in two exposures.
+
+    References
+    ----------
+    Grossberg and Nayar, What is the space of camera response functions?, CVPR 2003; Debevec and Malik, 1997,
+    eq. 3.
+
+    Examples
+    --------
+    >>> ramp = np.linspace(1, 100, 10_000).reshape(100, 100)  # a linear camera
+    >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
+    >>> g = recover(images, [0.01, 0.02, 0.04])
+    >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
+    True
+    """
+    stack = as_stack(images)
+    times = as_times(times, len(stack))
+    if len(set(times.tolist())) < 2:
+        raise ValueError(f"expected photographs with at least two different times, got {times.tolist()} s")
+    space = default() if basis is None else basis
+    if space.mean.shape != (256,) or not noise > 0:
+        raise ValueError(
+            f"expected a basis of 256 levels and a positive noise, got {len(space.mean)} and {noise}"
+        )
+    w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
+    Z = choose(stack, samples, valid=valid)
+    Z = Z.reshape(*Z.shape[:2], -1)
+    g = np.stack(
+        [_one(Z[..., c], np.log(times), w / w.max(), space, noise) for c in range(Z.shape[-1])], axis=-1
+    )
+    return g.reshape(256, *stack.shape[3:])
+
+
+def _one(Z: NDArray[np.intp], B: Float, w: Float, space: Space, noise: float) -> Float:
+    """Return g (256,) of one channel's samples Z (N, P)."""
+    shown = np.where(w[Z] > 0, B, np.nan)
+    if not np.any(np.nanmax(shown, axis=1, initial=-np.inf) > np.nanmin(shown, axis=1, initial=np.inf)):
+        raise ValueError("expected samples seen well in two exposures, which tie levels together; got none")
+    A, b = rows(Z, B, w, space)
+    g = rebuild(likeliest(A / noise, b / noise, space.sd), space)
+    return rising(g - g[128])
