@@ -1,26 +1,49 @@
 """hdrlab: high dynamic range imaging, from light to numbers to a picture.
 
-lecture                              where
------------------------------------  ------------------------------------------------------------
-Light to numbers                     capture.camera.shoot, capture.scenes.room
-Photographs in                       io.photos.read_bracket
-Median threshold bitmaps             align.mtb.align, align.shift.shift
-The response curve                   response.debevec.gsolve, response.debevec.recover
-RAW: no response to recover          response.linear.recover, io.raw
-The radiance map                     radiance.merge.merge, radiance.bounds
-Does the map explain its frames?     radiance.consistency.spread
-PFM, Radiance RGBE, OpenEXR          io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
-From radiance to a display           tonemap.curves.tonemap
-Photographic tone reproduction       tonemap.reinhard.tonemap
-All of it in a row                   pipeline.assemble, pipeline.develop
-Pictures and sliders                 show.plots, show.widgets.play, show.widgets.tune
+lecture                                where
+-------------------------------------  --------------------------------------------------------------------
+Light to numbers                       capture.camera.shoot, capture.scenes.room
+Photographs in, with their exposure    io.photos.read_bracket
+Median threshold bitmaps               align.mtb.align, align.shift.shift
+The response by least squares          response.debevec.gsolve, response.debevec.recover
+... by maximum likelihood              response.robertson.recover
+... without exact times                response.mitsunaga.recover, response.marginal.calibrate
+... from histograms, from a series     response.grossberg.recover, response.mann.recover
+... in the space of measured curves    response.space.recover
+... without a bracket                  response.wilburn, response.motion, response.chart
+... of RAW: none to recover            response.linear.recover
+Which pixels to use                    core.sampling, response.selection
+The radiance map                       radiance.merge.merge, radiance.bounds, radiance.estimates
+Does the map explain its photographs?  radiance.consistency, radiance.contradictions, radiance.times
+Exposure ratios of a linear camera     radiance.ratios.ratio
+PFM, Radiance RGBE, OpenEXR            io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
+One curve for all pixels               tonemap.curves, tonemap.ward, tonemap.brush
+Local scaling, and its halo            tonemap.chiu.tonemap
+Base and detail                        tonemap.durand.tonemap, core.bilateral
+Photographic tone reproduction         tonemap.reinhard.tonemap
+Gradients                              tonemap.fattal.tonemap, core.poisson
+Which picture is better?               tonemap.quality.tmqi, show.contact.contact_sheet
+A picture without a radiance map       enhance.mertens.fuse
+All of it in a row                     pipeline.assemble, pipeline.develop
+Steps, sliders, plots                  show.widgets.play, show.widgets.tune, show.plots
 
-Chapters are loaded when they are first used: `import hdrlab` costs nothing, and `hdrlab.tonemap.reinhard` works.
+Chapters are loaded when they are first used: `import hdrlab` costs nothing, and `hdrlab.tonemap` works.
 """
 
 import lazy_loader
 
 __version__ = "0.1.0"
 
-CHAPTERS = ["align", "capture", "core", "io", "pipeline", "radiance", "response", "show", "tonemap"]
+CHAPTERS = [
+    "align",
+    "capture",
+    "core",
+    "enhance",
+    "io",
+    "pipeline",
+    "radiance",
+    "response",
+    "show",
+    "tonemap",
+]
 __getattr__, __dir__, __all__ = lazy_loader.attach(__name__, submodules=CHAPTERS)

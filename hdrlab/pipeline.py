@@ -14,7 +14,6 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.align import judge, mtb, pairs
 from hdrlab.align.shift import as_offsets, shift
 from hdrlab.core import catalogue, colour, weights
-from hdrlab.core.arrays import levels
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.radiance import consistency
@@ -23,8 +22,14 @@ from hdrlab.radiance.contradictions import contradictions, doubt
 from hdrlab.radiance.merge import merge_seen
 
 Method = str | Callable[..., Any]
+Table = NDArray[np.float64]
 STAGES = ("align", "response", "merge", "compare")
-WEIGHTS = {"hat": weights.hat, "gaussian": weights.gaussian, "flat": weights.flat}
+WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
+    "hat": lambda g: weights.hat(len(g)),
+    "gaussian": lambda g: weights.gaussian(len(g)),
+    "flat": lambda g: weights.flat(len(g)),
+    "snr": weights.snr,
+}
 CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
 REGISTER = "no shift lays one on the other; leave one out, or bring them to lie on each other by other means"
 
@@ -80,13 +85,13 @@ def assemble_steps(
     yield state
     if response == "auto":
         response = "linear" if bracket.linear else "debevec"
-    w = WEIGHTS[weight](levels(bracket.images))
+    w = WEIGHTS[weight]
     if times == "estimate":
         yield (state := retimed(state, response, w, method))
     images, seconds, _, valid, _ = state.bracket
     g = catalogue.method("response", response)(images, seconds, valid=valid)
     yield (state := state._replace(stage="response", g=g))
-    E, seen = merge_seen(images, seconds, g, w, method=method, valid=valid)
+    E, seen = merge_seen(images, seconds, g, w(g), method=method, valid=valid)
     yield (state := state._replace(stage="merge", E=E, seen=seen))
     yield compared(state, consistency.level_medians(images, seconds, E, valid=valid))
 
@@ -128,17 +133,18 @@ def _about(verdict: pairs.Verdict, bracket: Bracket) -> str:
     return f"{moving} against {fixed}, moved by {verdict.offset} pixels: {verdict.trouble}"
 
 
-def retimed(state: Assembly, response: Method, w: NDArray[np.float64], method: str) -> Assembly:
+def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], method: str) -> Assembly:
     """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
     images, stated, names, valid, _ = state.bracket
     recover = catalogue.method("response", response)
 
     def spread(times: NDArray[np.float64]) -> float:
-        E = merge_seen(images, times, recover(images, times, valid=valid), w, method=method, valid=valid).E
+        g = recover(images, times, valid=valid)
+        E = merge_seen(images, times, g, w(g), method=method, valid=valid).E
         return consistency.spread(consistency.level_medians(images, times, E, valid=valid))
 
-    g = recover(images, stated, valid=valid) if response == "linear" else None
-    found = timing.estimate(images, stated, spread, g=g, valid=valid)
+    known = recover(images, stated, valid=valid) if response == "linear" else None
+    found = timing.estimate(images, stated, spread, g=known, valid=valid)
     bracket = state.bracket._replace(times=found.times)
     notes, doubts = (*state.notes, timing.note(found, names)), (*state.doubts, *timing.doubts(found))
     return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
@@ -174,7 +180,7 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     response : str or function
         A method of `response`, "auto" (linear where the bracket is, else Debevec), or your own
         `recover(images, times, *, valid) -> g`.
-    weight : {"gaussian", "hat", "flat"}
+    weight : {"gaussian", "hat", "flat", "snr"}
         How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the frames of
         real brackets contradict each other least.
     method : {"log", "likelihood", "mean", "shot"}
@@ -231,7 +237,11 @@ def develop(
         For radiance that is not finite or negative, and for knobs out of their range.
     """
     operator = catalogue.method("tonemap", tonemap)
-    if saturation is None:
-        saturation = getattr(sys.modules[operator.__module__], "SATURATION", 1.0)
+    saturation = own_saturation(operator) if saturation is None else saturation
     L = colour.luminance(E)
     return colour.render(E, L, operator(L, **knobs), saturation=saturation)
+
+
+def own_saturation(operator: Callable[..., Any]) -> float:
+    """Return the SATURATION that the module of an operator states, or 1."""
+    return float(getattr(sys.modules[operator.__module__], "SATURATION", 1.0))

@@ -213,7 +213,7 @@ def test_hot_pixels_stay_white_in_every_frame_and_the_hand_does_not_move_them():
 def test_a_frame_moved_by_its_offset_lies_on_the_reference():
     E = np.random.default_rng(0).random((40, 50)).astype(np.float32)
     offsets = np.array([[3, -2], [0, 0], [-4, 5]])
-    images = shoot(E, [0.5, 0.5, 0.5], offsets=offsets).images
+    images = shoot(E, [0.5, 0.500001, 0.500002], offsets=offsets).images  # as good as one time, in this order
     assert images.shape == (3, 40 - 7, 50 - 7)
     for image, (dy, dx) in zip(images, offsets, strict=True):
         moved = np.roll(image, (dy, dx), axis=(0, 1))

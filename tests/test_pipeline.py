@@ -192,7 +192,7 @@ STACK = np.random.default_rng(5).integers(0, 256, (2, 20, 30), np.uint8)
         (STACK, [2, 2], {}, "at least two different exposures, got frame . 2 s, frame . 2 s"),
         (STACK * 0, [1, 2], {}, "seen well in two exposures"),
         (STACK * 0 + 255, [1, 2], {}, "seen well in two exposures"),
-        (STACK, [1, 2], {"weight": "heavy"}, "weight out of hat, gaussian, flat, got 'heavy'"),
+        (STACK, [1, 2], {"weight": "heavy"}, "weight out of hat, gaussian, flat, snr, got 'heavy'"),
         (STACK, [1, 2], {"method": "guess"}, "method out of log, likelihood, mean, shot"),
         (STACK, [1, 2], {"align": "luck"}, "method of align out of .*mtb"),
         (STACK, [1, 2], {"response": "luck"}, "method of response out of debevec.*linear"),

@@ -6,7 +6,7 @@ import pytest
 from hdrlab.capture.responses import RESPONSES
 from hdrlab.core import catalogue
 
-CAMERAS = {"linear": ["linear"], "mann": ["gamma", "linear"]}  # what a method assumes; the others assume nothing
+CAMERAS = {"linear": ["linear"], "mann": ["gamma", "linear"]}  # what a method assumes of its camera
 CASES = [(name, one) for name in catalogue.names("response") for one in CAMERAS.get(name, sorted(RESPONSES))]
 
 

@@ -35,7 +35,7 @@ def test_notebooks_specification_scripts_and_types_travel_in_the_wheel(wheel):
 
 
 def test_the_installed_wheel_runs_the_demo_from_another_folder(wheel, tmp_path):
-    """The environment holds the wheel alone; what hdrlab depends on is lent by the environment of the tests."""
+    """The environment holds the wheel alone; what hdrlab depends on is lent by that of the tests."""
     venv.create(tmp_path / "env", with_pip=False, symlinks=True)
     python = next((tmp_path / "env").glob("[bS]*/python*"))
     site = next((tmp_path / "env").rglob("site-packages"))

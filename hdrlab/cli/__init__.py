@@ -5,6 +5,7 @@ Bad input ends in one line on standard error and exit code 2, Ctrl-C in 130; fil
 at all.
 """
 
+import os
 import sys
 from collections.abc import Sequence
 
@@ -16,6 +17,9 @@ from hdrlab.cli import curves, lessons, maps, photographs
 
 def run(arguments: Sequence[str] | None = None) -> None:
     """Run the command and exit: 0 where all went well, 2 for bad input, 130 after Ctrl-C."""
+    os.environ.setdefault(
+        "OPENBLAS_NUM_THREADS", "1"
+    )  # the products here are small: threads only wait on them
     try:
         sys.exit(main.main(arguments, prog_name="hdrlab", standalone_mode=False))
     except click.exceptions.Abort:

@@ -25,7 +25,7 @@ from hdrlab.core import catalogue
 )
 @click.option("--align", type=click.Choice([*catalogue.names("align"), "none"]), default="mtb")
 @click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
-@click.option("--weight", type=click.Choice(["gaussian", "hat", "flat"]), default="gaussian")
+@click.option("--weight", type=click.Choice(["gaussian", "hat", "flat", "snr"]), default="gaussian")
 @click.option("--merge", type=click.Choice(["log", "likelihood", "mean", "shot"]), default="log")
 @click.option("--tonemap", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
 @click.option(

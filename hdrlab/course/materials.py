@@ -1,4 +1,4 @@
-"""Where the notebooks and the specification are: in an installed package or in a clone, and a reader's copy."""
+"""Where the notebooks and the specification are, in an installed package or a clone, and a reader's copy."""
 
 import shutil
 from pathlib import Path

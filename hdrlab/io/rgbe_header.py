@@ -39,7 +39,7 @@ def read_header(path: str | Path) -> Header:
 
 
 def parse(path: str | Path, head: bytes) -> Header:
-    """Return what the lines up to and with the resolution string say, or raise a ValueError that names the file."""
+    """Return what the lines down to the resolution say, or raise a ValueError that names the file."""
     lines, start = [], 0
     while (end := head.find(b"\n", start)) >= 0:
         line, start = head[start:end].decode("latin-1"), end + 1

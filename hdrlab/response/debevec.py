@@ -168,8 +168,8 @@ def recover(
     samples : int
         How many pixels to choose, N.
     w : (256,) float, optional
-        Weights; between the hat and the Gaussian (their geometric mean), which over 201 measured curves errs less
-        than either. Cut above 0.98 of the top level, where noise hides clipped pixels, and below 0.02, where it
+        Weights; the geometric mean of hat and Gaussian, which over 201 measured curves errs less than either.
+        It is cut above 0.98 of the top level, where noise hides clipped pixels, and below 0.02, where noise
         is as large as the level.
     choose : function
         `sampling.by_rank` (default), `sampling.by_grid`, or your own with the same signature.
@@ -217,7 +217,7 @@ def recover(
 
 
 def straight_toe(g: Float, w: Float) -> Float:
-    """Return g with f^-1 in proportion to z + 1/2 below the first level that has weight: nothing else says."""
+    """Return g with f^-1 in proportion to z + 1/2 below the first level of weight: nothing else says."""
     first = int(np.argmax(w > 0))
     g = g.copy()
     g[:first] = g[first] + np.log((np.arange(first) + 0.5) / (first + 0.5))[:, None]

@@ -12,6 +12,7 @@ from time import perf_counter
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
+from hdrlab import pipeline
 from hdrlab.core import catalogue, colour
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.picture import statistics
@@ -33,7 +34,7 @@ def entry_steps(
         begun = clock()
         Ld = tonemap(L)
         seconds = clock() - begun
-        picture = colour.render(E, L, Ld)
+        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap))
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
