@@ -1,0 +1,88 @@
+"""`python -m benchmarks [SUBJECT ...] [--rows A,B] [--json FILE]`: measure, print; 1 if a hold is missed."""
+
+import argparse
+import importlib
+import json
+import os
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+from benchmarks import peers, table
+from benchmarks.measure import measured
+from benchmarks.rows import Outcome, Row, verdicts
+
+HERE = Path(__file__).parent
+
+
+def subjects() -> list[str]:
+    """Return the names of the modules and folders here that have ROWS, read as text and not imported."""
+    files = [*HERE.glob("*.py"), *HERE.glob("*/__init__.py")]
+    with_rows = [file for file in files if "\nROWS" in file.read_text(encoding="utf8")]
+    return sorted(file.parent.name if file.stem == "__init__" else file.stem for file in with_rows)
+
+
+def chosen(subject: str, names: str | None) -> list[Row]:
+    """Return the rows of a subject: all, or those of these names, separated by commas."""
+    rows: list[Row] = list(importlib.import_module(f"benchmarks.{subject}").ROWS)
+    return rows if names is None else [row for row in rows if row.name in names.split(",")]
+
+
+def parse(arguments: list[str] | None) -> argparse.Namespace:
+    """Return the options, or end with what is wrong with them."""
+    parser = argparse.ArgumentParser("python -m benchmarks", description="hdrlab beside its peers.")
+    parser.add_argument(
+        "subjects", nargs="*", metavar="SUBJECT", help=f"{', '.join(subjects())}; all by default"
+    )
+    parser.add_argument("--rows", metavar="A,B", help="these rows alone")
+    parser.add_argument("--json", metavar="FILE", type=Path, help="write the figures here, too")
+    parser.add_argument("--data", metavar="DIR", type=Path, help="keep the photographs here for next time")
+    options = parser.parse_args(arguments)
+    options.subjects = options.subjects or subjects()
+    if unknown := set(options.subjects) - set(subjects()):
+        parser.error(f"expected subjects out of {', '.join(subjects())}, got {', '.join(sorted(unknown))}")
+    known = [row.name for subject in options.subjects for row in chosen(subject, None)]
+    if options.rows and (unknown := set(options.rows.split(",")) - set(known)):
+        parser.error(f"expected rows out of {', '.join(known)}, got {', '.join(sorted(unknown))}")
+    return options
+
+
+def run(subject: str, rows: list[Row], folder: Path) -> list[Outcome]:
+    """Measure and print a subject's rows; one that breaks does not stop the others."""
+    load = f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}"
+    print(f"{subject} on {load}; {peers.versions()}\n", flush=True)
+    outcomes: list[Outcome] = []
+    for row in rows:
+        try:
+            results, missing = measured(subject, row, folder)
+        except RuntimeError as error:
+            print(f"{row.name}: failed, {error}\n", flush=True)
+            outcomes.append((row, None))
+            continue
+        print(table.block(row, results, missing) + "\n", flush=True)
+        outcomes.append((row, results))
+    return outcomes
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Return the exit code: 0 where every hold that could be judged is met."""
+    options = parse(arguments)
+    start = time.perf_counter()
+    with tempfile.TemporaryDirectory() as scratch:
+        folder = options.data or Path(scratch)
+        folder.mkdir(parents=True, exist_ok=True)
+        outcomes: list[Outcome] = []
+        for subject in options.subjects:
+            outcomes += run(subject, chosen(subject, options.rows), folder)
+    print(f"{table.summary(outcomes)}; it took {time.perf_counter() - start:.0f} s")
+    if options.json:
+        figures = {
+            row.name: {who: one._asdict() for who, one in (found or {}).items()} for row, found in outcomes
+        }
+        options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf8")
+    return int(any(said == "MISSED" for _, _, said in verdicts(outcomes)))
+
+
+if __name__ == "__main__":
+    sys.exit(main())

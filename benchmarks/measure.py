@@ -1,0 +1,125 @@
+"""Time and memory of a row's runs, each row in processes of its own.
+
+time     wall clock, interleaved: in each round everyone once, so that a busy machine is busy for all of them
+memory   the peak of resident memory above what the process held before, in a fresh process, on the second run
+
+Resident memory counts what C++ allocates as well as what Python does. The first run brings in libraries
+and tables.
+"""
+
+import ctypes
+import gc
+import importlib
+import json
+import os
+import subprocess
+import sys
+import time
+from pathlib import Path
+from statistics import median
+from typing import Any
+
+from benchmarks.rows import Case, Figures, Results, Row, Run, Usage
+
+ROOT = Path(__file__).parents[1]
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+ROUNDS, MOST_ROUNDS, ENOUGH = (
+    5,
+    41,
+    3.0,
+)  # rounds at least and at most, and seconds after which the least suffice
+
+
+def measured(subject: str, row: Row, folder: Path) -> tuple[Results, dict[str, str]]:
+    """Return the Figures of everyone who did the work of a row, and why others did not."""
+    one, default = child(subject, row, folder, "one"), child(subject, row, folder, "default")
+    results = {}
+    for who, seconds in one["seconds"].items():
+        memory = child(subject, row, folder, "memory", who)["megabytes"]
+        results[who] = Figures(median(seconds), median(default["seconds"][who]), memory, one["errors"][who])
+    return results, one["missing"]
+
+
+def child(subject: str, row: Row, folder: Path, *what: str) -> dict[str, Any]:
+    """Return what a process of its own finds out; BLAS reads its number of threads when it is loaded."""
+    env = {name: value for name, value in os.environ.items() if name not in THREADS}
+    if what[0] != "default":
+        env |= dict.fromkeys(THREADS, "1")
+    command = [sys.executable, "-m", "benchmarks.measure", subject, row.name, str(folder), *what]
+    done = subprocess.run(command, cwd=ROOT, env=env, capture_output=True, text=True)
+    if done.returncode:
+        raise RuntimeError(f"{row.name}, {' '.join(what)}: {done.stderr.strip()[-2000:]}")
+    return dict(json.loads(done.stdout.splitlines()[-1]))
+
+
+def main(subject: str, name: str, folder: str, what: str, who: str = "") -> None:
+    """Find it out, in the child, and print it as JSON."""
+    if what != "default" and hasattr(
+        os, "sched_setaffinity"
+    ):  # the same processor for all, peers' processes too
+        os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
+    rows = importlib.import_module(f"benchmarks.{subject}").ROWS
+    row = next(row for row in rows if row.name == name)
+    case = row.case(Path(folder), what != "default")
+    print(json.dumps({"megabytes": peak(case.runs[who])} if what == "memory" else timed(case)))
+
+
+def timed(case: Case) -> dict[str, Any]:
+    """Return the seconds of every round and the errors of everyone, after a round to warm up."""
+    errors = {who: case.error(who, run()) for who, run in case.runs.items()}
+    seconds: dict[str, list[float]] = {who: [] for who in case.runs}
+    start = time.perf_counter()
+    for done in range(MOST_ROUNDS):
+        if done >= ROUNDS and time.perf_counter() - start > ENOUGH:
+            break
+        for who, run in case.runs.items():
+            seconds[who].append(clocked(run))
+    return {"seconds": seconds, "errors": errors, "missing": case.missing}
+
+
+def clocked(run: Run) -> float:
+    """Return the seconds of one run."""
+    start = time.perf_counter()
+    result = run()
+    elapsed = time.perf_counter() - start
+    return result.seconds if isinstance(result, Usage) else elapsed
+
+
+def peak(run: Run) -> float | None:
+    """Return the MB by which a run raises the peak of resident memory; None where it cannot be told."""
+    warm = run()
+    if isinstance(warm, Usage):
+        return warm.megabytes
+    del warm
+    gc.collect()
+    if not (status := Path("/proc/self/status")).exists():
+        return None
+    if trim := getattr(ctypes.CDLL(None), "malloc_trim", None):
+        trim(0)  # what is free but kept would hide as much of the peak
+    Path("/proc/self/clear_refs").write_text("5")  # the peak starts again from here
+    before = _kilobytes(status, "VmRSS")
+    result = run()
+    after = _kilobytes(status, "VmHWM")
+    del result
+    return (after - before) * 1024 / 1e6
+
+
+def process(
+    command: list[str], *, one: bool, source: Path | str = os.devnull, target: Path | str = os.devnull
+) -> Usage:
+    """Return what a command takes; in one thread it stays on one processor, whatever its libraries like."""
+    cpu = max(os.sched_getaffinity(0)) if one and hasattr(os, "sched_getaffinity") else -1
+    launch = [sys.executable, str(ROOT / "benchmarks" / "launch.py"), str(cpu), str(source), str(target)]
+    done = subprocess.run([*launch, *command], cwd=ROOT, capture_output=True, text=True)
+    seconds, size, code = (done.stdout.split() or ["0", "0", "1"])[-3:]
+    if done.returncode or int(code):
+        raise RuntimeError(f"{' '.join(command)}: {done.stderr.strip()[-2000:]}")
+    return Usage(float(seconds), int(size) / 1e6)
+
+
+def _kilobytes(status: Path, field: str) -> int:
+    return next(int(line.split()[1]) for line in status.read_text().splitlines() if line.startswith(field))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,99 @@
+"""The experiments of Cerman and Hlavac 2006: response recovery from noisy photographs, and exposure ratios.
+
+E      irradiance   (H, W), the green channel of a radiance map; 1 fills the well in the shortest exposure
+error  RMSE of f^-1 over levels 10 to 250, percent of its value at 250
+"""
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.capture import camera, scenes
+from hdrlab.capture.responses import true_g
+from hdrlab.core import weights
+from hdrlab.core.arrays import Array
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.errors import response_rmse
+from hdrlab.core.sampling import by_grid
+from hdrlab.radiance import ratios
+from hdrlab.response import debevec, grossberg
+from hdrlab.response.polynomial import curve
+
+TIMES = 4.0 ** np.arange(6)  # six exposures, 2 stops apart
+SAMPLES, SMOOTHNESS = 200, 50.0  # the paper does not say which
+
+
+class Figure3(NamedTuple):
+    """Errors in percent, method -> error: clean photographs, noisy ones, levels cut at 0.98, known order."""
+
+    clean: dict[str, float]
+    noisy: dict[str, float]
+    cut: dict[str, float]
+    known: dict[str, float]
+
+
+def irradiance(E: ArrayLike | None = None) -> NDArray[np.float32]:
+    """Return the green channel of a map (H, W, 3), or of the embedded room; its top thousandth is clipped."""
+    G = np.asarray(scenes.room((240, 360)) if E is None else E, np.float64)[..., 1]
+    return np.minimum(G / np.quantile(G, 0.999), 1).astype(np.float32)
+
+
+def pixels_polynomial(bracket: Bracket, w: Array, order: int) -> Array:
+    """Return g from pairs of levels of single pixels, as Mitsunaga and Nayar have it, exposures known."""
+    Z = by_grid(bracket.images, 10_000)
+    return curve(grossberg.polynomial(grossberg.pixel_equations(Z, bracket.times, w), order=order))
+
+
+METHODS: dict[str, Callable[[Bracket, Array, int], Array]] = {
+    "Debevec, pixels": lambda b, w, order: debevec.recover(
+        b.images, b.times, smoothness=SMOOTHNESS, samples=SAMPLES, w=w, choose=by_grid
+    ),
+    "Debevec, histograms": lambda b, w, order: grossberg.recover(b.images, b.times, w=w),
+    "polynomial, pixels": pixels_polynomial,
+    "polynomial, histograms": lambda b, w, order: grossberg.recover(
+        b.images, b.times, model="polynomial", order=order, w=w
+    ),
+}
+
+
+PLAIN = dict(zip(METHODS, (weights.hat(), weights.gaussian(), weights.flat(), weights.flat()), strict=True))
+
+
+def figure3(E: ArrayLike | None = None, *, rng: int = 0) -> Figure3:
+    """Return the errors of four methods on six photographs of a cubic camera [Cerman06 fig. 3].
+
+    Clean photographs are rounded to 256 levels, too. Without the cut a polynomial takes all levels alike, as
+    the paper's does.
+    """
+    G = irradiance(E)
+    clean = camera.shoot(G, TIMES, response="cubic", rng=rng)
+    noisy = camera.shoot(G, TIMES, response="cubic", gray_noise=1.0, rng=rng)
+    hat, gaussian = weights.cut(weights.hat()), weights.cut(weights.gaussian(), below=0.02)
+    cut = {name: gaussian if name == "Debevec, histograms" else hat for name in METHODS}
+    return Figure3(
+        {name: error(name, clean, w) for name, w in PLAIN.items()},
+        {name: error(name, noisy, w) for name, w in PLAIN.items()},
+        {name: error(name, noisy, w) for name, w in cut.items()},
+        {name: error(name, noisy, w, order=3) for name, w in cut.items() if name.startswith("polynomial")},
+    )
+
+
+def error(name: str, bracket: Bracket, w: Array, *, order: int = 10) -> float:
+    """Return a method's error on a bracket, in percent."""
+    return float(response_rmse(METHODS[name](bracket, w, order), true_g("cubic"))[0])
+
+
+def darkest_pair(E: ArrayLike, *, scheme: str, truth: float = 4.0, rng: int = 0) -> float:
+    """Return the ratio found between the two darkest photographs of a linear camera [Cerman06 sec. 5.3]."""
+    taken = camera.shoot(E, [1, truth], response="linear", gray_noise=1.0, rng=rng)
+    return ratios.ratio(*taken.images, scheme=scheme)
+
+
+def log_normal(
+    rng: int = 0, *, spread: float = 1.5, shape: tuple[int, int] = (512, 512)
+) -> NDArray[np.float32]:
+    """Return a scene (H, W) whose ln E is normal, its brightest thousandth clipped."""
+    E = np.exp(np.random.default_rng(rng).normal(0, spread, shape))
+    return np.minimum(E / np.quantile(E, 0.999), 1).astype(np.float32)

@@ -1,0 +1,139 @@
+"""What a subject is made of: rows of work, who does it, and what must hold of the figures.
+
+A hold compares one number, computed from the figures of all who did the work, with a limit; beyond it lies
+the goal.
+"""
+
+from collections.abc import Callable
+from math import log
+from pathlib import Path
+from typing import Any, NamedTuple
+
+OURS = "hdrlab"
+
+Run = Callable[[], Any]
+
+
+class Usage(NamedTuple):
+    """What a process took; a run that starts processes returns this, and is not timed itself."""
+
+    seconds: float
+    megabytes: float
+
+    def net(self, idle: "Usage") -> "Usage":
+        """Return what is left without what an idle process of the same input and output takes."""
+        return Usage(self.seconds - idle.seconds, self.megabytes - idle.megabytes)
+
+
+class Case(NamedTuple):
+    """Work that is ready to run.
+
+    Attributes
+    ----------
+    runs : who -> a function without arguments that does the work; hdrlab first
+    missing : peer -> why it is not there
+    error : how far a result is from the truth, given who made it; None where nothing can be said
+    """
+
+    runs: dict[str, Run]
+    missing: dict[str, str]
+    error: Callable[[str, Any], float | None] = lambda who, result: None
+
+
+class Figures(NamedTuple):
+    """Of one who did it: median seconds in one thread and by default, peak MB beyond the input, error."""
+
+    seconds: float
+    default: float
+    megabytes: float | None = None
+    error: float | None = None
+
+
+Results = dict[str, Figures]
+
+
+class Hold(NamedTuple):
+    """What must be at least, or at most, a limit; `figure` returns None where it cannot be told."""
+
+    what: str
+    figure: Callable[[Results], float | None]
+    limit: float
+    goal: float | None = None
+    least: bool = False
+
+    def verdict(self, results: Results) -> str:
+        """Return "ok", "MISSED", or "not judged"."""
+        value = self.figure(results)
+        if value is None:
+            return "not judged"
+        return "ok" if (value >= self.limit if self.least else value <= self.limit) else "MISSED"
+
+
+class Row(NamedTuple):
+    """Work: `case` prepares it from the folder of data, for one thread or not; `accuracy` names the error."""
+
+    name: str
+    title: str
+    case: Callable[[Path, bool], Case]
+    holds: tuple[Hold, ...]
+    accuracy: str = "error"
+
+
+Outcome = tuple[Row, Results | None]  # None where the work failed
+
+
+def verdicts(outcomes: list[Outcome]) -> list[tuple[Row, Hold, str]]:
+    """Return what became of every hold; where the work failed, all of them are missed."""
+    return [
+        (row, hold, "MISSED" if results is None else hold.verdict(results))
+        for row, results in outcomes
+        for hold in row.holds
+    ]
+
+
+def best_peer(results: Results) -> str | None:
+    """Return the fastest peer, or None where there is none."""
+    peers = [who for who in results if who != OURS]
+    return min(peers, key=lambda who: results[who].seconds, default=None)
+
+
+def ratio(results: Results) -> float | None:
+    """Return how many times faster hdrlab is than the best peer, in one thread."""
+    peer = best_peer(results)
+    return None if peer is None or OURS not in results else results[peer].seconds / results[OURS].seconds
+
+
+def faster(limit: float, goal: float | None = None) -> Hold:
+    """Hold at least this ratio to the best peer."""
+    return Hold("times as fast as the best peer", ratio, limit, goal, least=True)
+
+
+def smaller(share: float) -> Hold:
+    """Hold at most this share of the best peer's memory."""
+
+    def figure(results: Results) -> float | None:
+        peer = best_peer(results)
+        theirs = results[peer].megabytes if peer else None
+        ours = results[OURS].megabytes
+        return ours / theirs if ours is not None and theirs else None
+
+    return Hold("of its peak memory", figure, share)
+
+
+def close(limit: float, what: str, goal: float | None = None) -> Hold:
+    """Hold at most this error."""
+    return Hold(what, lambda results: results[OURS].error, limit, goal)
+
+
+def grows(small: str, large: str, pixels: float, limit: float) -> Hold:
+    """Hold that time grows at most with this power of the number of pixels."""
+
+    def exponent(results: Results) -> float:
+        return log(results[large].seconds / results[small].seconds) / log(pixels)
+
+    return Hold("is the power of the pixels that time grows with", exponent, limit)
+
+
+def within(who: str, megabytes: float) -> Hold:
+    """Hold at most this much memory beyond the input."""
+    return Hold(f"MB beyond the frames, {who}", lambda results: results[who].megabytes, megabytes)
