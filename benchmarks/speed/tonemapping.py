@@ -58,7 +58,7 @@ def dodge(folder: Path, one: bool) -> Case:
     """Return the work of dodge and burn, radiance to linear display RGB."""
     E = data.scene(folder)
     truth = true_gaussians(luminance(E))
-    theirs, missing = peers.present({peers.PFS: lambda: pfstools(E, folder, one)})
+    theirs, missing = peers.present({peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_reinhard02", "-s")})
 
     def ours() -> Array:
         L = luminance(E)
@@ -80,15 +80,15 @@ def true_gaussians(L: Array) -> Array:
     return last(reinhard.scale_steps(blurred)).adaptation
 
 
-def pfstools(E: Array, folder: Path, one: bool) -> Run:
-    """Return pfstmo_reinhard02 -s, less what it takes to read and write the same frame and do nothing."""
-    operator, idle, reader = map(peers.pfstools, ("pfstmo_reinhard02", "pfstag", "pfsinpfm"))
+def pfstools(E: Array, folder: Path, one: bool, operator: str, *options: str) -> Run:
+    """Return an operator of pfstools, less what it takes to read and write the same frame and do nothing."""
+    program, idle, reader = map(peers.pfstools, (operator, "pfstag", "pfsinpfm"))
     pfm.write(folder / "scene.pfm", E)
     frame = folder / "scene.pfs"
     process([reader, str(folder / "scene.pfm")], one=one, target=frame)
 
     def run() -> Usage:
-        busy = process([operator, "-s"], one=one, source=frame)
+        busy = process([program, *options], one=one, source=frame)
         return busy.net(process([idle], one=one, source=frame))
 
     return run

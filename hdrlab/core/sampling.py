@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import Array, as_mask, as_stack
 
 Samples = NDArray[np.intp]
+PIXELS = 1_000_000  # an even choice of about so many ranks a frame as well as all of it
 
 
 def to_256(images: Array) -> NDArray[np.uint8]:
@@ -28,8 +29,10 @@ def to_256(images: Array) -> NDArray[np.uint8]:
 def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Samples:
     """Return Z (N, P[, 3]): the level at rank (i + 1/2) / N of each frame's histogram, channel by channel."""
     stack = as_stack(images)
-    pixels = to_256(stack).reshape(*stack.shape[:3], -1)
-    seen = slice(None) if valid is None else _seen_in_all(valid, stack)
+    step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
+    pixels = to_256(stack[:, ::step, ::step])
+    pixels = pixels.reshape(*pixels.shape[:3], -1)
+    seen = slice(None) if valid is None else _seen_in_all(valid, stack)[::step, ::step]
     ranks = (np.arange(count) + 0.5) / count
     Z = np.empty((count, len(pixels), pixels.shape[-1]), np.intp)
     for j, frame in enumerate(pixels):

@@ -23,7 +23,7 @@ from hdrlab.io.times import Times, bracket_times
 
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
 PICTURES: dict[str, dict[str, Any]] = {
-    ".png": {},
+    ".png": {"compress_level": 1},  # a quarter of the time for a sixth more bytes
     ".jpg": {"quality": 95, "subsampling": 0},
     ".jpeg": {"quality": 95, "subsampling": 0},
     ".tif": {"compression": "tiff_deflate"},

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from hdrlab.core.arrays import Array
 
 Float = NDArray[np.float64]
+ROWS = 32  # a band of rows stays in the processor's cache
 RING = [(dy, dx) for dy, dx in product((-1, 0, 1), repeat=2) if (dy, dx) != (0, 0)]
 
 
@@ -54,23 +55,23 @@ def stuck(shortest: Array, longest: Array) -> NDArray[np.bool_]:
     quarter of the range: above them in the shortest frame (hot), or below them in the longest (dead).
     """
     quarter = (np.iinfo(shortest.dtype).max + 1) // 4
-    still = np.maximum(shortest, longest) - np.minimum(shortest, longest) < quarter // 8
-    candidates = np.unravel_index(np.flatnonzero(still), still.shape)
-    found = np.zeros(still.shape[:2], bool)
-    for frame in (shortest, ~longest):  # dead pixels are hot ones of the negative
-        y, x, _ = _above_neighbours(frame, candidates, quarter)
-        found[y, x] = True
+    found = np.zeros(shortest.shape[:2], bool)
+    for top in range(0, len(found), ROWS):
+        a, b = shortest[top : top + ROWS], longest[top : top + ROWS]
+        still = np.maximum(a, b) - np.minimum(a, b) < quarter // 8
+        y, x, c = np.unravel_index(np.flatnonzero(still), still.shape)
+        for frame, sign in ((shortest, 1), (longest, -1)):  # dead pixels are hot ones of the negative
+            found[_above_neighbours(frame, (y + top, x, c), sign, quarter)] = True
     return found
 
 
-def _above_neighbours(frame: Array, candidates: tuple[Array, ...], by: int) -> tuple[Array, ...]:
-    """Return the candidates (y, x, c) that exceed all eight neighbours by that much."""
-    high = frame[candidates] >= by
-    y, x, c = (axis[high] for axis in candidates)
+def _above_neighbours(frame: Array, at: tuple[Array, ...], sign: int, by: int) -> tuple[Array, ...]:
+    """Return where (y, x) those of the places (y, x, c) are that exceed all eight neighbours by that much."""
+    y, x, c = at
     for step in RING:
-        out = frame[y, x, c].astype(int) - frame[(*_beside(y, x, step, frame.shape), c)] >= by
-        y, x, c = y[out], x[out], c[out]
-    return y, x, c
+        difference = frame[y, x, c].astype(int) - frame[(*_beside(y, x, step, frame.shape), c)]
+        y, x, c = (axis[sign * difference >= by] for axis in (y, x, c))
+    return y, x
 
 
 def _beside(y: Array, x: Array, step: tuple[int, int], shape: tuple[int, ...]) -> tuple[Array, Array]:

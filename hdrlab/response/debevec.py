@@ -13,6 +13,7 @@ them all.
 """
 
 from collections.abc import Callable
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -125,10 +126,10 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
 
 def _stiffness(w: Float, smoothness: float) -> Float:
     """Return the sum over z of (lambda w(z))^2 d d^T, d = (1, -2, 1) at z - 1, z, z + 1."""
-    n = len(w)
-    d = np.eye(n)[:-2] - 2 * np.eye(n)[1:-1] + np.eye(n)[2:]
-    rows = smoothness * w[1:-1, None] * d
-    return rows.T @ rows
+    S, z = np.zeros((len(w), len(w))), np.arange(1, len(w) - 1)
+    for (a, da), (b, db) in product(((-1, 1), (0, -2), (1, 1)), repeat=2):
+        S[z + a, z + b] += (smoothness * w[1:-1]) ** 2 * da * db
+    return S
 
 
 def _solve_with_gauge(S: Float, r: Float) -> Float:

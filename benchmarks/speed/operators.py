@@ -1,0 +1,109 @@
+"""The other operators on luminance, beside pfstools, OpenCV's blur and our own Reinhard."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from benchmarks import data, peers
+from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, close, faster
+from benchmarks.speed.tonemapping import pfstools
+from hdrlab.core import bilateral, blur, poisson
+from hdrlab.core.colour import luminance
+from hdrlab.tonemap import durand, fattal, reinhard, ward
+
+REINHARD = "own Reinhard"
+BLUR = 0.02  # of the longer side, a wide Gaussian
+
+
+def bilateral_case(folder: Path, one: bool) -> Case:
+    """Return the work of Durand's operator; its error is that of the base, against the definition."""
+    E = data.scene(folder)
+    L = luminance(E)
+    theirs, missing = peers.present({peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_durand02")})
+
+    def error(who: str, _: Any) -> float | None:
+        if who != OURS:
+            return None
+        lL = durand.logarithm(L)[::6, ::6]  # the definition takes minutes on all of it
+        sigmas = {"sigma_s": 0.02 * max(lL.shape), "sigma_r": 0.4}
+        exact, fast = bilateral.brute(lL, **sigmas).mean, bilateral.fast(lL, **sigmas).mean
+        return float(np.sqrt(np.mean((fast - exact) ** 2)))
+
+    return Case({OURS: lambda: durand.tonemap(L)} | theirs, missing, error)
+
+
+def gradient_case(folder: Path, one: bool) -> Case:
+    """Return the work of Fattal's operator; its error is the residual of the Poisson solve."""
+    E = data.scene(folder)
+    L = luminance(E)
+    theirs, missing = peers.present({peers.PFS: lambda: pfstools(E, folder, one, "pfstmo_fattal02")})
+
+    def error(who: str, _: Any) -> float | None:
+        if who != OURS:
+            return None
+        f = poisson.laplacian(fattal.log_luminance(L))
+        return float(np.abs(poisson.laplacian(poisson.solve(f)) - f).max() / np.abs(f).max())
+
+    return Case({OURS: lambda: fattal.tonemap(L)} | theirs, missing, error)
+
+
+def histogram_case(folder: Path, one: bool) -> Case:
+    """Return the work of Ward's operator beside our own global Reinhard, both on luminance."""
+    L = luminance(data.scene(folder))
+    return Case({OURS: lambda: ward.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {})
+
+
+def blur_case(folder: Path, one: bool) -> Case:
+    """Return the work of a wide Gaussian, the cost of Chiu's scale field."""
+    L = luminance(data.scene(folder))
+    sigma = BLUR * max(L.shape)
+
+    def opencv() -> Run:
+        cv2 = peers.opencv(one)
+        return lambda: cv2.GaussianBlur(L, (0, 0), sigma)
+
+    theirs, missing = peers.present({peers.OPENCV: opencv})
+
+    def error(who: str, blurred: Any) -> float | None:
+        if who != OURS:
+            return None
+        return float(np.abs(blurred / blur.direct(L, sigma) - 1).max())
+
+    return Case({OURS: lambda: blur.gaussian(L, sigma)} | theirs, missing, error)
+
+
+def slower(results: Results) -> float:
+    """Return how many times as long as our own global Reinhard it takes."""
+    return results[OURS].seconds / results[REINHARD].seconds
+
+
+ROWS = (
+    Row(
+        "durand",
+        "Durand's bilateral operator, luminance to luminance",
+        bilateral_case,
+        (faster(8, 12), close(0.005, "log10 RMS of the base from the definition")),
+        "RMS of the base from the definition, log10",
+    ),
+    Row(
+        "fattal",
+        "Fattal's gradient operator, luminance to luminance",
+        gradient_case,
+        (faster(6, 8), close(1e-5, "relative residual of the Poisson equation")),
+        "relative residual of the Poisson equation",
+    ),
+    Row(
+        "ward",
+        "Ward's histogram adjustment, luminance to luminance",
+        histogram_case,
+        (Hold("times our own global Reinhard", slower, 1.3, 1.0),),
+    ),
+    Row(
+        "chiu-blur",
+        "a Gaussian of 2 % of the picture, Chiu's scale field",
+        blur_case,
+        (faster(10, 14), close(0.01, "largest relative difference from the plain sum")),
+        "relative difference from the plain sum",
+    ),
+)
