@@ -135,11 +135,13 @@ def _stiffness(w: Float, smoothness: float) -> Float:
 def _solve_with_gauge(S: Float, r: Float) -> Float:
     """Return g of S g = r with g(n // 2) = 0: exactly, as a constant added to both g and lE costs nothing."""
     n = len(r)
-    g = np.zeros(n)
     reached = (np.diag(S) > 0) | (np.arange(n) == n // 2)
-    free = np.flatnonzero(reached & (np.arange(n) != n // 2))
+    pinned = np.flatnonzero(~reached | (np.arange(n) == n // 2))
+    S, r = S.copy(), r.copy()  # an equation g(z) = 0 for each pinned level
+    S[pinned], S[:, pinned], r[pinned] = 0, 0, 0
+    S[pinned, pinned] = 1
     try:
-        g[free] = np.linalg.solve(S[np.ix_(free, free)], r[free])
+        g = np.linalg.solve(S, r)
     except np.linalg.LinAlgError as error:
         raise ValueError("expected more levels, frames or smoothness: the samples leave g open") from error
     return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
