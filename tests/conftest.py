@@ -1,12 +1,14 @@
 """What the tests share: real photographs where they are at hand, small simulated ones everywhere."""
 
 import csv
+import tempfile
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hypothesis import settings
+from hypothesis.configuration import set_hypothesis_home_dir
 from PIL import Image
 
 from hdrlab.capture import camera
@@ -15,6 +17,16 @@ from hdrlab.core.bracket import bracket
 pytest.register_assert_rewrite("laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
 settings.load_profile("hdrlab")
+SCRATCH = tempfile.TemporaryDirectory(
+    prefix="hypothesis-"
+)  # it keeps notes of its own, even without a database
+set_hypothesis_home_dir(SCRATCH.name)
+
+
+def pytest_unconfigure():
+    """Leave nothing behind."""
+    SCRATCH.cleanup()
+
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data"  # beside the repository, not part of it
 
