@@ -170,9 +170,9 @@ def pfstmo(L, *options):
 
 
 def test_the_picture_is_close_to_that_of_pfstools():
-    """Not equal: it enlarges by repeating pixels, blurs, and attenuates halfway between two pixels.
+    """Not equal: by its manual it works with a "detail level" that the paper does not have, here set to 0.
 
-    By default it also leaves the three finest levels alone, a "detail level" that the paper does not have.
+    How it enlarges its levels, and where between two pixels it attenuates, may well differ too.
     """
     L = laws.scene((240, 320))
     theirs = np.clip(pfstmo(L, "--detail-level", "0", "--alpha", "1", "--noise", "0"), 0, 1)
