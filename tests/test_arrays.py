@@ -132,3 +132,10 @@ def test_a_description_holds_shape_type_and_range():
     assert arrays.describe([[1, 5]]) == "shape (1, 2), dtype int64, values 1 to 5"
     assert arrays.describe([]) == "shape (0,), dtype float64"
     assert arrays.describe(["a"]) == "shape (1,), dtype <U1"
+
+
+def test_times_that_are_all_the_same_are_refused_where_they_must_differ():
+    assert arrays.as_times([1, 1], 2).tolist() == [1, 1]
+    assert arrays.as_times([1, 1, 2], 3, distinct=2).tolist() == [1, 1, 2]
+    with pytest.raises(ValueError, match=r"at least 2 different exposure times, got \[1.0, 1.0\] s"):
+        arrays.as_times([1, 1], 2, distinct=2)

@@ -152,8 +152,8 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
 @pytest.mark.parametrize(
     ("images", "times", "said"),
     [
-        (STACK[:1], [1], "at least two different times, got"),
-        (STACK, [1, 1], r"at least two different times, got \[1.0, 1.0\] s"),
+        (STACK[:1], [1], "at least 2 different exposure times, got"),
+        (STACK, [1, 1], r"at least 2 different exposure times, got \[1.0, 1.0\] s"),
         (STACK, [1, 0], "positive exposure times"),
         (STACK, [1], "expected 2 exposure times"),
         (STACK * 0, [1, 2], "expected samples seen well in two exposures"),

@@ -224,8 +224,8 @@ def test_a_mask_keeps_pixels_out():
 def test_what_cannot_be_calibrated_is_refused():
     flat = np.full((20, 20), 100, np.uint8)
     for images, times, said in (
-        ([flat], [1], "two different times"),
-        ([flat, flat], [1, 1], "two different times"),
+        ([flat], [1], "2 different exposure times"),
+        ([flat, flat], [1, 1], "2 different exposure times"),
         ([flat * 0 + 2, flat * 0 + 254], [1, 2], "no pixels lie between"),
         ([flat * 0, flat * 0 + 255], [1, 2], "no pixels lie between"),
     ):

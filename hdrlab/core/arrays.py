@@ -40,13 +40,15 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     return images
 
 
-def as_times(times: ArrayLike, count: int) -> NDArray[np.float64]:
-    """Return `times` as float64 (count,), positive and finite, or raise a ValueError."""
+def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.float64]:
+    """Return `times` as float64 (count,), positive, so many of them distinct, or raise a ValueError."""
     checked = np.asarray(times, dtype=np.float64)
     if checked.shape != (count,):
         raise ValueError(f"expected {count} exposure times, one per image, got {describe(checked)}")
     if not np.all(np.isfinite(checked) & (checked > 0)):
         raise ValueError(f"expected positive exposure times in seconds, got {checked.tolist()}")
+    if len(np.unique(checked)) < distinct:
+        raise ValueError(f"expected at least {distinct} different exposure times, got {checked.tolist()} s")
     return checked
 
 

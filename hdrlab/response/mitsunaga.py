@@ -138,9 +138,7 @@ def averages(
 ) -> tuple[Float, Float]:
     """Return samples M (C, N, P) of a bracket, from short to long, and the ratios R (P - 1,) of its times."""
     stack = as_stack(images)
-    times = as_times(times, len(stack))
-    if len(set(times.tolist())) < 2:
-        raise ValueError(f"expected photographs with at least two different times, got {times.tolist()} s")
+    times = as_times(times, len(stack), distinct=2)
     by_time = short_to_long(stack, times)
     Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
     M = np.stack([average(one, samples) for one in np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)])

@@ -205,9 +205,7 @@ def recover(
     True
     """
     stack = as_stack(images)
-    times = as_times(times, len(stack))
-    if len(set(times.tolist())) < 2:
-        raise ValueError(f"expected photographs with at least two different times, got {times.tolist()} s")
+    times = as_times(times, len(stack), distinct=2)
     space = default() if basis is None else basis
     if space.mean.shape != (256,) or not noise > 0:
         raise ValueError(
