@@ -1,0 +1,173 @@
+"""Exposure: what shutter, aperture, speed and filters do to the light (the slides; Battiato et al.).
+
+T   shutter time     s
+F   f-number         focal length over aperture; the light that passes goes with 1 / F^2
+S   ISO speed        100 is the reference
+D   optical density  of a filter, which lets 10^-D of the light through
+L   luminance        cd/m^2
+EV  exposure value   stops: one more is half the light
+
+A dial says 1/60 and the shutter opens for 1/64 s: the series is one of powers of two, and its names are
+rounded so that people can say them. Times taken from names are wrong by up to 7 %, and a calibration sees it.
+"""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+Real = float | NDArray[np.floating[Any]]
+
+# What dials say, from bright to dark in thirds of a stop; every third one is a full stop.
+SHUTTER = """
+    30 25 20 15 13 10 8 6 5 4 3.2 2.5 2 1.6 1.3 1 0.8 0.6 1/2 0.4 0.3 1/4 1/5 1/6 1/8 1/10 1/13 1/15
+    1/20 1/25 1/30 1/40 1/50 1/60 1/80 1/100 1/125 1/160 1/200 1/250 1/320 1/400 1/500 1/640 1/800
+    1/1000 1/1250 1/1600 1/2000 1/2500 1/3200 1/4000 1/5000 1/6400 1/8000
+"""
+APERTURE = """
+    1 1.1 1.2 1.4 1.6 1.8 2 2.2 2.5 2.8 3.2 3.5 4 4.5 5 5.6 6.3 7.1 8 9 10 11 13 14 16 18 20 22 25 29 32
+"""
+LONGEST, SATURATED, LENS = 5, 78.0, 0.65  # stops: 30 is 2^5 s; lx s at ISO 1 [ISO 12232]; what a lens passes
+
+
+class Dial(NamedTuple):
+    """A series of settings: what is written on the dial, and what it does."""
+
+    names: tuple[str, ...]
+    values: NDArray[np.float64]
+
+
+def shutter_series(per_stop: int = 1) -> Dial:
+    """Return the shutter times of a dial, long to short: names, and true seconds 2^(5 - k / per_stop).
+
+    Examples
+    --------
+    >>> dial = shutter_series()
+    >>> dial.names[11], float(1 / dial.values[11])
+    ('1/60', 64.0)
+    """
+    return _series(SHUTTER, per_stop, lambda stop: 2.0 ** (LONGEST - stop))
+
+
+def aperture_series(per_stop: int = 1) -> Dial:
+    """Return the f-numbers of a dial, wide to narrow: names, and true values 2^(k / (2 per_stop)).
+
+    Examples
+    --------
+    >>> dial = aperture_series()
+    >>> dial.names[:4], dial.values[:4].round(3)
+    (('1', '1.4', '2', '2.8'), array([1.   , 1.414, 2.   , 2.828]))
+    """
+    return _series(APERTURE, per_stop, lambda stop: 2.0 ** (stop / 2))
+
+
+def _series(marks: str, per_stop: int, true: Callable[[Any], Any]) -> Dial:
+    if per_stop not in (1, 3):
+        raise ValueError(f"expected a dial of 1 or 3 settings per stop, got {per_stop}")
+    chosen = tuple(marks.split()[:: 3 // per_stop])
+    return Dial(chosen, true(np.arange(len(chosen)) / per_stop))
+
+
+def seconds(name: str) -> float:
+    """Return what a shutter's name says, 1/60 or 0.6 or 30, as a number of seconds.
+
+    Raises
+    ------
+    ValueError
+        For a text that is no positive time.
+    """
+    over, slash, under = name.strip().removesuffix("s").partition("/")
+    try:
+        time = float(over) / (float(under) if slash else 1.0)
+    except (ValueError, ZeroDivisionError):
+        time = 0.0
+    if not 0 < time < np.inf:
+        raise ValueError(f"expected a shutter time such as 1/60 or 2, got {name!r}")
+    return time
+
+
+def true_time(nominal: float) -> float:
+    """Return how long a shutter marked `nominal` seconds is open: the power 2^(k/3) whose name is nearest.
+
+    Examples
+    --------
+    >>> 1 / true_time(1 / 60), 1 / true_time(1 / 125), true_time(30)
+    (64.0, 128.0, 32.0)
+    """
+    _positive("shutter time", nominal)
+    dial = shutter_series(3)
+    marked = np.array([seconds(name) for name in dial.names])
+    return float(dial.values[np.argmin(np.abs(np.log(marked / nominal)))])
+
+
+def ev(F: Real, T: Real, *, S: Real = 100.0) -> Real:
+    """Return EV = 2 log2 F - log2 T - log2(S / 100) [Battiato08 eq. 1.1; the speed as a third setting].
+
+    Parameters
+    ----------
+    F, T, S : f-number, seconds, ISO speed
+
+    Returns
+    -------
+    EV, stops: of the settings at ISO 100, or of the scene that they suit (its EV at ISO 100)
+
+    Raises
+    ------
+    ValueError
+        For a setting that is not positive.
+
+    Examples
+    --------
+    >>> float(ev(1, 1)), float(ev(8, 1 / 64)), float(ev(8, 1 / 64, S=400))
+    (0.0, 12.0, 10.0)
+    """
+    F, T, S = _positive("f-number", F), _positive("shutter time", T), _positive("ISO speed", S)
+    return 2 * np.log2(F) - np.log2(T) - np.log2(S / 100)
+
+
+def stops(more: Real, less: Real) -> Real:
+    """Return log2(more / less): by how many stops one amount of light exceeds another."""
+    return np.log2(_positive("amount", more) / _positive("amount", less))
+
+
+def equivalent_time(T: Real, F: Real, F_new: Real, *, S: float = 100, S_new: float = 100) -> Real:
+    """Return T' = T (F' / F)^2 S / S': the time that gives the same exposure with other settings.
+
+    Examples
+    --------
+    >>> float(equivalent_time(1 / 64, 8, 16))
+    0.0625
+    """
+    F, F_new = _positive("f-number", F), _positive("f-number", F_new)
+    ratio = _positive("ISO speed", S) / _positive("ISO speed", S_new)
+    return _positive("shutter time", T) * (F_new / F) ** 2 * ratio
+
+
+def passes(D: Real) -> Real:
+    """Return 10^-D, the share of the light that a neutral density filter passes: ND 0.3 passes a half."""
+    return 10.0 ** -np.asarray(D, np.float64)
+
+
+def density(stops: Real) -> Real:
+    """Return D = n log10 2, the density of a filter that takes n stops."""
+    return np.asarray(stops, np.float64) * np.log10(2)
+
+
+def saturating_luminance(T: Real, *, F: float = 8.0, S: float = 100.0) -> Real:
+    """Return L = 78 F^2 / (0.65 S T), cd/m^2, which just fills the levels [ISO 12232, saturation speed].
+
+    Examples
+    --------
+    >>> round(float(saturating_luminance(1 / 128, F=8, S=100)))
+    9830
+    """
+    T, F, S = _positive("shutter time", T), _positive("f-number", F), _positive("ISO speed", S)
+    return SATURATED * F**2 / (LENS * S * T)
+
+
+def _positive(what: str, value: Real) -> Any:
+    array = np.asarray(value, np.float64)
+    if not np.all((array > 0) & np.isfinite(array)):
+        raise ValueError(f"expected a positive {what}, got {value}")
+    return array

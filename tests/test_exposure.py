@@ -1,0 +1,91 @@
+"""Exposure: the identities of the text, and what dials really mean."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.capture import exposure
+
+TIMES, NUMBERS = st.floats(1e-4, 60), st.floats(0.7, 64)
+
+
+@given(F=NUMBERS, T=TIMES)
+def test_halving_the_time_adds_one_ev(F, T):
+    assert exposure.ev(F, T / 2) - exposure.ev(F, T) == pytest.approx(1)
+
+
+@given(F=NUMBERS, T=TIMES)
+def test_stopping_down_by_the_root_of_two_adds_one_ev_and_doubling_the_speed_takes_one(F, T):
+    assert exposure.ev(F * np.sqrt(2), T) - exposure.ev(F, T) == pytest.approx(1)
+    assert exposure.ev(F, T) - exposure.ev(F, T, S=200) == pytest.approx(1)
+
+
+@given(F=NUMBERS, T=TIMES, other=NUMBERS)
+def test_equivalent_exposures_have_one_ev_and_one_saturating_luminance(F, T, other):
+    same = exposure.equivalent_time(T, F, other)
+    assert exposure.ev(other, same) == pytest.approx(exposure.ev(F, T))
+    assert exposure.saturating_luminance(same, F=other) == pytest.approx(
+        exposure.saturating_luminance(T, F=F)
+    )
+
+
+def test_one_second_at_f_1_is_ev_0():
+    assert exposure.ev(1, 1) == 0
+
+
+@pytest.mark.parametrize(
+    "name, really",
+    [("1/60", 64), ("1/125", 128), ("1/250", 256), ("1/500", 512), ("1/1000", 1024), ("1/15", 16)],
+)
+def test_a_shutter_marked_so_opens_for_a_power_of_two(name, really):
+    assert 1 / exposure.true_time(exposure.seconds(name)) == really
+    dial = exposure.shutter_series()
+    assert 1 / dial.values[dial.names.index(name)] == really
+
+
+@pytest.mark.parametrize("series", [exposure.shutter_series, exposure.aperture_series])
+@pytest.mark.parametrize("per_stop", [1, 3])
+def test_the_names_of_a_dial_are_within_seven_percent_of_what_it_does(series, per_stop):
+    dial = series(per_stop)
+    said = np.array([exposure.seconds(name) for name in dial.names])
+    assert len(said) == len(dial.values) and np.abs(said / dial.values - 1).max() < 0.07
+
+
+@pytest.mark.parametrize("per_stop", [1, 3])
+def test_neighbours_on_a_dial_differ_by_one_or_a_third_of_a_stop(per_stop):
+    steps = np.diff(np.log2(exposure.shutter_series(per_stop).values))
+    assert steps == pytest.approx(np.full(len(steps), -1 / per_stop))
+    steps = np.diff(2 * np.log2(exposure.aperture_series(per_stop).values))
+    assert steps == pytest.approx(np.full(len(steps), 1 / per_stop))
+
+
+def test_every_name_of_the_dial_leads_to_its_own_true_time():
+    dial = exposure.shutter_series(3)
+    assert [exposure.true_time(exposure.seconds(name)) for name in dial.names] == pytest.approx(dial.values)
+
+
+def test_a_filter_of_density_0_3_takes_a_stop_and_1000_times_takes_ten():
+    assert exposure.passes(0.3) == pytest.approx(0.5, abs=0.002)
+    assert exposure.passes(exposure.density(10)) == pytest.approx(1 / 1024)
+    assert exposure.stops(1, exposure.passes(exposure.density(3))) == pytest.approx(3)
+
+
+def test_a_sunlit_white_wall_fills_the_levels_near_the_sunny_sixteen_rule():
+    """f/16 and 1 / ISO seconds suit a sunlit scene: its white, 30 000 cd/m^2, is then just below the top."""
+    assert exposure.saturating_luminance(1 / 128, F=16, S=100) == pytest.approx(39322, rel=0.01)
+
+
+@pytest.mark.parametrize("text", ["", "1/0", "-1", "0", "fast", "1/", "inf", "nan"])
+def test_a_time_that_means_nothing_is_refused_by_name(text):
+    with pytest.raises(ValueError, match="expected a shutter time"):
+        exposure.seconds(text)
+
+
+@pytest.mark.parametrize("bad", [0, -1, np.inf, np.nan])
+def test_settings_that_are_not_positive_are_refused(bad):
+    for call in (lambda: exposure.ev(bad, 1), lambda: exposure.ev(1, bad), lambda: exposure.true_time(bad)):
+        with pytest.raises(ValueError, match="expected a positive"):
+            call()
+    with pytest.raises(ValueError, match="1 or 3"):
+        exposure.shutter_series(2)
