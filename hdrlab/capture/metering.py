@@ -1,0 +1,202 @@
+"""Metering: one number from a picture, and the exposure that follows (Battiato et al. 2008, sec. 1.2).
+
+B      brightness     (H, W) in [0, 1], linear: the exposure of each pixel, 1 where it is full
+w      weight         (H, W) >= 0, sum 1: how much each pixel has to say
+B_pre  the reading    sum of w B over the picture
+B_opt  what the reading should be: 0.18, a surface that reflects a fifth of the light
+EV     exposure value, stops: one more halves the light
+
+A meter does not know what it looks at. It takes the world for gray, so snow comes out gray, and a black
+locomotive too; the modes differ in which pixels they ask.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, as_luminance, describe
+
+Weight = NDArray[np.float64]
+At = tuple[float, float]
+
+GRAY = 0.18  # B_opt
+FULL = (
+    16.0  # how bright a full pixel is taken to be: it says "at least 1"; too dark a next shot is soon mended
+)
+
+
+def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
+    """Return how far down and right of `at` each pixel lies, in heights and in widths of the picture."""
+    if len(shape) != 2 or min(shape) < 1:
+        raise ValueError(f"expected the shape (H, W) of a picture, got {shape}")
+    if not all(0 <= part <= 1 for part in at):
+        raise ValueError(f"expected a place (down, right) as parts of the picture, 0 to 1, got {at}")
+    down, right = ((np.arange(n) + 0.5) / n - part for n, part in zip(shape, at, strict=True))
+    return down[:, None], right[None, :]
+
+
+def _disc(shape: tuple[int, int], share: float, at: At) -> Weight:
+    """Return equal weight in a disc: the `share` of the pixels that are nearest to `at`."""
+    if not 0 < share <= 1:
+        raise ValueError(f"expected a share of the picture from 0 to 1, got {share}")
+    height, width = shape
+    down, right = _places(shape, at)
+    distance = np.hypot(down * height, right * width)
+    reach = np.sort(distance, axis=None)[max(round(share * distance.size), 1) - 1]
+    return _normal(distance <= reach)
+
+
+def _normal(w: ArrayLike) -> Weight:
+    w = np.asarray(w, np.float64)
+    return w / w.sum()
+
+
+def average(shape: tuple[int, int]) -> Weight:
+    """Return w = 1 / (H W): every pixel has the same say."""
+    return _normal(np.ones(shape))
+
+
+def spot(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.03) -> Weight:
+    """Return equal weight in a disc of 1 to 5 % of the picture, and none elsewhere."""
+    return _disc(shape, share, at)
+
+
+def partial(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.12) -> Weight:
+    """Return equal weight in a disc of 10 to 15 % of the picture, and none elsewhere."""
+    return _disc(shape, share, at)
+
+
+def centre(
+    shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, at: At = (0.5, 0.5)
+) -> Weight:
+    """Return weight of which `inside`, 60 to 80 %, lies in the central `share`, feathered toward the edges.
+
+    It falls as a Gaussian of the distance, whose width is found by halving.
+    """
+    if not share < inside < 1:
+        raise ValueError(
+            f"expected more than the share {share} of the weight inside, and less than 1, got {inside}"
+        )
+    down, right = _places(shape, at)
+    squared = down**2 + right**2
+    core = _disc(shape, share, at) > 0
+    low, high = 0.01, 100.0
+    for _ in range(60):
+        sigma = np.sqrt(low * high)
+        low, high = (sigma, high) if _feather(squared, sigma)[core].sum() > inside else (low, sigma)
+    return _feather(squared, sigma)
+
+
+def _feather(squared: Array, sigma: float) -> Weight:
+    return _normal(np.exp(-squared / (2 * sigma**2)))
+
+
+def _five(down: Array, right: Array) -> Array:
+    """The centre, and four corners around it: the first matrix meters had these."""
+    corner = 1 + 2 * (down > 0) + (right > 0)
+    return np.where((down / 0.28) ** 2 + (right / 0.28) ** 2 < 1, 0, corner)
+
+
+def _grid(down: Array, right: Array) -> Array:
+    """Five rows of seven."""
+    row, column = np.floor((down + 0.5) * 5), np.floor((right + 0.5) * 7)
+    return (7 * row + column).astype(int)
+
+
+def _honeycomb(down: Array, right: Array) -> Array:
+    """Hexagons: each pixel belongs to the nearest of centres in five staggered rows of six and five."""
+    rows = np.repeat(np.arange(5), [6, 5, 6, 5, 6])
+    columns = np.concatenate([np.arange(6), np.arange(5) + 0.5] * 2 + [np.arange(6)])
+    tall, wide = down[..., None] - (rows / 5 - 0.4), right[..., None] - ((columns + 0.5) / 6 - 0.5)
+    return np.argmin((2 * tall) ** 2 + (3 * wide) ** 2, axis=-1)
+
+
+LAYOUTS: dict[str, Callable[[Array, Array], Array]] = {"five": _five, "grid": _grid, "honeycomb": _honeycomb}
+
+
+def zones(shape: tuple[int, int], layout: str = "honeycomb") -> NDArray[np.int64]:
+    """Return which of a matrix meter's zones each pixel (H, W) lies in, from 0: there are 5, 35 or 28."""
+    if layout not in LAYOUTS:
+        raise ValueError(f"expected a layout among {', '.join(LAYOUTS)}, got {layout!r}")
+    down, right = _places(shape, (0.5, 0.5))
+    labels = LAYOUTS[layout](*np.broadcast_arrays(down, right))
+    return np.unique(labels, return_inverse=True)[1].reshape(shape)
+
+
+def matrix(
+    B: ArrayLike, *, at: At = (0.5, 0.5), layout: str = "honeycomb", near: float = 0.2, tolerance: float = 2.0
+) -> Weight:
+    """Return a matrix meter's weights: zones near the focus point count more, zones far from the others less.
+
+    A zone's weight is exp(-d^2 / (2 near^2)) exp(-e^2 / (2 tolerance^2)): d is its distance from the focus
+    point, in pictures, and e its distance in stops from the median zone, which leaves out a bare sun.
+    Makers do not tell their rules; this one has what the text says they take into account.
+    """
+    B = as_luminance(B)
+    labels = zones(B.shape, layout)
+    area = np.bincount(labels.ravel())
+
+    def mean(values: Array) -> Array:
+        return np.bincount(labels.ravel(), np.broadcast_to(values, B.shape).ravel()) / area
+
+    down, right = _places(B.shape, at)
+    stops = np.log2(np.maximum(mean(B), 2.0**-14))
+    closeness = np.exp(-(mean(down) ** 2 + mean(right) ** 2) / (2 * near**2))
+    likeness = np.exp(-((stops - np.median(stops)) ** 2) / (2 * tolerance**2))
+    return _normal((closeness * likeness / area)[labels])
+
+
+MODES = ("spot", "partial", "centre", "average", "matrix")
+
+
+def weights(B: ArrayLike, mode: str, *, at: At = (0.5, 0.5)) -> Weight:
+    """Return the weights (H, W) of a mode, of MODES, for a picture of brightness B."""
+    B = as_luminance(B)
+    if mode not in MODES:
+        raise ValueError(f"expected a mode among {', '.join(MODES)}, got {mode!r}")
+    if mode == "matrix":
+        return matrix(B, at=at)
+    if mode == "average":
+        return average(B.shape)
+    return {"spot": spot, "partial": partial, "centre": centre}[mode](B.shape, at=at)
+
+
+def reading(B: ArrayLike, w: ArrayLike) -> float:
+    """Return B_pre = sum w B / sum w."""
+    B, w = as_luminance(B), np.asarray(w, np.float64)
+    if w.shape != B.shape or not np.all(w >= 0) or not w.sum() > 0:
+        raise ValueError(f"expected weights of shape {B.shape}, positive somewhere, got {describe(w)}")
+    return float((w * B).sum() / w.sum())
+
+
+def multi_spot(B: ArrayLike, places: Sequence[At], *, share: float = 0.03) -> float:
+    """Return exp mean ln B_pre of several spots: a photographer averages stops."""
+    if not len(places):
+        raise ValueError("expected at least one place to read, got none")
+    B = as_luminance(B)
+    read = [reading(B, spot(B.shape, at=at, share=share)) for at in places]
+    return float(np.exp(np.mean(np.log(np.maximum(read, 2.0**-14)))))
+
+
+def optimum(EV_pre: float, B_pre: float, B_opt: float = GRAY) -> float:
+    """Return EV_opt = EV_pre + log2 B_pre - log2 B_opt [Battiato08 eq. 1.2]; right where no pixel is full."""
+    return EV_pre + np.log2(B_pre) - np.log2(B_opt)
+
+
+def foresee(B: ArrayLike, w: Weight, stops: float) -> float:
+    """Return the reading after `stops` more light, sum w min(2^stops B, 1), where a full B counts as FULL."""
+    B = np.asarray(B, np.float64)
+    return float((w * np.minimum(np.where(B < 1, B, FULL) * 2.0**stops, 1)).sum())
+
+
+def correction(B: ArrayLike, w: Weight, B_opt: float = GRAY, *, most: float = 8.0) -> float:
+    """Return the stops after which the reading will be B_opt, at most `most` either way, found by halving.
+
+    Where nothing is full, and nothing will be, this is log2 B_opt - log2 B_pre, eq. 1.2.
+    """
+    low, high = -most, most
+    for _ in range(40):
+        middle = (low + high) / 2
+        low, high = (middle, high) if foresee(B, w, middle) < B_opt else (low, middle)
+    return (low + high) / 2
