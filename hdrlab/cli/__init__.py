@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import click
 
 from hdrlab import __version__
-from hdrlab.cli import curves, lessons, maps, photographs
+from hdrlab.cli import curves, exposures, lessons, maps, photographs
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
@@ -48,6 +48,8 @@ for command in (
     lessons.lab,
     photographs.assemble,
     curves.calibrate,
+    exposures.plan,
+    exposures.meter,
     maps.tonemap,
     maps.compare,
     maps.convert,

@@ -1,0 +1,98 @@
+"""Commands about exposure: which photographs to take, and what a meter would have said."""
+
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common
+
+MODES = ("spot", "partial", "centre", "average", "matrix")
+
+
+@click.command()
+@click.argument("low", type=float, required=False)
+@click.argument("high", type=float, required=False)
+@click.option("--map", "source", type=common.FILE, help="A radiance map in cd/m^2 instead of LOW and HIGH.")
+@click.option("--aperture", default=8.0, help="f-number, the same for all.")
+@click.option("--iso", default=100.0, help="ISO speed, the same for all.")
+@click.option("--usable", default=7.0, help="Stops that one photograph holds.")
+@click.option("--overlap", default=3.0, help="Stops that two neighbours both hold.")
+@click.option("--thirds", is_flag=True, help="The dial has thirds of a stop.")
+def plan(low: float | None, high: float | None, source: Path | None, thirds: bool, **camera: float) -> None:
+    """Plan the photographs for a scene whose luminances go from LOW to HIGH, cd/m^2.
+
+    Moonlight is about 0.1 cd/m^2, a living room in the evening 10, a white page in the sun 30 000. Of a map,
+    one pixel in a thousand may be left out at either end.
+    """
+    import numpy as np
+
+    from hdrlab.capture import planning
+    from hdrlab.core.colour import luminance
+
+    if source is not None and low is None:
+        L = luminance(common.read_map(source, clean=False))
+        low, high = np.quantile(L[L > 0], [0.001, 0.999]) if (L > 0).any() else (0.0, 0.0)
+    elif source is not None or low is None or high is None:
+        raise ValueError("expected LOW and HIGH in cd/m^2, or --map FILE")
+    made = planning.plan(low, high, per_stop=3 if thirds else 1, **camera)
+    scene = np.log2(high / low)
+    click.echo(
+        f"scene: {low:.3g} to {high:.3g} cd/m^2, {scene:.1f} stops; one photograph holds {camera['usable']:g}"
+    )
+    shots = (
+        "1 photograph"
+        if len(made.times) == 1
+        else f"{len(made.times)} photographs, {made.step:.3g} stops apart"
+    )
+    click.echo(f"{shots}, f/{camera['aperture']:g}, ISO {camera['iso']:g}:")
+    for name, time, (dark, bright) in zip(made.names, made.times, made.holds, strict=True):
+        click.echo(f"  {name:>7} s  (really {time:.6g} s) holds {dark:.3g} to {bright:.3g} cd/m^2")
+
+
+@click.command()
+@click.argument("photo", type=common.FILE)
+@click.option("--mode", type=click.Choice(MODES), default="centre", help="Whom the meter asks.")
+@click.option(
+    "--at", metavar="DOWN,RIGHT", default="0.5,0.5", help="Place of the spot, in parts of the picture."
+)
+def meter(photo: Path, mode: str, at: str) -> None:
+    """Read PHOTO as a camera's meter would, and say how it should have been exposed.
+
+    The photograph is taken to be in sRGB. Full pixels say only "at least so bright", so of an overexposed
+    photograph the advice is a first step: take it, and meter again.
+    """
+    import numpy as np
+
+    from hdrlab.capture import exposure, metering
+    from hdrlab.core.colour import decode_srgb, luminance
+    from hdrlab.io import decode, photos
+
+    place = _place(at)
+    image = photos.read_photo(photo)
+    B = np.minimum(luminance(decode_srgb(image / np.float32(np.iinfo(image.dtype).max))), 1)
+    w = metering.weights(B, mode, at=place)
+    read, stops = metering.reading(B, w), metering.correction(B, w)
+    asked, full = (w > w.max() / 100).mean(), float((w * (B >= 1)).sum())
+    click.echo(f"{mode}: asks {asked:.0%} of the pixels; {full:.0%} of what it hears is full pixels")
+    click.echo(
+        f"reading {read:.3f} of full, where {metering.GRAY} is wanted: {abs(stops):.1f} stops "
+        + ("too dark" if stops > 0 else "too bright")
+    )
+    said = decode.look(photo).exposure
+    if said.seconds:
+        wanted = exposure.true_time(exposure.true_time(said.seconds) * 2.0**stops)
+        dial = exposure.shutter_series(3)
+        name = dial.names[int(np.argmin(abs(dial.values - wanted)))]
+        click.echo(f"taken with {_seconds(said.seconds)} s; with {name} s it would be right")
+
+
+def _place(text: str) -> tuple[float, float]:
+    try:
+        down, right = (float(part) for part in text.split(","))
+    except ValueError:
+        raise ValueError(f"--at: expected two parts of the picture, such as 0.5,0.5, got {text!r}") from None
+    return down, right
+
+
+def _seconds(time: float) -> str:
+    return f"{time:g}" if time >= 0.4 else f"1/{1 / time:.0f}"

@@ -1,0 +1,76 @@
+"""`hdrlab plan` and `hdrlab meter`: what they decide, and why, in words."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from hdrlab.cli import exposures
+from hdrlab.core.colour import to_8bit
+from hdrlab.io import photos, radiance
+
+
+def run(command, *arguments):
+    result = CliRunner().invoke(command, [str(one) for one in arguments])
+    if result.exception and not isinstance(result.exception, SystemExit):
+        raise result.exception
+    return result.output
+
+
+def test_plan_says_how_many_photographs_and_which_times():
+    said = run(exposures.plan, 0.01, 30000)
+    assert "21.5 stops" in said and "5 photographs, 4 stops apart, f/8, ISO 100" in said
+    assert [line.split()[0] for line in said.splitlines()[2:]] == ["1/500", "1/30", "1/2", "8", "128"]
+
+
+def test_plan_takes_the_range_of_a_radiance_map(tmp_path):
+    radiance.write_radiance(
+        tmp_path / "a.pfm", np.geomspace(0.01, 30000, 5000, dtype=np.float32).reshape(50, 100)
+    )
+    said = run(exposures.plan, "--map", tmp_path / "a.pfm")
+    assert "21.5 stops" in said and "5 photographs" in said
+
+
+@pytest.mark.parametrize(
+    "arguments", [(), ("1",), ("2", "1"), ("1", "2", "--map", "a.pfm"), ("1", "2", "--overlap", "7")]
+)
+def test_plan_refuses_what_is_no_range(arguments):
+    with pytest.raises(ValueError, match="expected"):
+        run(exposures.plan, *arguments)
+
+
+@pytest.mark.parametrize("mode", exposures.MODES)
+def test_meter_tells_the_reading_and_the_stops_in_every_mode(tmp_path, mode):
+    photos.write_picture(tmp_path / "gray.png", to_8bit(np.full((40, 60, 3), 0.09, np.float32)))
+    said = run(exposures.meter, tmp_path / "gray.png", "--mode", mode)
+    assert "reading 0.09" in said and "1.0 stops too dark" in said
+
+
+def test_meter_offers_every_mode_of_the_library():
+    from hdrlab.capture import metering
+
+    assert exposures.MODES == metering.MODES
+
+
+def test_meter_reads_the_spot_where_it_is_put(tmp_path):
+    E = np.full((40, 60), 0.09, np.float32)
+    E[:, 30:] = 0.72
+    photos.write_picture(tmp_path / "two.png", to_8bit(E))
+    left, right = (
+        run(exposures.meter, tmp_path / "two.png", "--mode", "spot", "--at", f"0.5,{x}") for x in (0.2, 0.8)
+    )
+    assert "1.0 stops too dark" in left and "2.0 stops too bright" in right
+
+
+def test_meter_says_how_much_of_what_it_hears_is_full(tmp_path):
+    photos.write_picture(tmp_path / "white.png", np.full((40, 60, 3), 255, np.uint8))
+    assert "100% of what it hears is full" in run(exposures.meter, tmp_path / "white.png")
+
+
+def test_meter_names_the_time_that_would_be_right(shared):
+    photo = sorted(shared("window").glob("*.jpg"))[5]
+    assert "taken with 1/30 s; with 1/40 s it would be right" in run(exposures.meter, photo)
+
+
+def test_meter_refuses_a_place_that_is_none(tmp_path):
+    with pytest.raises(ValueError, match="--at"):
+        run(exposures.meter, tmp_path / "a.png", "--at", "middle")
