@@ -1,0 +1,114 @@
+"""Skin in a photograph, by its colour (Battiato et al. 2008, sec. 1.3.2).
+
+Z      picture       (..., 3) levels 0 to 255, sRGB
+x      chrominance   (..., 2) = (Cb, Cr), levels around 0
+mu, S  mean (2,) and covariance (2, 2) of the chrominance of skin
+d      Mahalanobis distance of a pixel from them
+p      density p(x | skin)
+r, g   R / (R + G + B), G / (R + G + B): colour without brightness
+
+Two ways. A Gaussian over the chrominance says how likely a colour is skin's. And the colours of skin under
+many lamps, from candle to sky, lie in the (r, g) plane in a crescent between two parabolas: the skin locus.
+It is wider, for it takes any lamp: it finds more skin, and wood, hair and orange cloth too.
+
+The Gaussian comes from a training set. The default one is computed: skin is a stack of filters, melanin over
+blood, so its log reflectance moves along a line from light to dark. The line goes through the two skins of
+the ColorChecker and a little beyond, with more or less blood, shade and white balance. `fit` takes one of
+your own.
+"""
+
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.colour import decode_srgb, encode_srgb
+
+Float = NDArray[np.float64]
+
+LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
+CHROMA = np.array([[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]])  # Cb, Cr of RGB [BT.601]
+LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
+BLOOD = np.array([0.0, 0.12, 0.08])  # how much more of it takes from R, G, B, in ln
+UPPER, LOWER = (-1.3767, 1.0743, 0.1452), (-0.776, 0.5601, 0.1766)  # parabolas in r [Soriano03]
+WHITE = 0.0004  # squared radius of the white that is left out of the locus
+REACH = 2.5  # Mahalanobis: of a Gaussian, 96 % lie nearer
+
+
+class Skin(NamedTuple):
+    """What skin looks like: mean (2,) and covariance (2, 2) of (Cb, Cr)."""
+
+    mu: Float
+    S: Float
+
+
+def chrominance(Z: ArrayLike) -> Float:
+    """Return x = 128 (Cb, Cr) / Y of levels (..., 3): the chrominance that a colour would have at level 128.
+
+    Cb and Cr alone shrink in the shade, and so would the distance from gray; divided by Y they do not.
+    """
+    Z = np.asarray(Z, np.float64)
+    return 128 * (Z @ CHROMA.T) / np.maximum(Z @ LUMA, 1)[..., None]
+
+
+def fit(Z: ArrayLike) -> Skin:
+    """Return the mean and covariance of the chrominance of training pixels (N, 3), levels 0 to 255.
+
+    Raises
+    ------
+    ValueError
+        For fewer than three pixels, or colours that lie on one line: they have no covariance.
+    """
+    Z = np.asarray(Z, np.float64)
+    if Z.ndim != 2 or Z.shape[1] != 3 or len(Z) < 3:
+        raise ValueError(f"expected training pixels (N, 3), at least three, got shape {Z.shape}")
+    x = chrominance(Z)
+    S = np.cov(x.T)
+    if not np.linalg.det(S) > 1e-9:
+        raise ValueError(f"expected training pixels of different colours, got a covariance of {S.tolist()}")
+    return Skin(x.mean(axis=0), S)
+
+
+def synthetic(count: int = 4000, *, rng: int | np.random.Generator = 0) -> Float:
+    """Return the levels (count, 3) of computed skin, light and dark in equal parts, in light and in shade."""
+    rng = np.random.default_rng(rng)
+    light, dark = (np.log(decode_srgb(np.array(levels) / 255)) for levels in (LIGHT, DARK))
+    melanin = rng.uniform(-0.25, 1.5, (count, 1))
+    ln = light + melanin * (dark - light) - rng.normal(0, 1, (count, 1)) * BLOOD
+    lamp = rng.normal(0, 0.1, (count, 1)) * np.array([1, 0, -1]) + rng.normal(0, 0.03, (count, 3))
+    ln = ln + lamp + rng.uniform(np.log(0.25), np.log(1.1), (count, 1))
+    return 255 * encode_srgb(np.minimum(np.exp(ln), 1))
+
+
+@cache
+def default() -> Skin:
+    """Return the Skin of the computed training set, at the brightness of a visibility image."""
+    return fit(synthetic())
+
+
+def distance(Z: ArrayLike, skin: Skin | None = None) -> Float:
+    """Return d with d^2 = (x - mu)' S^-1 (x - mu), of each pixel (..., 3) [Battiato08 eq. 1.8]."""
+    mu, S = skin or default()
+    away = chrominance(Z) - mu
+    return np.sqrt(np.einsum("...i,ij,...j->...", away, np.linalg.inv(S), away))
+
+
+def likelihood(Z: ArrayLike, skin: Skin | None = None) -> Float:
+    """Return p(x | skin) = exp(-d^2 / 2) / (2 pi |S|^(1/2)) [Battiato08 eq. 1.7]."""
+    S = (skin or default()).S
+    return np.exp(-(distance(Z, skin) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
+
+
+def by_chrominance(Z: ArrayLike, skin: Skin | None = None, *, reach: float = REACH) -> NDArray[np.bool_]:
+    """Return the pixels (...) whose Mahalanobis distance from skin is below `reach`."""
+    return distance(Z, skin) < reach
+
+
+def by_locus(Z: ArrayLike) -> NDArray[np.bool_]:
+    """Return the pixels (...) between the parabolas of the skin locus, white left out [Soriano03 sec. 3]."""
+    Z = np.asarray(Z, np.float64)
+    total = np.maximum(Z.sum(axis=-1), 1)
+    r, g = Z[..., 0] / total, Z[..., 1] / total
+    white = (r - 1 / 3) ** 2 + (g - 1 / 3) ** 2 <= WHITE
+    return (np.polyval(LOWER, r) < g) & (g < np.polyval(UPPER, r)) & ~white & (r > g)
