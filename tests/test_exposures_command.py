@@ -1,8 +1,10 @@
-"""`hdrlab plan` and `hdrlab meter`: what they decide, and why, in words."""
+"""`hdrlab plan`, `hdrlab meter` and `hdrlab correct`: what they decide, and why, in words."""
 
 import numpy as np
 import pytest
+import tifffile
 from click.testing import CliRunner
+from skimage import data
 
 from hdrlab.cli import exposures
 from hdrlab.core.colour import to_8bit
@@ -74,3 +76,31 @@ def test_meter_names_the_time_that_would_be_right(shared):
 def test_meter_refuses_a_place_that_is_none(tmp_path):
     with pytest.raises(ValueError, match="--at"):
         run(exposures.meter, tmp_path / "a.png", "--at", "middle")
+
+
+def test_correct_says_what_it_decided_and_why(tmp_path):
+    photos.write_picture(tmp_path / "dark.png", data.astronaut() // 3)
+    said = run(exposures.correct, tmp_path / "dark.png", "-o", tmp_path / "light.png")
+    assert "what matters: skin" in said and "stops: mean level 12" in said
+    assert (
+        photos.read_photo(tmp_path / "light.png").mean() > 2 * photos.read_photo(tmp_path / "dark.png").mean()
+    )
+
+
+def test_correct_leaves_a_well_exposed_photograph_as_it_is(tmp_path):
+    photos.write_picture(tmp_path / "good.png", data.astronaut())
+    assert "left as it is" in run(exposures.correct, tmp_path / "good.png", "-o", tmp_path / "same.png")
+    assert np.array_equal(photos.read_photo(tmp_path / "same.png"), data.astronaut())
+
+
+def test_correct_takes_sixteen_bits(tmp_path):
+    tifffile.imwrite(tmp_path / "dark.tif", data.astronaut()[:128, :256].astype(np.uint16) * 64)
+    run(exposures.correct, tmp_path / "dark.tif", "-o", tmp_path / "light.png", "--by", "blocks")
+    assert photos.read_photo(tmp_path / "light.png").dtype == np.uint8
+
+
+def test_correct_refuses_a_gray_picture_when_skin_is_asked_for(tmp_path):
+    photos.write_picture(tmp_path / "gray.png", data.brick())
+    with pytest.raises(ValueError, match="skin"):
+        run(exposures.correct, tmp_path / "gray.png", "-o", tmp_path / "out.png", "--by", "skin")
+    assert not (tmp_path / "out.png").exists()

@@ -50,6 +50,7 @@ for command in (
     curves.calibrate,
     exposures.plan,
     exposures.meter,
+    exposures.correct,
     maps.tonemap,
     maps.compare,
     maps.convert,
