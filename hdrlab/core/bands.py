@@ -14,7 +14,7 @@ BAND = 32  # rows
 
 
 def banded(equation: Callable[..., NDArray[Any]], *pictures: NDArray[Any], margin: int = 0) -> NDArray[Any]:
-    """Return equation(*pictures), (H, W) of the type of the first, computed in bands.
+    """Return equation(*pictures), (H, W), computed in bands.
 
     Parameters
     ----------
@@ -33,9 +33,12 @@ def banded(equation: Callable[..., NDArray[Any]], *pictures: NDArray[Any], margi
     True
     """
     n = pictures[0].shape[-2]
-    whole = np.empty(pictures[0].shape[-2:], pictures[0].dtype)
+    whole: NDArray[Any] | None = None
     for top in range(0, n, BAND):
         start, stop = max(top - margin, 0), min(top + BAND + margin, n)
         slab = equation(*(picture[..., start:stop, :] for picture in pictures))
+        whole = np.empty((n, slab.shape[1]), slab.dtype) if whole is None else whole
         whole[top : top + BAND] = slab[top - start : top - start + BAND]
+    if whole is None:
+        raise ValueError("expected pictures of at least one row")
     return whole

@@ -10,8 +10,8 @@ Pixel i of a level lies over pixel 2 i of the next finer one. Beyond its ends a 
 about its first and last pixels; only where `enlarged` looks past the last, that one is repeated.
 """
 
-from collections.abc import Sequence
-from typing import Literal
+from collections.abc import Iterator, Sequence
+from itertools import pairwise
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
@@ -21,8 +21,11 @@ from hdrlab.core import blur
 from hdrlab.core.arrays import describe
 
 Float = NDArray[np.float32]
+Index = NDArray[np.intp]
+Band = tuple[slice, Float]  # rows of a picture, and what stands in them
 
-TILE = 16  # coarse rows of a product, as in `blur`
+TILE = 8  # coarse rows and columns of a product: as many again would double its zeros
+SLAB = 16  # tiles of rows at a time, which stay in the processor's cache
 BURT = (1, 6, 1)  # eighths: an even fine pixel from the coarse ones before, over and after it
 LINEAR = (0, 8, 0)  # eighths: an even fine pixel is the coarse one over it
 
@@ -34,9 +37,11 @@ def reduced(image: ArrayLike) -> Float:
     """
     image = _as_image(image)
     K = blur.band(np.array([1, 4, 6, 4, 1]) / 16, TILE, 2)
-    padded = _padded(image, [(2, -n % (2 * TILE) + 1) for n in image.shape[-2:]], "reflect")
-    rows, columns = half(image.shape)
-    return _product(K, 2 * TILE, padded)[..., :rows, :columns]
+    rows, columns = (np.pad(np.arange(n), (2, -n % (2 * TILE) + 1), "reflect") for n in image.shape[-2:])
+    g = np.empty((*image.shape[:-2], *half(image.shape)), np.float32)
+    for band, found in _bands(K, 2 * TILE, image, rows, columns, g.shape):
+        g[..., band, :] = found
+    return g
 
 
 def enlarged(image: ArrayLike, shape: Sequence[int], *, taps: Sequence[float] = BURT) -> Float:
@@ -48,9 +53,17 @@ def enlarged(image: ArrayLike, shape: Sequence[int], *, taps: Sequence[float] = 
     image = _as_image(image)
     if image.shape[-2:] != half(shape):
         raise ValueError(f"expected sides {half(shape)}, half of {tuple(shape[-2:])}, got {describe(image)}")
-    begun = _padded(image, [(1, 0), (1, 0)], "reflect")
-    ended = _padded(begun, [(0, -n % TILE + 1) for n in image.shape[-2:]], "edge")
-    return _product(_interpolation(taps), TILE, ended)[..., : shape[-2], : shape[-1]]
+    fine = np.empty((*image.shape[:-2], *shape[-2:]), np.float32)
+    for band, found in _enlarged(image, shape, taps):
+        fine[..., band, :] = found
+    return fine
+
+
+def _enlarged(image: Float, shape: Sequence[int], taps: Sequence[float] = BURT) -> Iterator[Band]:
+    """Yield `enlarged` in bands: what is done with them at once is done in the processor's cache."""
+    begun = (np.pad(np.arange(n), (1, 0), "reflect") for n in image.shape[-2:])
+    rows, columns = (np.pad(i, (0, -(len(i) - 1) % TILE + 1), "edge") for i in begun)
+    return _bands(_interpolation(taps), TILE, image, rows, columns, shape)
 
 
 def gaussian(image: ArrayLike, levels: int) -> list[Float]:
@@ -63,15 +76,21 @@ def gaussian(image: ArrayLike, levels: int) -> list[Float]:
 
 def laplacian(image: ArrayLike, levels: int) -> list[Float]:
     """Return L_k = g_k - enlarged(g_(k+1)), and last the coarsest g itself [Burt83 eq. 3]."""
-    g = gaussian(image, levels)
-    return [fine - enlarged(coarse, fine.shape) for fine, coarse in zip(g, g[1:], strict=False)] + g[-1:]
+    pyramid = gaussian(image, levels)
+    for k, (fine, coarse) in enumerate(pairwise(pyramid)):
+        pyramid[k] = np.empty_like(fine)
+        for band, found in _enlarged(coarse, fine.shape):
+            np.subtract(fine[..., band, :], found, out=pyramid[k][..., band, :])
+    return pyramid
 
 
 def collapsed(pyramid: Sequence[Float]) -> Float:
     """Return g_0 by g_k = L_k + enlarged(g_(k+1)), coarse to fine: `laplacian` undone [Burt83 eq. 4]."""
     image = pyramid[-1]
     for detail in reversed(pyramid[:-1]):
-        image = detail + enlarged(image, detail.shape)
+        coarse, image = image, np.empty_like(detail)
+        for band, found in _enlarged(coarse, detail.shape):
+            np.add(detail[..., band, :], found, out=image[..., band, :])
     return image
 
 
@@ -83,16 +102,37 @@ def depth(shape: Sequence[int], smallest: int) -> int:
     return levels
 
 
-def _product(K: Float, step: int, image: Float) -> Float:
-    """Return K image K^T in tiles: rows, then columns, a window every `step` pixels."""
+def _bands(
+    K: Float, step: int, image: Float, rows: Index, columns: Index, shape: Sequence[int]
+) -> Iterator[Band]:
+    """Yield K image[rows, columns] K^T, cut to `shape`, as rows and what stands in them, from top to bottom.
+
+    It is done in tiles, a window every `step` pixels along both axes, and a few tiles of rows at a time.
+    """
     tile, reach = K.shape
-    windows = sliding_window_view(image, reach, axis=-2)[..., ::step, :, :].swapaxes(-1, -2)
-    tall = np.matmul(K, windows).reshape(*image.shape[:-2], -1, image.shape[-1])
-    windows = sliding_window_view(tall, reach, axis=-1)[..., ::step, :]  # (..., H, tiles, reach)
-    product = np.empty((*windows.shape[:-1], tile), np.float32)
-    # in place, from a K^T that lies in one piece: such products go to BLAS, others take five times as long
-    np.matmul(windows.swapaxes(-2, -3), np.ascontiguousarray(K.T), out=product.swapaxes(-2, -3))
-    return product.reshape(*tall.shape[:-1], -1)
+    planes = image.reshape(-1, *image.shape[-2:])
+    across = np.ascontiguousarray(K.T)  # in one piece, so that its products go to BLAS: five times as fast
+    count = max(1, SLAB // len(planes))
+    for top in range(0, shape[-2], count * tile):
+        slab = planes[:, rows[top // tile * step :][: (count - 1) * step + reach]]
+        windows = sliding_window_view(slab, reach, axis=1)[:, ::step].swapaxes(2, 3)  # (C, tiles, reach, W)
+        tall = np.matmul(K, windows).reshape(len(planes), -1, slab.shape[2])
+        windows = sliding_window_view(_continued(tall, columns), reach, axis=2)[:, :, ::step]
+        wide = np.empty((*windows.shape[:3], tile), np.float32)  # (C, h, tiles, tile)
+        np.matmul(windows.swapaxes(1, 2), across, out=wide.swapaxes(1, 2))
+        band = slice(top, min(top + wide.shape[1], shape[-2]))
+        found = wide.reshape(*image.shape[:-2], wide.shape[1], -1)
+        yield band, found[..., : band.stop - top, : shape[-1]]
+
+
+def _continued(planes: Float, columns: Index) -> Float:
+    """Return planes[:, :, columns]: these are all columns in turn, with some before them and some after."""
+    before, W = int(np.argmin(columns)), planes.shape[2]
+    whole = np.empty((*planes.shape[:2], len(columns)), np.float32)
+    whole[:, :, before : before + W] = planes
+    for ends in (slice(before), slice(before + W, None)):
+        whole[:, :, ends] = planes[:, :, columns[ends]]
+    return whole
 
 
 def _interpolation(taps: Sequence[float]) -> Float:
@@ -102,11 +142,6 @@ def _interpolation(taps: Sequence[float]) -> Float:
         K[2 * i, i : i + 3] = np.divide(taps, 8)
         K[2 * i + 1, i + 1 : i + 3] = 0.5
     return K
-
-
-def _padded(image: Float, ends: list[tuple[int, int]], mode: Literal["reflect", "edge"]) -> Float:
-    """Return the image with its sides continued, before and after."""
-    return np.pad(image, [(0, 0)] * (image.ndim - 2) + ends, mode=mode)
 
 
 def half(shape: Sequence[int]) -> tuple[int, int]:

@@ -14,7 +14,6 @@ none, as each detail is blended by weights as smooth as it is wide.
 """
 
 from collections.abc import Iterator, Sequence
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -53,62 +52,78 @@ class State(NamedTuple):
 
 def planes(Z: Array) -> Float:
     """Return F = Z / top level, the channels as planes."""
-    Z = Z[..., None] if Z.ndim == 2 else Z
-    F = np.empty((Z.shape[2], *Z.shape[:2]), np.float32)
-    for top in range(0, len(Z), BAND):  # in bands that fit the cache: every third value is slow to pick
-        band = Z[top : top + BAND].astype(np.float32) * np.float32(1 / (levels(Z) - 1))
-        F[:, top : top + BAND] = np.moveaxis(band, -1, 0)
+    channels = np.moveaxis(np.atleast_3d(Z), -1, 0)
+    F = np.empty(channels.shape, np.float32)
+    for plane, channel in zip(
+        F, channels, strict=True
+    ):  # each in one piece, which is quicker than all at once
+        plane[:] = channel
+    F *= np.float32(1 / (levels(Z) - 1))
     return F
 
 
 def contrast(F: Float) -> Float:
-    """Return C = |Y(up) + Y(down) + Y(left) + Y(right) - 4 Y|, Y the gray picture [Mertens07 sec. 3.1].
+    """Return C = |Y(up) + Y(down) + Y(left) + Y(right) - 4 Y|, Y the gray picture [Mertens07].
 
     Which is a Laplacian filter. At the edges Y is reflected.
     """
     Y = F[0] if len(F) == 1 else LUMA[0] * F[0] + LUMA[1] * F[1] + LUMA[2] * F[2]
     around = np.pad(Y, 1, mode="reflect")
-    vertical, horizontal = around[:-2, 1:-1] + around[2:, 1:-1], around[1:-1, :-2] + around[1:-1, 2:]
-    return np.abs(vertical + horizontal - 4 * Y)
+    C = around[:-2, 1:-1] + around[2:, 1:-1]
+    C += around[1:-1, :-2] + around[1:-1, 2:]  # by pairs: 2 Y + 2 Y is 4 Y without rounding, where Y is flat
+    C -= 4 * Y
+    return np.abs(C)
 
 
 def saturation(F: Float) -> Float:
-    """Return S, the standard deviation of R, G and B [Mertens07 sec. 3.1]; 1 where there are no colours.
+    """Return S, the standard deviation of R, G and B [Mertens07]; 1 where there are no colours.
 
     As ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3 it is 0 in a gray pixel; through the mean of the three it
     would be what rounding left, and decide alone in places that are gray in every photograph.
     """
     if len(F) == 1:
         return np.ones_like(F[0])
-    R, G, B = F
-    return np.sqrt((R - G) ** 2 + (G - B) ** 2 + (B - R) ** 2) * np.float32(1 / 3)
+    a, b = F[0] - F[1], F[1] - F[2]  # the third difference is -(a + b), and the sum 2 (a (a + b) + b b)
+    return np.sqrt((a * (a + b) + b * b) * np.float32(2 / 9))
 
 
 def exposedness(F: Float) -> Float:
-    """Return E = product over the channels of exp(-(F - 0.5)^2 / (2 sigma^2)) [Mertens07 sec. 3.1]."""
+    """Return E = product over the channels of exp(-(F - 0.5)^2 / (2 sigma^2)) [Mertens07]."""
     return np.exp(sum((plane - HALF) ** 2 for plane in F) * np.float32(-0.5 / SIGMA**2))
 
 
 def weight(F: Float, powers: Sequence[float] = (1, 1, 1)) -> Float:
-    """Return W = C^wC S^wS E^wE [Mertens07 eq. 1], and a trace, so that no pixel is without any weight."""
-    W = np.full(F.shape[1:], 1, np.float32)
+    """Return W = C^wC S^wS E^wE [Mertens07], and a trace, so that no pixel is without any weight."""
+    W = np.ones(F.shape[1:], np.float32)
     for measure, power in zip((contrast, saturation, exposedness), powers, strict=True):
         if power:
             W *= measure(F) if power == 1 else measure(F) ** np.float32(power)
-    return W + np.float32(LEAST)
+    W += np.float32(LEAST)
+    return W
 
 
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[Float]:
-    """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07 eq. 2].
+    """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07]."""
 
-    Every weight is made twice, the first time for the sum alone, so that they never stand in memory together.
-    """
+    def measured(Z: Array) -> Float:
+        return weight(planes(np.moveaxis(Z, 0, -1)), powers)
+
+    each: list[Float] = [banded(measured, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
     total: Float = np.zeros(images.shape[1:3], np.float32)
-    for Z in images:
-        total += banded(partial(weight, powers=powers), planes(Z), margin=1)
-    for Z in images:
-        W: Float = banded(partial(weight, powers=powers), planes(Z), margin=1)
-        yield W / total
+    for W in each:
+        total += W
+    while each:  # what was yielded is let go
+        yield each.pop(0) / total
+
+
+def added(blended: Float, W: Float, detail: Float) -> Float:
+    """Return blended + W detail at one level, in bands of rows, which stay in the processor's cache."""
+    total = np.empty_like(blended)
+    for top in range(0, len(W), BAND):
+        rows = slice(top, top + BAND)
+        band = np.multiply(W[rows], detail[:, rows], out=total[:, rows])
+        band += blended[:, rows]
+    return total
 
 
 def fuse_steps(
@@ -120,7 +135,7 @@ def fuse_steps(
 ) -> Iterator[State]:
     """Yield the State after each photograph; the parameters are those of `fuse`.
 
-    R_k = sum_j W_j,k L_j,k at every level [Mertens07 eq. 3]: a photograph adds its term to all of them.
+    R_k = sum_j W_j,k L_j,k at every level [Mertens07]: a photograph adds its term to all of them.
     """
     stack, powers = as_stack(images), (contrast, saturation, exposedness)
     if not all(0 <= power < np.inf for power in powers):
@@ -129,8 +144,8 @@ def fuse_steps(
     blended: list[Float] = []
     for j, W in enumerate(weights(stack, powers)):
         Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(planes(stack[j]), depth)
-        terms = (w * detail for w, detail in zip(Wk, Lk, strict=True))
-        blended = [b + term for b, term in zip(blended, terms, strict=True)] if blended else list(terms)
+        blended = blended or [np.zeros_like(detail) for detail in Lk]
+        blended = [added(*level) for level in zip(blended, Wk, Lk, strict=True)]
         yield State(j, Wk, Lk, blended)
 
 
@@ -165,7 +180,8 @@ def fuse(
     References
     ----------
     Mertens, Kautz, Van Reeth, Exposure fusion, Pacific Graphics 2007. Two things it leaves open are as in
-    OpenCV: the pyramids go down to one or two rows or columns, and all filters reflect at the edges.
+    OpenCV: the pyramids go down to one or two rows or columns, and all filters reflect at the edges. The two
+    differ where every photograph is gray or flat: there rounding decides in OpenCV, and here all weigh alike.
 
     Examples
     --------
