@@ -74,3 +74,24 @@ def test_an_image_of_another_shape_is_refused(image, sigma):
 def test_a_sigma_that_is_not_positive_is_refused(sigma):
     with pytest.raises(ValueError, match="positive sigma"):
         blur.gaussian(np.ones((4, 4)), sigma)
+
+
+@pytest.mark.parametrize("sigma", [4, 5.9, 11.3, 32.6])
+def test_six_decades_below_a_lamp_a_wide_blur_is_still_the_gaussian_to_a_seventh(sigma):
+    """Relative to the light that arrives there, of which a sum cut at four sigma misses three quarters."""
+    image = np.full((200, 260), 1e-3, np.float32)
+    image[80:90, 100:120] = 1e3
+    exact = gaussian_filter(image.astype(np.float64), sigma, mode="reflect", truncate=7)
+    assert np.abs(blur.gaussian(image, sigma) / exact - 1).max() < 0.15
+    assert np.abs(blur.direct(image, sigma) / exact - 1).max() > 0.75
+
+
+@pytest.mark.parametrize(("sigma", "h", "shape"), [(9, 4, (70, 90)), (40, 16, (50, 33)), (200, 64, (7, 1))])
+def test_folding_the_band_matrix_is_reflecting_the_picture(sigma, h, shape):
+    """The picture is read where it stands; the plain form continues it first, as often as need be."""
+    image = np.random.default_rng(3).random(shape, dtype=np.float32)
+    k = blur.taps(sigma)
+    few, r = blur.sampled(image, k, h), len(k) // 2
+    K = blur.band(k, len(few), h)
+    around = np.pad(image, [(r + h, K.shape[1] - r - h - len(image)), (0, 0)], mode="symmetric")
+    assert np.allclose(few, K @ around, atol=1e-5)
