@@ -111,3 +111,13 @@ def test_a_lens_that_makes_no_sense_is_refused():
             brush.lens(np.ones((9, 9)), (4, 4), **knobs)
     with pytest.raises(ValueError, match="expected luminance"):
         brush.lens(np.ones((9, 9, 3)), (4, 4), size=4)
+
+
+def test_a_histogram_taken_in_bands_counts_every_pixel_once():
+    """As the plain sum over all pixels of what each gives to the two bins beside it."""
+    L, bins = laws.scene((101, 40)), 16
+    b = np.log(np.maximum(L, 1e-3))
+    t = np.clip((b - np.log(0.01)) * bins / np.log(1e4) - 0.5, 0, bins - 1).ravel()
+    plain = [np.maximum(1 - np.abs(t - j), 0).sum() / t.size for j in range(bins)]
+    f = brush.histogram(b, low=0.01, high=100, bins=bins)
+    assert np.allclose(f, plain, atol=1e-4) and f.sum() == pytest.approx(1)

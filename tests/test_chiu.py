@@ -88,6 +88,16 @@ def test_a_hot_pixel_does_not_darken_its_neighbourhood():
     assert np.abs(hot - calm)[laws.hot_pixel(L) == L].max() < 0.1
 
 
+def test_by_default_a_bright_half_stays_the_brighter_one_where_a_narrow_blur_makes_both_alike():
+    """Why the default is 8 % of the picture: beyond the halo, textured halves keep some of their contrast."""
+    texture = np.exp(0.2 * np.random.default_rng(0).standard_normal((96, 128)))
+    L = np.where(np.arange(128) < 64, 1.0, 30.0) * texture
+    narrow, wide = (chiu.tonemap(L, sigma=sigma) for sigma in (0.02 * 128, None))
+    ratios = [np.median(Ld[:, 64:80]) / np.median(Ld[:, 40:56]) for Ld in (narrow, wide)]
+    assert ratios[1] > 1.5 * ratios[0]
+    assert chiu.width(L) == pytest.approx(0.08 * 128)
+
+
 def test_more_headroom_is_a_darker_picture():
     medians = [np.median(chiu.tonemap(laws.scene(), headroom=k)) for k in (2, 4, 8, 16)]
     assert np.all(np.diff(medians) < 0)

@@ -107,6 +107,30 @@ def test_a_range_that_fits_the_display_is_mapped_linearly():
     assert np.ptp((light / L)[Ld < 0.99]) < 1e-4 and Ld.max() == 1
 
 
+def chart():
+    """Return a gray chart of few brightnesses, 7 decades apart with its lamp and its blackest patch."""
+    L = np.full((120, 160), 0.5)
+    L[:, :80], L[40:60, 20:40], L[80:90, 100:110], L[20:30, 120:130] = 0.3, 0.05, 1000, 1e-4
+    return L
+
+
+def test_a_chart_whose_few_brightnesses_trim_to_nothing_is_not_black_beside_its_lamp():
+    """The linear map would be: 0.5 of 1000 is no level of 256."""
+    Ld = ward.tonemap(chart(), field=200)
+    light = 99 * Ld + 1  # cd/m^2
+    assert Ld[5, 100] > 0.05 and Ld.max() == pytest.approx(1, abs=1e-6)
+    assert 1.2 < light[5, 100] / light[5, 10] < 0.5 / 0.3
+    assert light[85, 105] / light[5, 100] > 5 and light[25, 125] < light[50, 30] < light[5, 10]
+
+
+@pytest.mark.parametrize("white", [3.0, 10, 100, 1e4])
+def test_filling_uses_the_display_from_end_to_end_and_exaggerates_nothing(white):
+    lnL, lnLd = ward.curve(chart().astype(np.float32), white=white, field=200)
+    slope = np.diff(lnLd) / np.diff(lnL)
+    assert slope.min() >= 0 and slope.max() <= 1 + 1e-9
+    assert np.allclose(np.exp(lnLd[[0, -1]]), [1, white])
+
+
 def test_a_tolerance_too_small_to_stop_early_leaves_no_black_unused():
     L = laws.scene()
     ends = [np.exp(ward.curve(L, tolerance=t)[1][[0, -1]]) for t in (0.025, 1e-9)]
@@ -156,3 +180,20 @@ def test_knobs_that_make_no_sense_are_refused(knobs):
 def test_a_real_place_comes_out_well_exposed(shared, name):
     Ld = ward.tonemap(luminance(rgbe.read(shared("hdri_cc0") / f"{name}.hdr")))
     assert 0.05 < np.median(Ld) < 0.4 and np.mean(Ld == 1) < 0.01
+
+
+@pytest.mark.parametrize("knobs", [{}, {"bins": 1}, {"white": 1e5}, {"bins": 5000}])
+def test_lines_between_many_knots_are_the_exponential_of_the_curve(knobs):
+    L = laws.scene()
+    b, lnLd = ward.curve(L, **knobs)
+    white = knobs.get("white", 100)
+    plain = (np.exp(np.interp(np.log(np.maximum(L, 1e-37)), b, lnLd)) - 1) / (white - 1)
+    assert np.allclose(ward.tonemap(L, **knobs), np.clip(plain, 0, 1), atol=1e-5)
+
+
+def test_the_foveal_image_is_the_mean_of_each_square_degree():
+    L = laws.scene((45, 62))
+    Lf = ward.foveal(L, field=31)  # of 2 x 2 pixels, and one row that is left over
+    assert Lf.shape == (23, 31)
+    assert np.allclose(Lf[:22], L[:44].reshape(22, 2, 31, 2).mean(axis=(1, 3)), rtol=1e-5)
+    assert np.allclose(Lf[22], L[44].reshape(31, 2).mean(axis=1), rtol=1e-5)

@@ -24,7 +24,11 @@ def read(knots: ArrayLike, t: ArrayLike) -> Float:
     >>> read([0, 10, 40], [-1, 0.5, 1.5, 7]).tolist()
     [0.0, 5.0, 25.0, 40.0]
     """
-    table = lines(knots)
+    return along(lines(knots), t)
+
+
+def along(table: NDArray[np.complex64], t: ArrayLike) -> Float:
+    """Return the curve's value at each t from its `lines`, made once for all bands of a picture."""
     t = np.clip(np.asarray(t, np.float32), 0, len(table) - 1)
     left = np.floor(t)
     line = table.take(left.astype(np.intp), mode="clip")

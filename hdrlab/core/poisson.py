@@ -74,7 +74,7 @@ def solve(f: ArrayLike) -> Float:
 
     References
     ----------
-    Press et al., Numerical Recipes, section 20.4: boundary value problems by fast transforms.
+    Press et al., Numerical Recipes in C, 2nd ed., section 19.4: boundary value problems by Fourier methods.
 
     Examples
     --------

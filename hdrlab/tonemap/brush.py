@@ -17,6 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core import lookup
 from hdrlab.core.arrays import as_luminance
+from hdrlab.core.bands import banded
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.extremes import brightest, darkest
 
@@ -25,6 +26,7 @@ Histogram = NDArray[np.float64]
 
 LAWS = ("monotone", "exposure")
 LEAST = 2.0  # ratio of luminances that the bins span at least: what is flatter is not stretched further
+BAND = 32  # rows at a time, which stay in the processor's cache
 TINY = np.float32(np.finfo(np.float32).tiny)
 
 
@@ -40,12 +42,19 @@ def histogram(b: Float, *, low: float, high: float, bins: int = 1024) -> Histogr
 
     A pixel counts in the two bins whose centres it lies between, so that none jumps from one to the next.
     """
-    t = (b - np.float32(np.log(low))) * np.float32(bins / np.log(high / low)) - np.float32(0.5)
-    t = np.clip(t, 0, bins - 1).ravel()
-    left = np.floor(t)
-    index, right = left.astype(np.intp), t - left
-    shared = np.bincount(index, right, bins)
-    return (np.bincount(index, minlength=bins) - shared + np.append(0, shared[:-1])) / b.size
+    f = np.zeros(bins)
+    for top in range(0, len(b), BAND):
+        t = np.clip(place(b[top : top + BAND], low, high, bins) - np.float32(0.5), 0, bins - 1).ravel()
+        left = np.floor(t)
+        index, right = left.astype(np.intp), t - left
+        shared = np.bincount(index, right, bins)
+        f += np.bincount(index, minlength=bins) - shared + np.append(0, shared[:-1])
+    return f / b.size
+
+
+def place(b: Float, low: float, high: float, bins: int) -> Float:
+    """Return where ln L lies among the edges of the bins, 0 to `bins`."""
+    return (b - np.float32(np.log(low))) * np.float32(bins / np.log(high / low))
 
 
 def clipped(f: Histogram, *, limit: float = 4.0) -> Histogram:
@@ -64,9 +73,10 @@ def cumulative(f: Histogram) -> Histogram:
 def equalise(L: Float, *, bins: int = 1024, limit: float = 4.0) -> Float:
     """Return Ld = decode(P(ln L)) for a window, or for a whole picture."""
     low, high = span(L)
-    b = np.log(np.maximum(L, TINY))
+    b = banded(lambda L: np.log(np.maximum(L, TINY)), L)
     P = cumulative(clipped(histogram(b, low=low, high=high, bins=bins), limit=limit))
-    return lookup.read(decode_srgb(P), (b - np.float32(np.log(low))) * np.float32(bins / np.log(high / low)))
+    lines = lookup.lines(decode_srgb(P))
+    return banded(lambda b: lookup.along(lines, place(b, low, high, bins)), b)
 
 
 def under(shape: tuple[int, ...], centre: tuple[float, float], side: int) -> tuple[slice, slice]:

@@ -8,6 +8,10 @@ Ld    display luminance  s L, (H, W), 1 = white
 
 The eye does not mind a scale that varies slowly. Where L jumps, the blur begins to change before L does: the
 dark side of an edge is held back by the bright one, and the other way round. That is the halo.
+
+k = 8 is the overview's. Its figure is blurred by 15 pixels; so narrow a blur follows the light so closely
+that a dim hall comes out as bright as its windows. At 8 % of the picture a place keeps its brightness beside
+others, and the halos are wide: a dark cloud around every lamp, which no width removes.
 """
 
 from collections.abc import Iterator
@@ -32,15 +36,27 @@ TINY = 1e-37
 
 
 class State(NamedTuple):
-    """The scale s and the picture Ld = s L, each (H, W), after a number of smoothing passes."""
+    """The scale s after a number of smoothing passes, and the luminance that it scales, each (H, W)."""
 
     s: Float
-    Ld: Float
+    L: Float
+
+    @property
+    def Ld(self) -> Float:
+        """The picture s L, made when it is asked for."""
+        return self.s * self.L
 
 
 def width(L: Float, sigma: float | None = None) -> float:
-    """Return sigma in pixels; None is 2 % of the longer side."""
+    """Return sigma in pixels; None is 8 % of the longer side."""
     return WIDTH * max(L.shape) if sigma is None else sigma
+
+
+def relative(L: Float) -> Float:
+    """Return L in medians of L, and what is beyond all measure like any other: so sums stay finite."""
+    median = np.float32(max(brightest(L, cut=0.5), TINY))
+    with np.errstate(over="ignore"):
+        return banded(lambda L: np.minimum(L / median, LIMIT), L)
 
 
 def scale(L: Float, *, headroom: float = 8.0, sigma: float | None = None) -> Float:
@@ -53,15 +69,20 @@ def scale(L: Float, *, headroom: float = 8.0, sigma: float | None = None) -> Flo
 
 
 def clamp(s: Float, L: Float) -> Float:
-    """Return min(s, 1 / L): no pixel above white [Chiu93 sec. 3]."""
+    """Return min(s, 1 / L): no pixel above white [Chiu93]."""
     return np.minimum(s, 1 / np.maximum(L, TINY))
 
 
 def smooth(s: Float) -> Float:
-    """Return s averaged with its neighbours, weights 1 2 1 down and across: rounds the clamp's edges."""
-    s = np.pad(s, 1, mode="edge")
-    s = s[:-2] + 2 * s[1:-1] + s[2:]
-    return (s[:, :-2] + 2 * s[:, 1:-1] + s[:, 2:]) * np.float32(1 / 16)
+    """Return s averaged with its neighbours, weights 1 2 1 down and across: rounds the clamp's edges.
+
+    The weights 1 2 1 are those of 1 1, twice: the sum of each pair, and of each pair of sums.
+    """
+    s = np.pad(s, 1, mode="edge") * np.float32(1 / 16)
+    for _ in range(2):
+        s = s[:-1] + s[1:]
+        s = s[:, :-1] + s[:, 1:]
+    return s
 
 
 def tonemap_steps(
@@ -69,10 +90,10 @@ def tonemap_steps(
 ) -> Iterator[State]:
     """Yield the State with the clamped scale, and after each smoothing pass, which is clamped again."""
     s = clamp(scale(L, headroom=headroom, sigma=sigma), L)
-    yield State(s, s * L)
+    yield State(s, L)
     for _ in range(passes):
         s = banded(lambda s, L: clamp(smooth(s), L), s, L, margin=1)
-        yield State(s, s * L)
+        yield State(s, L)
 
 
 def halo(
@@ -122,6 +143,5 @@ def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, 
         raise ValueError(
             f"expected headroom > 0, sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
-    with np.errstate(over="ignore"):  # in medians of L, and brighter ones like any other, sums stay finite
-        relative = np.minimum(L / np.float32(max(brightest(L, cut=0.5), TINY)), LIMIT)
-    return np.clip(last(tonemap_steps(relative, headroom=headroom, sigma=sigma, passes=passes)).Ld, 0, 1)
+    state = last(tonemap_steps(relative(L), headroom=headroom, sigma=sigma, passes=passes))
+    return banded(lambda s, L: np.clip(s * L, 0, 1), state.s, state.L)

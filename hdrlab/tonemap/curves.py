@@ -10,16 +10,18 @@ N      levels of a display
 A curve (TRC, tone reproduction curve) treats equal luminances equally wherever they stand; an operator (TRO)
 looks at the neighbourhood too, so that one luminance may become several (`spread` shows which it is). Ld is
 light: the display's own encoding comes after it (`core.colour.encode_srgb`), so gamma here is contrast that
-the picture loses.
+the picture loses, and a logarithm of light is pale. One of the display's codes is `brush` with limit 1.
 """
 
 from collections.abc import Callable
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_luminance
+from hdrlab.core.bands import banded
 from hdrlab.core.extremes import brightest, darkest
 
 Float = NDArray[np.float32]
@@ -121,4 +123,4 @@ def tonemap(
         brightest(L, cut=cut) or 1.0,
     )  # a scene without light is black under any curve
     own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low or 1.0}}
-    return CURVES[curve](L, high=high, **own[curve])
+    return banded(partial(CURVES[curve], high=high, **own[curve]), L)

@@ -10,7 +10,8 @@ m         compression            c / (range of the base), at most 1
 Ld        display luminance      10^(m base + detail), (H, W), 1 = white
 
 Light varies over decades and slowly; reflectance varies little and fast. Only the light is compressed. Unlike
-Chiu's blur the base does not cross an edge, so there is no halo.
+Chiu's blur the base does not cross an edge, so there is no halo. But what differs by less than sigma_r is no
+edge: beside gentle steps, as of the patches of a chart, the picture glows a little.
 """
 
 from typing import NamedTuple
@@ -28,6 +29,7 @@ Float = NDArray[np.float32]
 LAWS = ("exposure",)
 WIDTH = 0.02  # sigma_s of the longer side
 DARK = 1e-6  # of the median: what is darker has no more detail
+NEAR = 2  # sigma in pixels of the blur that stands in for a doubtful base
 TINY = 1e-37
 ENOUGH = 1 << 18  # pixels that percentiles are taken from
 
@@ -46,20 +48,26 @@ def logarithm(L: Float) -> Float:
 
 
 def certain(found: bilateral.Filtered, *, sigma_s: float) -> Float:
-    """Return the base, and where it rests on few pixels its neighbourhood's instead [Durand02 sec. 5.3].
+    """Return the base, and where it rests on few pixels its neighbourhood's instead [Durand02].
 
     A pixel unlike all around it is its own base: without detail, and compressed like light. The weight of the
     bilateral mean rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1; what
-    takes its place is blurred by 2 pixels.
+    takes its place is blurred by NEAR pixels.
     """
     enough = np.float32((2 * np.pi * sigma_s**2) ** 0.5)
-    doubtful = found.k < enough
-    if enough <= 1 or not doubtful.any():
+    if enough <= 1 or not (found.k.min() < enough):
         return found.mean
-    u = np.log(np.maximum(found.k[doubtful], 1)) / np.log(enough)
-    base = found.mean.copy()
-    base[doubtful] += (1 - u) * (blur.gaussian(found.mean, 2)[doubtful] - base[doubtful])
-    return base
+
+    def base(mean: Float, k: Float) -> Float:
+        doubtful = k < enough
+        if not doubtful.any():
+            return mean
+        u = np.log(np.maximum(k[doubtful], 1)) / np.log(enough)
+        near, mean = blur.gaussian(mean, NEAR)[doubtful], mean.copy()
+        mean[doubtful] += (1 - u) * (near - mean[doubtful])
+        return mean
+
+    return banded(base, found.mean, found.k, margin=4 * NEAR)
 
 
 def layers(lL: Float, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:

@@ -10,7 +10,10 @@ lLd     the picture with this gradient     (H, W), ln display luminance but for 
 Ld      display luminance                  (H, W) in [0, 1]
 beta    power                              a slope comes out to the power of beta, level by level
 
-Large contrasts have steep slopes at some level, and only slopes are attenuated: never a pixel by itself.
+Large contrasts have steep slopes at some level, and only slopes are attenuated: never a pixel by itself. A
+larger picture has more levels, and each multiplies its contrast by alpha^(1 - beta) = 0.79 or so: it comes
+out paler than a small copy of it. Stripes one pixel wide are no slope to a central difference: a chart full
+of them is shown badly.
 """
 
 from collections.abc import Iterator
@@ -29,7 +32,7 @@ from hdrlab.core.steps import last
 Float = NDArray[np.float32]
 
 LAWS = ("exposure",)
-SATURATION = 0.6  # gradients of luminance were compressed, those of colour were not [Fattal02 sec. 5]
+SATURATION = 0.6  # gradients of luminance were compressed, those of colour were not [Fattal02]
 SMALLEST = 32  # pixels: the shorter side of the coarsest level is at least this
 DARK = 1e-3  # a pixel without light is taken to be this much darker than white, or as dark as the darkest
 TINY = float(np.finfo(np.float32).tiny)
@@ -67,7 +70,7 @@ def log_luminance(L: Float) -> Float:
 
 
 def slope(lL: Float, k: int = 0) -> Float:
-    """Return |grad lL_k|, by central differences / 2^(k+1) [Fattal02 sec. 4].
+    """Return |grad lL_k|, by central differences / 2^(k+1) [Fattal02].
 
     A step at level k is 2^k pixels of the picture, and a central difference takes two.
     """
@@ -79,7 +82,7 @@ def slope(lL: Float, k: int = 0) -> Float:
 def attenuation(
     slope: Float, mean: float, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
 ) -> Float:
-    """Return phi = a / slope (slope / a)^beta, a = alpha mean [Fattal02 sec. 4; Battiato eq. 1.41].
+    """Return phi = a / slope (slope / a)^beta, a = alpha mean [Fattal02; Battiato08 eq. 1.41].
 
     The mean is that of the level's slopes. Where the slope goes to zero the formula goes to infinity, and
     would lift the noise of an even sky: below `noise` means it stays what it is there.
@@ -93,7 +96,7 @@ def attenuation(
 def attenuation_steps(
     lL: Float, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
 ) -> Iterator[Level]:
-    """Yield the Level of k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k [Battiato eq. 1.42].
+    """Yield the Level of k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k [Battiato08 eq. 1.42].
 
     It is enlarged by linear interpolation. The knobs are those of `attenuation`.
     """
@@ -109,12 +112,19 @@ def attenuation_steps(
 
 
 def attenuated(lL: Float, Phi: Float) -> Float:
-    """Return G = Phi grad lL, by forward differences [Fattal02 sec. 4; Battiato eq. 1.38, 1.39]."""
-    return poisson.gradient(lL) * Phi
+    """Return G = Phi grad lL, by forward differences [Fattal02; Battiato08 eq. 1.38, 1.39].
+
+    A step lies between two pixels, and Phi there is their mean. With that of the first pixel alone, the way
+    up to a thin line would be attenuated and the way down would not: the picture would drift with every line.
+    """
+    G, half = poisson.gradient(lL), np.float32(0.5)
+    G[0, :-1] *= (Phi[:-1] + Phi[1:]) * half
+    G[1, :, :-1] *= (Phi[:, :-1] + Phi[:, 1:]) * half
+    return G
 
 
 def divergence(lL: Float, Phi: Float) -> Float:
-    """Return div G, for `poisson.solve`: Laplacian lLd = div G [Fattal02 eq. 3; Battiato eq. 1.40]."""
+    """Return div G, for `poisson.solve`: Laplacian lLd = div G [Fattal02; Battiato08 eq. 1.40]."""
     return banded(lambda lL, Phi: poisson.divergence(attenuated(lL, Phi)), lL, Phi, margin=1)
 
 

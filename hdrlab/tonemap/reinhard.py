@@ -55,7 +55,7 @@ class Scale(NamedTuple):
 
 
 def log_average(L: Float, *, delta: float = 1e-6) -> float:
-    """Return Lav = exp(mean(log(delta + L))) [Reinhard02 eq. 1, where 1 / N is misprinted outside exp].
+    """Return Lav = exp(mean(log(delta + L))) [Reinhard02, where 1 / N is misprinted outside exp].
 
     So that the unit of L cancels, delta is measured in medians of L; it stands for what is black.
     """
@@ -64,7 +64,7 @@ def log_average(L: Float, *, delta: float = 1e-6) -> float:
 
 
 def automatic_key(L: Float) -> float:
-    """Return a = 0.18 4^((2 log2 Lav - log2 Lmin - log2 Lmax) / (log2 Lmax - log2 Lmin)) [Reinhard03 eq. 4].
+    """Return a = 0.18 4^((2 log2 Lav - log2 Lmin - log2 Lmax) / (log2 Lmax - log2 Lmin)) [Reinhard02b].
 
     A scene that is mostly bright for its range gets a high key. Lmin and Lmax leave out 1 % of the pixels.
     """
@@ -76,7 +76,7 @@ def automatic_key(L: Float) -> float:
 
 
 def scaled(L: Float, *, key: float = 0.18) -> Float:
-    """Return Lm = a L / Lav [Reinhard02 eq. 2]."""
+    """Return Lm = a L / Lav [Battiato08 eq. 1.32]."""
     with np.errstate(over="ignore"):
         return np.minimum(L / np.float32(max(log_average(L) / key, TINY)), LIMIT)
 
@@ -89,8 +89,8 @@ def white_point(Lm: Float) -> float:
 def display(Lm: Float, adaptation: Float, white: float = np.inf) -> Float:
     """Return Ld = Lm (1 + Lm / white^2) / (1 + adaptation), clipped at 1.
 
-    With Lm itself as the adaptation it is the global operator [Reinhard02 eq. 3, 4]; with V1 at each pixel's
-    own width it is dodge and burn [eq. 9], which the paper prints for an infinite white.
+    With Lm itself as the adaptation it is the global operator [Reinhard02 eq. 4; Battiato08 eq. 1.33]; with
+    V1 at each pixel's own width it is dodge and burn [Battiato08 eq. 1.35], printed for an infinite white.
     """
     Ld = Lm / (1 + adaptation)
     with np.errstate(over="ignore"):
@@ -98,19 +98,19 @@ def display(Lm: Float, adaptation: Float, white: float = np.inf) -> Float:
 
 
 def blurs(Lm: Float) -> Iterator[Float]:
-    """Yield V1(s) for s = 1, 1.6, ..., 43 [Reinhard02 eq. 5, 6]."""
+    """Yield V1(s) for s = 1, 1.6, ..., 43 [Battiato08 eq. 1.34]."""
     return (blur.direct(Lm, s / 4) for s in WIDTHS)
 
 
 def response(V1: Float, V2: Float, *, width: float, key: float = 0.18, phi: float = 8.0) -> Float:
-    """Return V = (V1 - V2) / (2^phi a / s^2 + V1) [Reinhard02 eq. 7]."""
+    """Return V = (V1 - V2) / (2^phi a / s^2 + V1) [Battiato08 eq. 1.37]."""
     return (V1 - V2) / (np.float32(2**phi * key / width**2) + V1)
 
 
 def scale_steps(
     blurred: Iterable[Float], *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
 ) -> Iterator[Scale]:
-    """Yield the Scale of each width, from small to large, given V1 at every width [Reinhard02 eq. 8]."""
+    """Yield the Scale of each width, from small to large, given V1 at every width [Reinhard02]."""
     surrounds = iter(blurred)
     centre = adaptation = next(surrounds)
     even = np.ones_like(centre, dtype=bool)
@@ -176,7 +176,7 @@ def tonemap(
     References
     ----------
     Reinhard, Stark, Shirley, Ferwerda, Photographic tone reproduction for digital images, SIGGRAPH 2002.
-    Reinhard, Parameter estimation for photographic tone reproduction, Journal of Graphics Tools 7(1), 2003.
+    Reinhard, Parameter estimation for photographic tone reproduction, Journal of Graphics Tools 7(1), 2002.
 
     Examples
     --------

@@ -23,6 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core import lookup
 from hdrlab.core.arrays import as_luminance
+from hdrlab.core.bands import banded
 from hdrlab.core.extremes import brightest, darkest
 from hdrlab.core.steps import last
 
@@ -31,7 +32,7 @@ Histogram = NDArray[np.float64]
 
 LAWS = ("monotone", "exposure")
 TINY = np.float32(np.finfo(np.float32).tiny)
-BAND = 16  # rows at a time, which stay in the processor's cache
+KNOTS = 1 << 14  # of the curve, in all
 
 
 class Trim(NamedTuple):
@@ -56,15 +57,15 @@ def foveal(L: Float, *, field: float = 60.0) -> Float:
 
     The degrees are evenly spread over the picture's plane; a small picture is its own foveal image.
     """
-    rows, columns = (_shares(n, max(L.shape) / field) for n in L.shape)
-    return np.asarray(rows @ L @ columns.T, np.float32)
+    size = max(max(L.shape) / field, 1)
+    return _averaged(_averaged(L, size).T, size).T
 
 
-def _shares(n: int, size: float) -> Float:
-    """Return the matrix that averages n pixels in runs of about `size`: each row sums to 1."""
-    run = (np.arange(n) / max(size, 1)).astype(int)
-    member = run == np.arange(run[-1] + 1)[:, None]
-    return (member / member.sum(axis=1, keepdims=True)).astype(np.float32)
+def _averaged(L: Float, size: float) -> Float:
+    """Return the means of runs of about `size` rows."""
+    run = (np.arange(len(L)) / size).astype(int)
+    starts = np.flatnonzero(np.diff(run)) + 1
+    return np.stack([rows.mean(axis=0) for rows in np.split(L, starts)])
 
 
 def histogram(Lf: Float, *, low: float, high: float, bins: int = 100) -> tuple[Histogram, float]:
@@ -114,9 +115,33 @@ def cumulative(state: Trim) -> Histogram:
     return 1 - np.append(np.cumsum(state.f[::-1])[::-1], 0) / state.T
 
 
+def filled(state: Trim, db: float, D: float) -> Histogram:
+    """Return P where the trims left nothing, yet the scene's range is wider than the display's.
+
+    So it is where few brightnesses fill the picture, as in a chart: at a slope of 1 they use less than the
+    display has. The rest goes to the gaps between, to each bin by its distance from a slope of 1. The paper's
+    linear map would show a gray chart with one lamp as black.
+    """
+    slope = state.f / state.ceiling
+    room = 1 - slope
+    left = D / db - slope.sum()
+    return np.append(0, np.minimum(np.cumsum(slope + room * (left / room.sum())) * (db / D), 1))
+
+
 def equalised(P: Histogram, *, black: float, white: float) -> Histogram:
     """Return ln Ld = ln Ldmin + (ln Ldmax - ln Ldmin) P [Battiato08 eq. 1.24]."""
     return np.log(black) + np.log(white / black) * P
+
+
+def displayed(lnLd: Histogram, *, black: float, white: float) -> Histogram:
+    """Return (Ld - Ldmin) / (Ldmax - Ldmin) at the edges of the bins and at many knots between them.
+
+    So close together that a line from knot to knot is the exponential: it is taken of knots, not of pixels.
+    """
+    bins = len(lnLd) - 1
+    at = np.linspace(0, bins, bins * max(1, KNOTS // bins) + 1)
+    Ld = np.exp(np.interp(at, np.arange(bins + 1), lnLd))
+    return np.clip((Ld - black) / (white - black), 0, 1)
 
 
 def curve(
@@ -130,7 +155,7 @@ def curve(
 ) -> tuple[Histogram, Histogram]:
     """Return (ln L, ln Ld), the operator's curve at the edges of the bins.
 
-    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax.
+    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else `filled`.
     """
     Lf = foveal(L, field=field)
     low, high = darkest(Lf), brightest(Lf)
@@ -139,11 +164,12 @@ def curve(
     f, db = histogram(Lf, low=low, high=high, bins=bins)
     D = np.log(white / black)
     state = last(adjust_steps(f, db, D, tolerance=tolerance))
-    if empty(state, tolerance * f.sum()):
+    nothing = empty(state, tolerance * f.sum())
+    if nothing and np.log(high / low) <= D:
         P = np.linspace(0, 1, bins + 1)
         return np.log(high) - D * (1 - P), equalised(P, black=black, white=white)
-    edges = np.linspace(np.log(low), np.log(high), bins + 1)
-    return edges, equalised(cumulative(state), black=black, white=white)
+    P = filled(state, db, D) if nothing else cumulative(state)
+    return np.linspace(np.log(low), np.log(high), bins + 1), equalised(P, black=black, white=white)
 
 
 def tonemap(
@@ -191,9 +217,10 @@ def tonemap(
             f"got black={black}, white={white}, bins={bins}, field={field}, tolerance={tolerance}"
         )
     b, lnLd = curve(L, black=black, white=white, bins=bins, field=field, tolerance=tolerance)
-    scale, Ld = np.float32(bins / (b[-1] - b[0])), np.empty_like(L)
-    for top in range(0, len(L), BAND):
-        rows = slice(top, top + BAND)
-        t = (np.log(np.maximum(L[rows], TINY)) - np.float32(b[0])) * scale
-        Ld[rows] = (np.exp(lookup.read(lnLd, t)) - np.float32(black)) / np.float32(white - black)
-    return np.clip(Ld, 0, 1, out=Ld)
+    lines = lookup.lines(displayed(lnLd, black=black, white=white))
+    scale = np.float32((len(lines) - 1) / (b[-1] - b[0]))
+
+    def display(L: Float) -> Float:
+        return lookup.along(lines, (np.log(np.maximum(L, TINY)) - np.float32(b[0])) * scale)
+
+    return banded(display, L)
