@@ -19,7 +19,7 @@ from hdrlab.core.steps import last
 from hdrlab.radiance import consistency
 from hdrlab.radiance import times as timing
 from hdrlab.radiance.contradictions import contradictions, doubt
-from hdrlab.radiance.merge import merge_seen
+from hdrlab.radiance.merge import METHODS, merge_seen
 
 Method = str | Callable[..., Any]
 Table = NDArray[np.float64]
@@ -79,6 +79,8 @@ def assemble_steps(
     _check_exposures(bracket)
     if weight not in WEIGHTS:
         raise ValueError(f"expected a weight out of {', '.join(WEIGHTS)}, got {weight!r}")
+    if method not in METHODS:
+        raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if times not in ("stated", "estimate"):
         raise ValueError(f"expected times out of stated, estimate, got {times!r}")
     state = aligned(bracket, align)
@@ -212,7 +214,12 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
 
 
 def develop(
-    E: ArrayLike, tonemap: Method = "reinhard", *, saturation: float | None = None, **knobs: Any
+    E: ArrayLike,
+    tonemap: Method = "reinhard",
+    *,
+    saturation: float | None = None,
+    way: str = "ratio",
+    **knobs: Any,
 ) -> NDArray[np.uint8]:
     """Return the picture of a radiance map: tone-mapped luminance, its colours, sRGB in 8 bits.
 
@@ -224,6 +231,9 @@ def develop(
         A method of `tonemap`, or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
     saturation : float, optional
         1 keeps the ratios of the channels, 0 is gray; the SATURATION of the operator's module, or else 1.
+    way : {"ratio", "chroma"}
+        How colour comes back, and what becomes of colours beyond the display: "ratio" clips a channel,
+        "chroma" keeps hue and luminance and gives up saturation, see `core.colour`.
     **knobs
         Those of the operator.
 
@@ -239,7 +249,7 @@ def develop(
     operator = catalogue.method("tonemap", tonemap)
     saturation = own_saturation(operator) if saturation is None else saturation
     L = colour.luminance(E)
-    return colour.render(E, L, operator(L, **knobs), saturation=saturation)
+    return colour.render(E, L, operator(L, **knobs), saturation=saturation, way=way)
 
 
 def own_saturation(operator: Callable[..., Any]) -> float:

@@ -174,6 +174,39 @@ def test_a_map_with_nan_is_refused_and_cleaned_on_demand(tmp_path, capsys):
     assert np.isfinite(radiance.read_radiance(tmp_path / "out.pfm")).all()
 
 
+def test_cleaning_says_what_it_mended(tmp_path, capsys):
+    file, out = tmp_path / "x.pfm", tmp_path / "x.png"
+    pixels = np.ones((4, 5, 3), "<f4")
+    pixels[0, 0, 0], pixels[1, 1, 1], pixels[2, 2, 2], pixels[3, 3] = np.nan, np.inf, -0.1, -1
+    file.write_bytes(b"PF\n5 4\n-1.0\n" + pixels.tobytes())
+    code, _, complaint = hdrlab("tonemap", file, "-o", out, capsys=capsys)
+    assert code == 2 and "1 NaN, 1 infinite and 4 negative" in complaint and not out.exists()
+    code, said, _ = hdrlab("tonemap", file, "-o", out, "--clean", capsys=capsys)
+    assert code == 0 and out.exists()
+    counts = "1 unknown pixels, 1 infinite values, 1 pixels with a negative channel, 1 pixels below black"
+    assert counts in said
+    code, said, _ = hdrlab("convert", file, tmp_path / "y.exr", "--clean", capsys=capsys)
+    assert code == 0 and counts in said
+    assert "nothing" in hdrlab("convert", tmp_path / "y.exr", file, "--clean", capsys=capsys)[1]
+
+
+def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):
+    E = np.float32([0.1, 0.3, 4.0]) * np.geomspace(0.1, 30, 20 * 30).reshape(20, 30, 1).astype(np.float32)
+    radiance.write_radiance(tmp_path / "blue.exr", E)
+    pictures = {}
+    for way in ("ratio", "chroma"):
+        out = tmp_path / f"{way}.png"
+        assert hdrlab("tonemap", tmp_path / "blue.exr", "-o", out, "--way", way) == 0
+        pictures[way] = read_photo(out).astype(int)
+    brightest = {way: picture[-1, -1] for way, picture in pictures.items()}
+    assert brightest["ratio"][2] == 255 > brightest["ratio"][0] + 20
+    assert np.ptp(brightest["chroma"]) < np.ptp(brightest["ratio"]), "paler"
+    code, _, complaint = hdrlab(
+        "tonemap", tmp_path / "blue.exr", "-o", tmp_path / "x.png", "--way", "lab", capsys=capsys
+    )
+    assert code == 2 and "chroma" in complaint
+
+
 def test_info_names_format_and_size(map_file, photographs, capsys):
     code, said, _ = hdrlab("info", map_file, next(iter(sorted(photographs[0].iterdir()))), capsys=capsys)
     assert code == 0 and "OpenEXR" in said and "PNG" in said

@@ -143,6 +143,37 @@ def test_render_is_recolour_and_to_8bit(saturation):
     assert np.array_equal(colour.render(L, L, Ld), colour.to_8bit(Ld))
 
 
+def test_render_takes_either_way_of_colour_by_its_name():
+    for way, verb in (("ratio", colour.recolour), ("chroma", colour.recolour_chroma)):
+        for saturation in (1.0, 0.6):
+            picture = colour.render(E, L, Ld, saturation=saturation, way=way)
+            exact = colour.to_8bit(verb(E, L, Ld, saturation=saturation))
+            assert np.abs(picture.astype(int) - exact).max() <= 1 and np.mean(picture != exact) < 1e-3
+        assert np.array_equal(colour.render(L, L, Ld, way=way), colour.to_8bit(Ld))
+    with pytest.raises(ValueError, match="ratio, chroma, got 'lab'"):
+        colour.render(E, L, Ld, way="lab")
+
+
+@pytest.mark.parametrize("saturation", [0.3, 1.0, 1.7])
+def test_no_hue_shifts_by_way_of_chroma_and_none_by_ratio_where_nothing_is_clipped(saturation):
+    """Hue as the direction away from gray: by chroma for any saturation, by ratio for its 1."""
+
+    def direction(C):
+        away = (C - C.mean(axis=-1, keepdims=True)).astype(float)
+        return away / np.maximum(np.linalg.norm(away, axis=-1, keepdims=True), 1e-9)
+
+    coloured = np.ptp(E / L[..., None], axis=-1) > 0.05
+    bright = np.float32(0.9) * np.ones_like(Ld)
+    shown = colour.recolour_chroma(E, L, bright, saturation=saturation)
+    assert np.sum(direction(shown) * direction(E), axis=-1)[coloured].min() > 0.9999
+    fits = (E / L[..., None] * Ld[..., None]).max(axis=-1) < 1
+    kept, clipped = (
+        np.sum(direction(colour.recolour(E, L, Ld)) * direction(E), axis=-1)[coloured & one].min()
+        for one in (fits, ~fits)
+    )
+    assert kept > 0.9999 and clipped < 0.9
+
+
 def test_render_shows_a_gray_ramp_as_opencv_would_encode_it():
     ramp = np.linspace(0, 1, 512, dtype=np.float32)[None]
     theirs = (

@@ -1,5 +1,7 @@
 """The contact sheet: what is on it, that it can be read, and that who cannot see it learns the same."""
 
+import re
+
 import laws
 import numpy as np
 import pytest
@@ -34,7 +36,8 @@ def test_every_operator_stands_on_the_sheet_under_its_name_with_its_figures():
         picture = pipeline.develop(SCENE, name)
         under = said[said.index(name) + 1]
         assert f"Q {quality.tmqi(colour.luminance(SCENE), picture).Q:.3f}" in under
-        assert f"entropy {statistics(picture).entropy:.2f} bits" in under and " ms" in under
+        assert f"entropy {statistics(picture).entropy:.2f} bits" in under
+        assert re.search(r"\d m?s\n", under), "a busy machine may take seconds"
 
 
 def test_the_pictures_are_those_of_the_pipeline_in_the_order_asked_for():
@@ -101,6 +104,8 @@ def test_columns_are_as_asked_and_else_make_a_broad_sheet():
         return len({round(ax.get_position().x0, 3) for ax in figure.axes})
 
     nine = [entry(str(i)) for i in range(9)]
+    panoramas = [entry(str(i), (40, 80, 3)) for i in range(4)]
+    assert columns(draw(panoramas)) == 2, "two and two, not three and one"
     assert [columns(draw(nine, columns=n)) for n in (1, 2, 20)] == [1, 2, 9]
     width, height = draw(nine).get_size_inches()
     assert 1 < width / height < 3

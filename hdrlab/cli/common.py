@@ -1,6 +1,6 @@
 """What the commands share: kinds of options, progress, and text that becomes values."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -10,7 +10,9 @@ Item = TypeVar("Item")
 FILE = click.Path(path_type=Path)
 SUFFIXES = ".hdr, .exr or .pfm"
 CLEAN = click.option(
-    "--clean", is_flag=True, help="Take NaN and negative values for 0, infinite ones for the largest."
+    "--clean",
+    is_flag=True,
+    help="Fill NaN from around it and infinity with the largest value, move colours below 0 toward gray.",
 )
 
 
@@ -19,6 +21,36 @@ def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iter
     from tqdm import tqdm
 
     return tqdm(items, what, total, leave=False, delay=1, disable=None)
+
+
+def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:
+    """Yield `items`, while a terminal shows which of `names` is being made, and for how long.
+
+    A bar moves when an item is done; where there are few and each takes seconds, that looks like standstill.
+    """
+    from hdrlab.io.terminal import elapsed
+
+    made = iter(items)
+    for j, name in enumerate(names, 1):
+        with elapsed(f"{j} of {len(names)}, {name}"):
+            item = next(made, None)
+        if item is None:
+            return
+        yield item
+
+
+def read_map(source: Path, clean: bool) -> Any:
+    """Return the radiance map of a file, and say what was cleaned."""
+    from hdrlab.io import radiance
+
+    if not clean:
+        return radiance.read_radiance(source)
+    mended = radiance.read_mended(source)
+    E, *counts = mended
+    what = ("unknown pixels", "infinite values", "pixels with a negative channel", "pixels below black")
+    said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)
+    click.echo(f"{source}: cleaned {said or 'nothing, all is radiance'}")
+    return E
 
 
 def size(E: Any) -> str:

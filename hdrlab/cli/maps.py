@@ -16,21 +16,33 @@ from hdrlab.core import catalogue
 @click.option(
     "--saturation", type=float, help="1 keeps the colours' ratios, 0 is gray.  [default: the operator's]"
 )
+@click.option("--way", type=click.Choice(["ratio", "chroma"]), default="ratio", help="Of colour, see below.")
 @common.CLEAN
 def tonemap(
-    source: Path, out: Path, operator: str, knobs: tuple[str, ...], saturation: float | None, clean: bool
+    source: Path,
+    out: Path,
+    operator: str,
+    knobs: tuple[str, ...],
+    saturation: float | None,
+    way: str,
+    clean: bool,
 ) -> None:
-    """Make a picture of the radiance map SOURCE."""
+    """Make a picture of the radiance map SOURCE.
+
+    Bright colours may want more of a channel than a display has. By --way ratio such a channel is clipped:
+    the picture stays colourful, but a bright blue turns toward cyan. By --way chroma the colour pales as far
+    as it must, and its hue and luminance stay.
+    """
     from hdrlab import pipeline
     from hdrlab.io import photos as files
-    from hdrlab.io import radiance
     from hdrlab.io.terminal import elapsed
 
-    E = radiance.read_radiance(source, clean=clean)
+    E = common.read_map(source, clean)
     settings = dict(common.knob(one) for one in knobs)
     catalogue.check_knobs("tonemap", operator, settings)
     with elapsed(operator):
-        files.write_picture(out, pipeline.develop(E, operator, saturation=saturation, **settings))
+        picture = pipeline.develop(E, operator, saturation=saturation, way=way, **settings)
+        files.write_picture(out, picture)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {operator}")
 
 
@@ -45,13 +57,12 @@ def compare(source: Path, out: Path, operators: str | None, size: int, clean: bo
 
     The operators see the map at up to --size pixels along a side: time and quality are of that size.
     """
-    from hdrlab.io import radiance
     from hdrlab.show import contact, figures, sheet
 
     sheet.check_suffix(out)
     names = operators.replace(" ", "").split(",") if operators else catalogue.names("tonemap")
-    E = figures.fit(radiance.read_radiance(source, clean=clean), size)
-    entries = common.progress(contact.entry_steps(E, names), "comparing", len(names))
+    E = figures.fit(common.read_map(source, clean), size)
+    entries = common.one_by_one(contact.entry_steps(E, names), names)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {common.size(E)}"))
     click.echo(f"{out}: {len(names)} operators, {common.size(E)}")
 
@@ -65,7 +76,7 @@ def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
     """Write the radiance map SOURCE in the format of TARGET: .hdr, .exr or .pfm."""
     from hdrlab.io import radiance
 
-    E = radiance.read_radiance(source, clean=clean)
+    E = common.read_map(source, clean)
     radiance.write_radiance(target, E, half=half)
     click.echo(f"{target}: {common.size(E)}")
 

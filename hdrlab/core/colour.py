@@ -6,11 +6,16 @@ Ld       display luminance   (H, W), linear, 1 = white
 display  linear display RGB  (H, W, 3) in [0, 1], or (H, W)
 s        saturation          1 keeps the colour's ratios, 0 is gray
 
-A saturated colour may want more of a channel than the display has. There are two policies: `recolour` clips
-the channel (the luminance drops, and the hue may turn), `recolour_chroma` gives up saturation instead
-(luminance and hue stay).
+A saturated colour may want more of a channel than the display has. There are two policies, by name in `WAYS`:
+
+ratio    `recolour` clips the channel: the luminance drops and the hue turns, a blue sky toward cyan and a
+         flame from orange to yellow, but what is bright stays colourful
+chroma   `recolour_chroma` gives up saturation instead: luminance and hue stay, what is bright becomes pale
+
+Colours that no light has, with a channel below 0, become gray as far as they must: `core.gamut`.
 """
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -32,7 +37,7 @@ def luminance(E: ArrayLike) -> Float:
 
 
 def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> Float:
-    """Return C = (E / L)^s Ld for each channel C, clipped to [0, 1] [Tumblin99 eq. 3].
+    """Return C = (E / L)^s Ld for each channel C, clipped to [0, 1] [Tumblin99].
 
     Parameters
     ----------
@@ -67,7 +72,7 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
 
 
 def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> Float:
-    """Return C = (1 + s (E / L - 1)) Ld, with s lowered where a channel would leave [0, 1] [Mantiuk09 eq. 3].
+    """Return C = (1 + s (E / L - 1)) Ld, with s lowered where a channel would leave [0, 1] [Mantiuk09].
 
     The chroma E / L - 1 is a direction away from gray and only its length changes, so hue and luminance stay:
     the luminance of the result is Ld in every pixel.
@@ -96,15 +101,7 @@ def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: fl
     array([[0.5]], dtype=float32)
     """
     E, L, Ld = _fitting(E, L, Ld, saturation)
-    Ld = np.clip(Ld, 0, 1)
-    if E.ndim == 2:
-        return Ld
-    chroma = np.where((L < DARK)[..., None], 0, E / np.maximum(L, DARK)[..., None] - 1)
-    up, down = np.maximum(chroma.max(axis=-1), DARK), np.maximum(-chroma.min(axis=-1), DARK)
-    # s at which the first channel meets 1, or 0
-    room = np.minimum((1 - Ld) / np.maximum(Ld * up, DARK), 1 / down)
-    s = np.minimum(np.float32(saturation), room)[..., None]
-    return np.clip((1 + s * chroma) * Ld[..., None], 0, 1)  # the clip takes off rounding alone
+    return np.clip(Ld if E.ndim == 2 else _chroma(E, L, Ld, saturation), 0, 1)  # takes off rounding alone
 
 
 def encode_srgb(linear: ArrayLike) -> NDArray[Any]:
@@ -128,20 +125,24 @@ def to_8bit(display: ArrayLike) -> NDArray[np.uint8]:
     return _codes(as_radiance(display))
 
 
-def render(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> NDArray[np.uint8]:
+def render(
+    E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0, way: str = "ratio"
+) -> NDArray[np.uint8]:
     """Return to_8bit(recolour(E, L, Ld)), band by band, so that the picture in floats never stands in memory.
 
-    Parameters, errors : as for `recolour`
+    Parameters, errors : as for `recolour`; way : "chroma" takes `recolour_chroma` instead
 
     Returns
     -------
     (H, W, 3) uint8, sRGB; or (H, W) where E is gray
     """
+    if way not in WAYS:
+        raise ValueError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")
     E, L, Ld = _fitting(E, L, Ld, saturation)
     picture = np.empty(E.shape, np.uint8)
     for top in range(0, len(E), ROWS):
         band = slice(top, top + ROWS)
-        picture[band] = _codes(Ld[band] if E.ndim == 2 else _ratio(E[band], L[band], Ld[band], saturation))
+        picture[band] = _codes(Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation))
     return picture
 
 
@@ -155,6 +156,19 @@ def _ratio(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
     if dark.any():
         C[dark] = Ld[dark, None]
     return C
+
+
+def _chroma(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
+    Ld = np.minimum(Ld, 1)
+    chroma = np.where((L < DARK)[..., None], 0, E / np.maximum(L, DARK)[..., None] - 1)
+    up, down = np.maximum(chroma.max(axis=-1), DARK), np.maximum(-chroma.min(axis=-1), DARK)
+    # s at which the first channel meets 1, or 0
+    room = np.minimum((1 - Ld) / np.maximum(Ld * up, DARK), 1 / down)
+    s = np.minimum(np.float32(saturation), room)[..., None]
+    return np.maximum((1 + s * chroma) * Ld[..., None], 0)
+
+
+WAYS: dict[str, Callable[[Float, Float, Float, float], Float]] = {"ratio": _ratio, "chroma": _chroma}
 
 
 def _codes(display: Float) -> NDArray[np.uint8]:

@@ -19,6 +19,7 @@ from hdrlab.io.files import check_size, replacing
 
 LARGEST_HALF = 65504.0
 BEST_COMPRESSION = 1 << 16  # bytes of a picture in one of the file: more than any of the methods reaches
+Part = tuple[dict[str, Any], dict[str, NDArray[Any]]]
 COLOURS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
 
 
@@ -42,7 +43,16 @@ class Header(NamedTuple):
 
 def read_header(path: str | Path) -> Header:
     """Return the Header of the first part of the OpenEXR file at `path`, or raise a ValueError."""
-    attributes, _ = _first_part(path, header_only=True)
+    return _header(path, _first_part(path, header_only=True)[0])
+
+
+def read_headers(path: str | Path) -> list[Header]:
+    """Return the Header of each part of the OpenEXR file at `path`, or raise a ValueError."""
+    return [_header(path, attributes) for attributes, _ in parts(path, header_only=True)]
+
+
+def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
+    """Return the Header that the attributes of a part make, after a look at what they claim."""
     if attributes["type"] not in (OpenEXR.scanlineimage, OpenEXR.tiledimage):
         raise ValueError(f"{path}: expected a flat image, got {attributes['type'].name}")
     channels, across, down = zip(*attributes["channels"], strict=True)
@@ -116,8 +126,13 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
         file.write(str(name))
 
 
-def _first_part(path: str | Path, **options: bool) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+def _first_part(path: str | Path, **options: bool) -> Part:
     """Return the header and the pixels of the first part."""
+    return parts(path, count=1, **options)[0]
+
+
+def parts(path: str | Path, *, count: int | None = None, **options: bool) -> list[Part]:
+    """Return the header, and the pixels by channel, of the first `count` parts of the file at `path`."""
     with open(
         path, "rb"
     ) as start:  # the module cannot tell a file that is missing from one that is not OpenEXR
@@ -127,12 +142,16 @@ def _first_part(path: str | Path, **options: bool) -> tuple[dict[str, Any], dict
     said = io.StringIO()  # the module prints what is wrong with a part, and leaves the part out
     try:
         with contextlib.redirect_stdout(said), OpenEXR.File(str(path), **options) as file:
-            part = file.parts[0]
-            channels = [
-                (channel.name, channel.xSampling, channel.ySampling) for channel in part.header["channels"]
-            ]
-            planes = {name: channel.pixels for name, channel in part.channels.items()}
-            return {**part.header, "channels": channels}, planes
+            found = []
+            for part in file.parts[:count]:
+                channels = [
+                    (channel.name, channel.xSampling, channel.ySampling)
+                    for channel in part.header["channels"]
+                ]
+                planes = {name: channel.pixels for name, channel in part.channels.items()}
+                found.append(({**part.header, "channels": channels}, planes))
+            found[0]  # a file without a part is damaged too
+            return found
     except Exception as error:  # damaged files make it raise what they like, UnicodeDecodeError included
         reason = said.getvalue().strip().rpartition(" - ")[2] or str(error)
         raise ValueError(f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})") from None

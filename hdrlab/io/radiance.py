@@ -6,6 +6,7 @@ from types import ModuleType
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
 from hdrlab.io import exr, pfm, rgbe
 
@@ -18,12 +19,12 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> NDArray[np.float3
     Parameters
     ----------
     path : a .hdr, .pic, .rad, .pfm or .exr file
-    clean : True to mend values that are no radiance: NaN and negative ones become 0, infinite ones the
-        largest finite one
+    clean : True to mend values that are no radiance, see `core.gamut.mend`: NaN takes the mean of its
+        neighbours, infinity the largest finite value, and a negative channel makes its pixel less colourful
 
     Returns
     -------
-    E : (H, W, 3) or (H, W) float32, finite and not negative
+    E : (H, W, 3) or (H, W) float32, finite and not negative, with the primaries of sRGB
 
     Raises
     ------
@@ -39,13 +40,42 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> NDArray[np.float3
     >>> read_radiance(path)
     array([[0.5, 1. , 2. ]], dtype=float32)
     """
+    return read_mended(path).E if clean else read_checked(path)
+
+
+def read_mended(path: str | Path) -> gamut.Mended:
+    """Return the radiance map as `read_radiance` cleans it, and counts of what it mended."""
+    E, primaries = format_of(path).read(path), primaries_of(path)
+    if primaries is None:
+        return gamut.mend(E)
+    mended = gamut.mend(E, weights=gamut.to_xyz(primaries)[1])
+    return mended._replace(E=gamut.to_srgb(mended.E, primaries))
+
+
+def read_checked(path: str | Path) -> NDArray[np.float32]:
+    """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
     E = format_of(path).read(path)
-    if clean:
-        return mend(E)
     try:
-        return as_radiance(E)
+        E = as_radiance(E)
     except ValueError as error:
         raise ValueError(f"{path}: {error}; clean=True (--clean) mends them") from None
+    primaries = primaries_of(path)
+    return E if primaries is None else gamut.to_srgb(E, primaries)
+
+
+def primaries_of(path: str | Path) -> tuple[float, ...] | None:
+    """Return the primaries and the white that an .exr file names, where they are not those of sRGB.
+
+    Two files of one photograph in different primaries so give one picture. .hdr and .pfm files are taken to
+    hold those of sRGB, as nearly all do.
+    """
+    if format_of(path) is not exr:
+        return None
+    header = exr.read_header(path)
+    named = header.attributes.get("chromaticities")
+    if named is None or len(header.channels) < 3 or np.allclose(named, gamut.SRGB, atol=1e-3):
+        return None
+    return tuple(map(float, named))
 
 
 def write_radiance(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
@@ -79,11 +109,3 @@ def format_of(path: str | Path) -> ModuleType:
             f"{path}: expected a radiance file ({', '.join(SUFFIXES)}), got {suffix or 'no suffix'}"
         )
     return SUFFIXES[suffix]
-
-
-def mend(E: NDArray[np.float32]) -> NDArray[np.float32]:
-    """Return E with NaN and negative values replaced by 0, and infinite ones by the largest finite one."""
-    finite = E[np.isfinite(E)]
-    largest = max(float(finite.max()), 0.0) if finite.size else 0.0
-    mended: NDArray[np.float32] = np.clip(np.nan_to_num(E, nan=0.0, posinf=largest, neginf=0.0), 0, None)
-    return mended

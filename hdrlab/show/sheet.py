@@ -103,7 +103,9 @@ def grid(shape: tuple[int, ...], count: int, *, columns: int | None = None, side
     h, w = shape[:2]
     width, height = (max(1, round(side * length / max(h, w))) for length in (w, h))
     cell = max(width, TEXT) + GAP, height + CAPTION
-    columns = columns or max(1, round((1.6 * count * cell[1] / cell[0]) ** 0.5))
+    if columns is None:
+        columns = max(1, round((1.6 * count * cell[1] / cell[0]) ** 0.5))
+        columns = -(-count // -(-count // columns))  # as many rows with fewer places left empty
     return Grid(min(columns, count), (width, height), cell)
 
 

@@ -1,0 +1,69 @@
+"""Commands that take a while: what a terminal shows meanwhile, and what Ctrl-C leaves behind."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from hdrlab.io import pfm
+
+pty = pytest.importorskip("pty", reason="there are no such terminals here")
+
+SIDES = (3000, 4000)  # 12 megapixels
+PATIENCE = 120  # seconds
+LONG = {
+    "tonemap": ["--operator", "chiu", "--set", "passes=2000"],
+    "compare": ["--operators", "chiu,fattal,brush", "--size", "4000"],
+}
+
+
+@pytest.fixture(scope="module")
+def large(tmp_path_factory):
+    """A radiance map of 12 megapixels, gray, over six decades."""
+    file = tmp_path_factory.mktemp("large") / "large.pfm"
+    pfm.write(file, np.geomspace(1, 1e6, SIDES[1], dtype=np.float32) * np.ones((SIDES[0], 1), np.float32))
+    return file
+
+
+def started(*arguments):
+    """Return the command as a process, and the terminal that it talks to."""
+    terminal, its_end = pty.openpty()
+    command = [sys.executable, "-m", "hdrlab", *map(str, arguments)]
+    process = subprocess.Popen(command, stdout=its_end, stderr=its_end, stdin=subprocess.DEVNULL)
+    os.close(its_end)
+    return process, terminal
+
+
+def shown(terminal, until):
+    """Return what the terminal shows, up to where `until` answers True, or to the end."""
+    said, deadline = "", time.monotonic() + PATIENCE
+    while not until(said) and time.monotonic() < deadline:
+        if select.select([terminal], [], [], 1)[0]:
+            try:
+                said += os.read(terminal, 4096).decode()
+            except OSError:  # the command has ended, and closed it
+                break
+    return said
+
+
+@pytest.mark.parametrize("command", LONG)
+def test_twelve_megapixels_show_the_seconds_and_ctrl_c_leaves_what_was_there(command, large, tmp_path):
+    out = tmp_path / "out.png"
+    out.write_bytes(b"precious")
+    process, terminal = started(command, large, "-o", out, *LONG[command])
+    try:
+        assert "chiu: " in shown(terminal, lambda said: " s" in said)
+        process.send_signal(signal.SIGINT)
+        ended = shown(terminal, lambda _: False)
+        assert process.wait(PATIENCE) == 130
+    finally:
+        process.kill()
+        process.wait()
+        os.close(terminal)
+    assert ended.strip().endswith("hdrlab: interrupted") and "Traceback" not in ended
+    assert [file.name for file in tmp_path.iterdir()] == ["out.png"] and out.read_bytes() == b"precious"
