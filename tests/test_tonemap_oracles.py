@@ -8,9 +8,16 @@ operator                 SSIM at least, measured     correlation at least, measu
 reinhard, global         0.99      1.000  1.000      0.999     1.000  1.000
 reinhard, local          0.95      0.971  0.983      0.99      0.997  0.997
 durand                   0.94      0.972  0.989      0.97      0.992  0.993
-fattal                   0.90      0.936  0.976      0.96      0.978  0.991
+fattal                   0.92      0.943  0.978      0.97      0.985  0.995
+
+and with Luminance HDR 2.6.1, on the room, the memorial church and the lobby:
+
+reinhard, global         0.99      1.000  1.000  1.000      0.999     1.000  1.000  1.000
+durand                   0.94      0.959  0.956  0.976      0.98      0.995  0.992  0.993
+fattal                   0.88      0.894  0.945  0.972      0.89      0.978  0.902  0.955
 """
 
+import os
 import shutil
 import subprocess
 from functools import cache
@@ -18,11 +25,12 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+import tifffile
 from skimage.metrics import structural_similarity
 
 from hdrlab.capture import scenes
 from hdrlab.core.colour import encode_srgb, luminance
-from hdrlab.io.radiance import read_radiance
+from hdrlab.io.radiance import read_radiance, write_radiance
 
 WHITE = np.float32([0.9505, 1, 1.089])  # XYZ of a gray of luminance 1, so that pfstools sees no colour
 
@@ -48,6 +56,24 @@ def pfstmo(tool, L, *options):
     assert ran.returncode == 0, ran.stderr.decode()
     body = ran.stdout[ran.stdout.index(b"ENDH") + 4 :]
     return np.clip(np.frombuffer(body, "<f4").reshape(3, *L.shape)[1], 0, 1)
+
+
+def luminance_hdr(folder, L, *options):
+    """Return the luminance (H, W) that an operator of Luminance HDR answers, cut to [0, 1].
+
+    It is asked from the command line, without a screen, and keeps its settings in `folder`.
+    """
+    if not (program := shutil.which("luminance-hdr-cli")):
+        pytest.skip("luminance-hdr-cli is not installed")
+    scene, picture = folder / "scene.hdr", folder / "picture.tif"
+    write_radiance(scene, np.repeat(L[..., None], 3, axis=-1))
+    files = ("--load", scene, "--output", picture, "--ldrTiff", "32b", "--ldrTiffDeflate", "false")
+    place = {"HOME": str(folder), "QT_QPA_PLATFORM": "offscreen"}
+    ran = subprocess.run(
+        [program, *files, *options], env=os.environ | place, capture_output=True, timeout=300
+    )
+    assert ran.returncode == 0 and picture.exists(), ran.stderr.decode(errors="replace")[-500:]
+    return np.clip(tifffile.imread(picture)[..., 1], 0, 1)
 
 
 def likeness(ours, theirs):
@@ -127,4 +153,40 @@ def test_fattals_compression_is_like_pfstools(L):
     """
     options = ("--alpha", "0.1", "--beta", "0.9", "--detail-level", "0", "--gamma", "1")
     found = likeness(operator("fattal").tonemap(L), pfstmo("pfstmo_fattal02", L, *options))
-    assert found.ssim > 0.90 and found.correlation > 0.96, found
+    assert found.ssim > 0.92 and found.correlation > 0.97, found
+
+
+def test_reinhards_curve_is_luminance_hdrs_own(L, tmp_path):
+    """Here even the log average is alike."""
+    reinhard = operator("reinhard")
+    options = ("--tmo", "reinhard02", "--tmoR02Key", "0.18", "--tmoR02Scales", "false")
+    ours = reinhard.tonemap(L, white=float(reinhard.scaled(L).max()))
+    found = likeness(ours, luminance_hdr(tmp_path, L, *options))
+    assert found.ssim > 0.99 and found.correlation > 0.999, found
+
+
+def test_durands_compression_is_like_luminance_hdrs(L, tmp_path):
+    """With one width in space, and ours in range and contrast in nats.
+
+    Theirs is paler: between the two lies a power of 2.2, as if it were encoded for a display already. What
+    remains is the anchor of the base, and that theirs takes a lone pixel's base as it is.
+    """
+    nats = np.log(10)
+    knobs = {"--tmoDurSigmaS": 0.02 * max(L.shape), "--tmoDurSigmaR": 0.4 * nats, "--tmoDurBase": np.log(50)}
+    options = [word for knob, value in knobs.items() for word in (knob, f"{value:.6g}")]
+    theirs = luminance_hdr(tmp_path, L, "--tmo", "durand", *options)
+    ours = operator("durand").tonemap(L, sigma_s=0.02 * max(L.shape), sigma_r=0.4, contrast=50)
+    found, encoded = likeness(ours, theirs**2.2), likeness(ours, theirs)
+    assert found.ssim > 0.94 and found.correlation > 0.98, found
+    assert encoded.ssim < found.ssim
+
+
+def test_fattals_compression_is_like_luminance_hdrs(L, tmp_path):
+    """With the paper's alpha = 0.1. As with pfstools a gamma lies between, here 0.7 to 0.8.
+
+    In the memorial church there is a slow slope as well: upwards of its floor, which is 0.2 darker in theirs,
+    the two come together. Their solver's edges are a likely reason; their noise floor is none, as measured.
+    """
+    knobs = ("--tmoFatAlpha", "0.1", "--tmoFatBeta", "0.9", "--tmoFatColor", "1", "--tmoFatNoise", "0")
+    found = likeness(operator("fattal").tonemap(L), luminance_hdr(tmp_path, L, "--tmo", "fattal", *knobs))
+    assert found.ssim > 0.88 and found.correlation > 0.89, found

@@ -1,4 +1,4 @@
-"""From 2 to 12 megapixels: time that grows with the pixels and not faster, and what merging takes."""
+"""From 2 to 12 megapixels: time that grows with the pixels and not faster, and memory."""
 
 from collections.abc import Callable
 from functools import partial
@@ -7,6 +7,9 @@ from pathlib import Path
 from benchmarks import data
 from benchmarks.rows import Case, Row, Run, grows, within
 from hdrlab import pipeline
+from hdrlab.core import catalogue
+from hdrlab.core.colour import luminance
+from hdrlab.enhance import mertens
 from hdrlab.radiance.merge import merge
 
 SIZES = {"2 MP": data.SMALL, "12 MP": data.LARGE}
@@ -29,12 +32,36 @@ def developing(folder: Path, size: data.Size, one: bool) -> Run:
     return lambda: pipeline.develop(E, "reinhard")
 
 
+def tonemapping(name: str, folder: Path, size: data.Size, one: bool) -> Run:
+    """Return an operator, luminance to luminance."""
+    L, tonemap = luminance(data.scene(folder, size)), catalogue.method("tonemap", name)
+    return lambda: tonemap(L)
+
+
+def fusing(folder: Path, size: data.Size, one: bool) -> Run:
+    """Return the fusion of seven photographs."""
+    images = data.photographs(folder, size).images
+    return lambda: mertens.fuse(images)
+
+
+def operator(name: str) -> Row:
+    """Return the row of an operator of tone mapping; a new one has its row by existing."""
+    holds = (POWER, within("12 MP", MOST.get(name, 300)))
+    return Row(f"{name}-12", f"{name}, 2 and 12 megapixels", partial(case, partial(tonemapping, name)), holds)
+
+
 POWER = grows("2 MP", "12 MP", data.PIXELS, 1.15)
+MOST = {"fattal": 400}  # MB; any other operator is held to 300
 ROWS = (
     Row(
         "merge-12", "radiance map, 2 and 12 megapixels", partial(case, merging), (POWER, within("12 MP", 200))
     ),
     Row(
-        "reinhard-12", "Reinhard's global operator, 2 and 12 megapixels", partial(case, developing), (POWER,)
+        "picture-12",
+        "Reinhard's operator to 8 bits, 2 and 12 megapixels",
+        partial(case, developing),
+        (POWER,),
     ),
+    Row("mertens-12", "exposure fusion, 2 and 12 megapixels", partial(case, fusing), (POWER,)),
+    *map(operator, catalogue.names("tonemap")),
 )

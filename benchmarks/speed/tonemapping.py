@@ -8,7 +8,7 @@ from scipy.ndimage import gaussian_filter
 
 from benchmarks import data, peers
 from benchmarks.measure import process
-from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster
+from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab import pipeline
 from hdrlab.core.arrays import Array
 from hdrlab.core.colour import encode_srgb, luminance, recolour
@@ -82,16 +82,10 @@ def true_gaussians(L: Array) -> Array:
 
 def pfstools(E: Array, folder: Path, one: bool, operator: str, *options: str) -> Run:
     """Return an operator of pfstools, less what it takes to read and write the same frame and do nothing."""
-    program, idle, reader = map(peers.pfstools, (operator, "pfstag", "pfsinpfm"))
     pfm.write(folder / "scene.pfm", E)
     frame = folder / "scene.pfs"
-    process([reader, str(folder / "scene.pfm")], one=one, target=frame)
-
-    def run() -> Usage:
-        busy = process([program, *options], one=one, source=frame)
-        return busy.net(process([idle], one=one, source=frame))
-
-    return run
+    process([peers.pfstools("pfsinpfm"), str(folder / "scene.pfm")], one=one, target=frame)
+    return peers.pfs_run([operator, *options], frame, one)
 
 
 ROWS = (
