@@ -1,5 +1,9 @@
 """The plots: what a reader can tell from them, and what they refuse to draw."""
 
+import io
+import re
+
+import imageio.v3 as iio
 import matplotlib
 import numpy as np
 import pytest
@@ -104,6 +108,53 @@ def test_a_radiance_map_is_scaled_in_stops_from_its_median():
     assert image.get_cmap().name == "viridis"
 
 
+def test_a_radiance_map_is_scaled_in_decades_too():
+    E = np.ones((8, 9), np.float32)
+    E[0], E[1] = 16, 1 / 4
+    ax = plots.radiance(E, unit="decades")
+    (image,), bar = ax.images, ax.figure.axes[1]
+    assert np.allclose(np.unique(image.get_array()), np.log10([1 / 4, 1, 16]))
+    assert bar.get_ylabel() == "decades from the median luminance"
+    with pytest.raises(ValueError, match="expected unit as stops or decades, got 'dB'"):
+        plots.radiance(E, unit="dB")
+
+
+def test_maps_side_by_side_share_one_legend_in_stops_and_decades():
+    E = 2.0 ** np.linspace(-10, 10, 30 * 40).reshape(30, 40)
+    shown = pictures.radiance(E, E**0.5, alt="A wedge", captions=["measured", "recovered"])
+    assert shown.alts == (
+        "A wedge, measured, 20.0 stops from the darkest to the brightest",
+        "A wedge, recovered, 10.0 stops from the darkest to the brightest",
+    )
+    first, second = (iio.imread(io.BytesIO(frame)).astype(int) for frame in shown.frames)
+    ends = [np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) for colour in ("#440154", "#fde725")]
+    assert np.abs(first[0, 0] - ends[0]).max() < 20 and np.abs(first[-1, -1] - ends[1]).max() < 20
+    assert np.abs(second[0, 0] - ends[0]).max() > 30  # half as far from the middle
+    page = shown._repr_html_()
+    assert page.count("linear-gradient") == 1
+    for tick in ("−10", "+5", "−2", "+2"):
+        assert f">{tick} <" in page
+
+
+def test_a_legend_of_few_stops_tells_its_ticks_apart():
+    page = pictures.radiance(2.0 ** np.linspace(-1, 1, 400).reshape(20, 20), alt="A wedge")._repr_html_()
+    ticks = re.findall(r">([^<>]+) </span>", page)
+    assert len(ticks) == len(set(ticks)) + 1 >= 8  # zero stands in both scales
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"captions": ["one", "two"]}, "expected a caption for each of 1 maps"),
+        ({"stops": (3, 3)}, "expected stops as"),
+        ({"alt": ""}, "expected an alt text"),
+    ],
+)
+def test_maps_without_what_explains_them_are_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        pictures.radiance(np.ones((4, 4)), **{"alt": "A wall"} | given)
+
+
 def test_pixels_without_light_are_gray_in_a_radiance_map():
     E = np.ones((4, 4), np.float32)
     E[0, 0] = 0
@@ -139,6 +190,12 @@ def test_a_figure_stays_as_it_is_when_rendered_and_no_window_opens():
     first, second = pictures.render(ax), pictures.render(ax.figure)
     assert first.shape == (360, 540, 3) and first.dtype == np.uint8
     assert np.array_equal(first, second)
+
+
+def test_a_figure_is_rendered_as_fine_as_it_is_when_it_is_drawn():
+    figure = plots.axes().figure
+    figure.set_dpi(150)
+    assert pictures.render(figure).shape == (540, 810, 3)
 
 
 def test_a_figure_of_pyplot_is_rendered_and_closed():

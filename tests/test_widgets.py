@@ -1,4 +1,4 @@
-"""play and tune in Python: what they hand to the browser, and what they do when it moves a slider."""
+"""Widgets in Python: what they hand to the browser, and what they do when it moves a slider."""
 
 import io
 import itertools
@@ -7,7 +7,8 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 
-from hdrlab.show import plots, widgets
+from hdrlab.io import web
+from hdrlab.show import again, plots, widgets
 from hdrlab.show.pictures import render
 
 
@@ -71,9 +72,10 @@ def test_every_frame_has_an_alt_text_of_its_own():
 def test_the_page_gets_frames_and_scripts_and_nothing_from_elsewhere():
     state = widgets.play(range(2), square, alt="A square").get_state()
     assert len(state["frames"]) == 2 and state["index"] == 0
-    for widget in (widgets.Player, widgets.Tuner):
+    for widget in (widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush):
         script = widget._esm
-        assert "export default" in str(script) and "http" not in str(script) and "import " not in str(script)
+        assert str(script).count("export default") == 1 and "http" not in str(script)
+        assert "import " not in str(script) and "import(" not in str(script)
 
 
 def test_no_states_are_refused():
@@ -207,3 +209,182 @@ def test_tune_refuses_no_ranges_and_ranges_of_parameters_that_are_not_there():
 def test_tune_refuses_pictures_without_alt_text():
     with pytest.raises(ValueError, match="expected an alt text"):
         widgets.tune(square, same, alt="", level=(0, 9))
+
+
+def curve(k=1):
+    return plots.response(k * np.linspace(-4, 4, 256), label=f"{k}", span=(-5, 5))
+
+
+def test_a_plot_on_axes_that_are_used_again_is_the_plot_on_new_ones():
+    """To the pixel: nothing of the picture before is left behind, whatever it had."""
+
+    def crowded(k):
+        ax = curve(k)
+        ax.text(0, 128, "here")
+        ax.axhspan(10, 20)
+        ax.set_title("A title")
+        return ax
+
+    tuner = widgets.tune(lambda k=1: k, lambda k: crowded(k) if k == 2 else curve(k), alt="A curve", k=(1, 4))
+    for k in (2, 3, 1):
+        tuner.at = [k - 1]
+        expected = web.jpeg(render(crowded(k) if k == 2 else curve(k)))
+        assert tuner.frame == expected
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda ax: ax.set(yscale="symlog"),
+        lambda ax: ax.tick_params(labelsize=20),
+        lambda ax: ax.grid(False),
+        lambda ax: ax.set_axis_off(),
+        lambda ax: ax.set_xticks([0, 1], ["no", "yes"]),
+        lambda ax: ax.set_aspect("equal"),
+        lambda ax: ax.set_position([0.3, 0.3, 0.3, 0.3]),
+        lambda ax: ax.spines["top"].set_visible(False),
+        lambda ax: ax.set_title("A title", fontsize=30),
+        lambda ax: ax.figure.add_axes((0.9, 0.1, 0.05, 0.5)),
+        lambda ax: ax.twinx(),
+        lambda ax: ax.figure.text(0, 0, "a note"),
+        lambda ax: ax.set_facecolor("black"),
+    ],
+)
+def test_axes_that_were_changed_beyond_wiping_are_not_used_again(change):
+    def draw(k):
+        ax = curve(k)
+        if k == 2:
+            change(ax)
+        ax.set_title("The same")
+        return ax
+
+    kept = again.Kept()
+    again.drawn(draw, 2, lambda drawn: web.jpeg(render(drawn)), kept)
+    assert again.drawn(draw, 1, lambda drawn: web.jpeg(render(drawn)), kept) == web.jpeg(render(draw(1)))
+
+
+def test_axes_are_used_again_where_nothing_speaks_against_it():
+    kept, seen = again.Kept(), []
+    for k in (1, 2, 3):
+        again.drawn(lambda k: seen.append(curve(k)) or seen[-1], k, lambda drawn: b"", kept)
+    assert seen[0] is seen[1] is seen[2] and curve() is not seen[0]
+
+
+def test_two_axes_of_one_picture_are_never_the_same():
+    kept = again.Kept()
+    again.drawn(curve, 1, lambda drawn: b"", kept)
+    pairs = []
+    again.drawn(lambda k: pairs.extend([curve(k), curve(k)]) or pairs[0], 2, lambda drawn: b"", kept)
+    assert pairs[0] is not pairs[1]
+
+
+def decoded(data, scale, shape):
+    return np.frombuffer(data, "<f2").astype(np.float64).reshape(shape) / scale
+
+
+@pytest.mark.parametrize("top", [1e-20, 3.0, 65504.0, 1e9, 3e38])
+def test_half_floats_keep_eight_decades_of_any_radiance(top):
+    E = np.geomspace(top / 1e8, top, 200)
+    seen = decoded(*web.half(E), E.shape)
+    assert np.abs(seen / E - 1).max() < 2**-11 and np.isfinite(seen).all()
+
+
+def test_half_floats_of_darkness_are_zeros():
+    assert not np.any(decoded(*web.half(np.zeros(3)), 3))
+
+
+ROOM = np.arange(24 * 36 * 3, dtype=np.uint8).reshape(24, 36, 3)
+
+
+def test_wipe_and_blink_hand_over_every_pixel_as_it_is():
+    for widget in (
+        widgets.wipe(ROOM, 255 - ROOM, alt="A room"),
+        widgets.blink(ROOM, 255 - ROOM, alt="A room"),
+    ):
+        first, second = (iio.imread(io.BytesIO(picture)) for picture in widget.pictures)
+        assert np.array_equal(first, ROOM) and np.array_equal(second, 255 - ROOM)
+
+
+def test_wipe_takes_gray_beside_colour_and_plots_beside_plots():
+    assert len(widgets.wipe(ROOM, ROOM[..., 0], alt="A room").pictures) == 2
+    assert len(widgets.wipe(curve(1), curve(2), alt="Two curves").pictures) == 2
+
+
+def test_blink_takes_several_pictures_and_names_them():
+    blinker = widgets.blink(ROOM, ROOM, ROOM, alt="A room")
+    assert blinker.labels == ["A", "B", "C"] and len(blinker.pictures) == 3 and blinker.index == 0
+
+
+@pytest.mark.parametrize("shape", [(24, 36), (24, 36, 3)])
+def test_the_values_to_read_out_keep_three_digits(shape):
+    E = np.geomspace(1e-3, 1e5, np.prod(shape)).reshape(shape)
+    widget = widgets.wipe(ROOM, ROOM, alt="A room", values=[E, 2 * E])
+    for k, values in enumerate((E, 2 * E)):
+        assert np.allclose(decoded(widget.values[k], widget.scales[k], shape), values, rtol=5e-4)
+    assert widget.channels == [len(shape) * 2 - 3] * 2
+    assert len(widgets.blink(ROOM, ROOM, alt="A room", values=E).values) == 1
+
+
+def test_large_pictures_are_compared_by_means_of_their_pixels_and_values_too():
+    large = np.zeros((30, 4100), np.uint8)
+    widget = widgets.wipe(large, large, alt="A wide room", values=large)
+    assert iio.imread(io.BytesIO(widget.pictures[0])).shape[:2] == (10, 1366)
+    assert len(widget.values[0]) == 2 * 10 * 1366
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"b": ROOM[:9]}, r"expected pictures of one size, got \(24, 36\), \(9, 36\)"),
+        ({"labels": ["one"]}, "expected a label for each of 2 pictures"),
+        ({"labels": "ab"}, "expected a label for each of 2 pictures"),
+        ({"labels": ["a", ""]}, "expected a label for each of 2 pictures"),
+        ({"values": np.ones((9, 9))}, "expected finite values"),
+        ({"values": np.full((24, 36), np.nan)}, "expected finite values"),
+        ({"values": [np.ones((24, 36))] * 3}, "expected values for each of 2 pictures, or one array, got 3"),
+        ({"alt": ""}, "expected an alt text"),
+        ({"a": np.zeros((24, 36))}, "expected draw to return a uint8 picture"),
+    ],
+)
+@pytest.mark.parametrize("compare", [widgets.wipe, widgets.blink])
+def test_what_cannot_be_compared_is_refused(compare, given, message):
+    given = {"a": ROOM, "b": ROOM, "alt": "A room"} | given
+    with pytest.raises(ValueError, match=message):
+        compare(given.pop("a"), given.pop("b"), **given)
+
+
+@pytest.mark.parametrize("period", [0.1, np.nan, np.inf])
+def test_blinking_so_fast_that_it_can_harm_is_refused(period):
+    with pytest.raises(ValueError, match="faster flashes can harm"):
+        widgets.blink(ROOM, ROOM, alt="A room", period=period)
+
+
+@pytest.mark.parametrize("shape", [(40, 60), (40, 60, 3)])
+def test_the_brush_hands_over_the_radiance_map_and_starts_in_its_middle(shape):
+    E = np.geomspace(1e-2, 1e6, np.prod(shape)).reshape(shape)
+    brush = widgets.brush(E, alt="A wedge", size=64)
+    assert brush.shape == [40, 60, len(shape) * 2 - 3] and brush.centre == [20, 30]
+    assert np.allclose(decoded(brush.radiance, brush.scale, shape), E, rtol=5e-4)
+    assert iio.imread(io.BytesIO(brush.picture)).shape == (40, 60, 3)
+
+
+def test_a_large_map_is_brushed_by_means_of_its_pixels():
+    assert widgets.brush(np.ones((30, 1600)), alt="A wide wall").shape == [15, 800, 1]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"alt": " "}, "expected an alt text"),
+        ({"size": 63}, "expected size from 64 to 512, got 63"),
+        ({"magnification": 9}, "expected magnification from 1 to 8"),
+        ({"limit": 0.5}, "expected limit from 1 to 16"),
+        ({"bins": 1}, "expected bins from 2"),
+        ({"picture": ROOM}, "expected a picture of the size of E"),
+        ({"E": -np.ones((9, 9))}, "expected"),
+    ],
+)
+def test_a_brush_that_makes_no_sense_is_refused(given, message):
+    given = {"E": np.ones((9, 9)), "alt": "A wall"} | given
+    with pytest.raises(ValueError, match=message):
+        widgets.brush(given.pop("E"), **given)

@@ -1,27 +1,49 @@
 """Pictures as bytes, for a page: a notebook's frames, a report's illustrations.
 
-image  (H, W) gray or (H, W, 3) RGB, uint8
+image   (H, W) gray or (H, W, 3) RGB, uint8
+values  any shape, finite: radiance, for a script to compute with
 """
 
 import base64
 
 import imageio.v3 as iio
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 Image = NDArray[np.uint8]
 
 
 def webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
-    """Return `image` as WebP, small and quick to decode; lossless suits plots, not photographs."""
+    """Return `image` as WebP, small and quick to decode; lossless suits plots, and pixels that are read out.
+
+    The encoder's efforts take half of the time of its defaults, or less, for 2 to 8 % more bytes.
+    """
     if lossless:
-        return iio.imwrite("<bytes>", _rgb(image), extension=".webp", lossless=True)
-    return iio.imwrite("<bytes>", _rgb(image), extension=".webp", quality=quality)
+        return iio.imwrite("<bytes>", _rgb(image), extension=".webp", lossless=True, method=1, quality=25)
+    return iio.imwrite("<bytes>", _rgb(image), extension=".webp", quality=quality, method=2)
 
 
 def jpeg(image: Image, *, quality: int = 90) -> bytes:
     """Return `image` as JPEG, the quickest to encode, with full colour resolution so that thin lines stay."""
     return iio.imwrite("<bytes>", _rgb(image), extension=".jpg", quality=quality, subsampling=0)
+
+
+def half(values: ArrayLike) -> tuple[bytes, float]:
+    """Return values times a power of two as half floats, little endian, and that power of two.
+
+    The largest comes to lie between 16384 and 32768, so none overflows, and eight decades below it keep
+    eleven bits. A half float ends at 65504, which a photograph of the sun does not.
+
+    Examples
+    --------
+    >>> data, scale = half([0.25, 1048576])
+    >>> (np.frombuffer(data, "<f2") / np.float64(scale)).tolist()
+    [0.25, 1048576.0]
+    """
+    values = np.asarray(values, np.float64)
+    _, exponent = np.frexp(np.abs(values).max(initial=0))
+    scale = float(2.0 ** (15 - int(exponent)))
+    return (values * scale).astype("<f2").tobytes(), scale
 
 
 def data_uri(encoded: bytes, kind: str = "webp") -> str:

@@ -12,9 +12,9 @@ function element(parent, tag, properties = {}) {
 }
 
 // The page around a widget (JupyterLab) has shortcuts for the keys that move a slider: keep them here.
-function start(el) {
+function start(el, kind) {
   el.replaceChildren();
-  const root = element(el, "div", { className: "hdrlab", "data-lm-suppress-shortcuts": "true" });
+  const root = element(el, "div", { className: "hdrlab", "data-kind": kind, "data-lm-suppress-shortcuts": "true" });
   root.addEventListener("keydown", (event) => event.stopPropagation());
   return root;
 }
@@ -57,3 +57,38 @@ function picture(parent) {
 function decode(bytes, type) {
   return createImageBitmap(new Blob([bytes], { type }));
 }
+
+// Where a pointer and the keys work on a picture. The canvas inside stays an image to a screen reader.
+function stage(parent, keys) {
+  const frame = element(parent, "div", { className: "hdrlab-stage", role: "application", tabIndex: 0, "aria-label": keys });
+  const canvas = element(frame, "canvas", { role: "img", "aria-label": "" });
+  return { frame, canvas, context: canvas.getContext("2d", { alpha: false }) };
+}
+
+// Where a pointer is on the canvas, as shares of its width and height.
+function place(event, canvas) {
+  const box = canvas.getBoundingClientRect();
+  return [(event.clientX - box.left) / box.width, (event.clientY - box.top) / box.height];
+}
+
+// A line of text that is read aloud when the keys change it, and not while a pointer hurries over the picture.
+function teller(parent) {
+  const node = element(parent, "p", { className: "hdrlab-note", role: "status" });
+  return (text, aloud = false) => {
+    node.setAttribute("aria-live", aloud ? "polite" : "off");
+    node.textContent = text;
+  };
+}
+
+// Run a function at most once for each frame of the display.
+function eachFrame(paint) {
+  let waiting = 0;
+  return () => {
+    waiting ||= requestAnimationFrame(() => {
+      waiting = 0;
+      paint();
+    });
+  };
+}
+
+const clamp = (value, low, high) => Math.min(Math.max(value, low), high);

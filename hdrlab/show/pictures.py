@@ -6,15 +6,19 @@ alt    alt text: what is in the picture, in a sentence
 
 import io
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.io import web
+from hdrlab.show import figures
+
+SIDE = 1000  # pixels
+DECADE = float(np.log10(2))  # of a stop
 
 
 class Picture(NamedTuple):
@@ -23,19 +27,67 @@ class Picture(NamedTuple):
     frames: tuple[bytes, ...]
     alts: tuple[str, ...]
     captions: tuple[str, ...]
+    legend: str = ""  # as HTML, below the pictures
 
     def __repr__(self) -> str:
         return "; ".join(self.alts)
 
     def _repr_html_(self) -> str:
-        figures = "".join(map(_figure, self.frames, self.alts, self.captions))
+        each = "".join(map(_figure, self.frames, self.alts, self.captions))
         columns = "repeat(auto-fit,minmax(min(320px,100%),1fr))"
-        return f'<div style="display:grid;grid-template-columns:{columns};gap:0.75em">{figures}</div>'
+        return (
+            f'<div style="display:grid;grid-template-columns:{columns};gap:0.75em">{each}</div>{self.legend}'
+        )
 
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
     """Return `drawn` as a Picture, for the last line of a notebook's cell."""
     return Picture((encode(drawn),), (require_alt(alt),), (caption,))
+
+
+def radiance(
+    E: ArrayLike,
+    *more: ArrayLike,
+    alt: str,
+    captions: Sequence[str] = (),
+    stops: tuple[int, int] | None = None,
+) -> Picture:
+    """Return a radiance map, or several side by side, in false colour above one legend in stops and decades.
+
+    Parameters
+    ----------
+    E, *more : (H, W) or (H, W, 3)
+        Radiance; a map larger than 1000 pixels is shown by means of k x k pixels.
+    alt : str
+        What the maps show; to each one's its caption and the range of its luminance are added.
+    captions : a str for each map, or none
+        What stands below each.
+    stops : (low, high), optional
+        Ends of the colours, in stops from a map's median; by default all but 0.1 % of the pixels fit.
+
+    Raises
+    ------
+    ValueError
+        For maps without light, captions that are not one for each, or an empty alt text.
+
+    Examples
+    --------
+    >>> E = np.geomspace(1, 2.0**12, 100)[None] * np.ones((20, 1))
+    >>> radiance(E, alt="A wedge, ever brighter")
+    A wedge, ever brighter, 12.0 stops from the darkest to the brightest
+    """
+    each = [figures.stops(one) for one in (E, *more)]
+    captions = tuple(captions) or ("",) * len(each)
+    if len(captions) != len(each):
+        raise ValueError(f"expected a caption for each of {len(each)} maps, got {captions!r}")
+    ends = [stops or figures.limits(ev) for ev in each]
+    low, high = min(end[0] for end in ends), max(end[1] for end in ends)
+    if not low < high:
+        raise ValueError(f"expected stops as (low, high) with low < high, got {stops}")
+    frames = [encode(figures.false_colour(figures.fit(ev, SIDE), low, high)) for ev in each]
+    ranges = [f"{np.nanmax(ev) - np.nanmin(ev):.1f} stops from the darkest to the brightest" for ev in each]
+    said = [", ".join(filter(None, (require_alt(alt), *two))) for two in zip(captions, ranges, strict=True)]
+    return Picture(tuple(frames), tuple(said), captions, _legend(low, high))
 
 
 def strip(
@@ -113,11 +165,32 @@ def _is_picture(shape: tuple[int, ...]) -> bool:
 
 def _pixels(figure: Any) -> NDArray[np.uint8]:
     file = io.BytesIO()
-    figure.savefig(file, format="rgba", dpi="figure")
+    figure.savefig(file, format="rgba", dpi=figure.dpi)
     width, height = (int(side) for side in figure.canvas.get_width_height(physical=True))
     if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
         sys.modules["matplotlib.pyplot"].close(figure)
     return np.frombuffer(file.getvalue(), np.uint8).reshape(height, width, 4)[..., :3]
+
+
+def _legend(low: int, high: int) -> str:
+    """Return the colours with ticks in stops above and in decades below, as text that any screen shows."""
+    few = (high - low) * DECADE <= 3
+    scales = (
+        figures.scale(low, high, digits=int(high - low < 4)),
+        figures.scale(low * DECADE, high * DECADE, digits=int(few)),
+    )
+    above, below = ("".join(_tick(*tick) for tick in scale.ticks) for scale in scales)
+    row = "position:relative;height:1.4em"
+    ramp = f"height:1em;background:linear-gradient(90deg,{','.join(scales[0].colours)})"
+    return (
+        '<div style="max-width:44em;margin:0.5em 1em;font-variant-numeric:tabular-nums">'
+        f'<div style="{row}">{above}</div><div style="{ramp}"></div><div style="{row}">{below}</div>'
+        "<div>above: stops from the median luminance; below: decades; gray: no light</div></div>"
+    )
+
+
+def _tick(place: float, label: str) -> str:
+    return f'<span style="position:absolute;left:{place:.2f}%;transform:translateX(-50%)">{label} </span>'
 
 
 def _figure(frame: bytes, alt: str, caption: str) -> str:

@@ -3,7 +3,7 @@
 const PER_SECOND = 8;
 
 function render({ model, el }) {
-  const root = start(el);
+  const root = start(el, "play");
   const [name, count] = [model.get("name"), model.get("frames").length];
   const frames = model.get("frames").map((bytes) => decode(bytes, "image/webp"));
   frames.forEach((waiting, i) => waiting.then((bitmap) => (frames[i] = bitmap)));

@@ -6,8 +6,8 @@ Z    pixel levels    (N, P): sample i in frame j
 lE   ln irradiance   (N,)
 B    ln exposure times (P,)
 
-A stop is a factor of 2. Every function draws on `ax`, or on a new figure of its own, and returns the Axes;
-nothing is shown or written here.
+A stop is a factor of 2, a decade one of 10. Every function draws on `ax`, or on a new figure of its own, and
+returns the Axes; nothing is shown or written here.
 """
 
 import matplotlib
@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import Array, as_stack, describe, levels
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.colour import luminance
+from hdrlab.show import again, figures
 
 # Okabe and Ito's colours. Line styles and markers differ too, so the channels also part in gray.
 CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
@@ -32,17 +32,21 @@ SAMPLES = (
     ("#E69F00", "v"),
     ("#56B4E9", "*"),
 )
+UNITS = {"stops": 1.0, "decades": float(np.log10(2))}  # of a stop
+SIDE = 1000  # pixels: a larger map is drawn by means of k x k pixels
 
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
     """Return the Axes of a new figure (inches), always in the same place: played steps do not jump."""
+    if spare := again.take((width, height)):
+        return spare
     figure = Figure(figsize=(width, height), dpi=100)
     left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
     place = (left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height)
     ax = figure.add_axes(place)
     ax.grid(color="#D9D9D9", linewidth=0.6)
     ax.set_axisbelow(True)
-    return ax
+    return again.handed_out((width, height), ax)
 
 
 def seconds(time: float) -> str:
@@ -127,24 +131,25 @@ def histogram(image: ArrayLike, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def radiance(E: ArrayLike, *, stops: tuple[int, int] | None = None, ax: Axes | None = None) -> Axes:
-    """Draw a radiance map in false colour: stops of luminance from its median, with the scale beside it.
+def radiance(
+    E: ArrayLike, *, stops: tuple[int, int] | None = None, unit: str = "stops", ax: Axes | None = None
+) -> Axes:
+    """Draw a radiance map in false colour, from its median luminance, with the scale in stops or decades.
 
     `stops` fixes the ends of the scale, else all but the outermost 0.1 % of the pixels fit. No light is gray.
     """
-    L = luminance(E)
-    if not np.any(L > 0):
-        raise ValueError(f"expected radiance with some light in it, got {describe(L)}")
-    ev = np.log2(np.where(L > 0, L, np.nan) / np.median(L[L > 0]))
-    low, high = stops or (int(np.floor(np.nanpercentile(ev, 0.1))), int(np.ceil(np.nanpercentile(ev, 99.9))))
-    ax = ax or _frame(L.shape, beside=1.1)
-    colours = matplotlib.colormaps["viridis"].with_extremes(bad="#808080")
-    shown = ax.imshow(ev, cmap=colours, vmin=low, vmax=max(high, low + 1), interpolation="nearest")
+    if unit not in UNITS:
+        raise ValueError(f"expected unit as {' or '.join(UNITS)}, got {unit!r}")
+    ev = figures.fit(figures.stops(E), SIDE)
+    low, high = stops or figures.limits(ev)
+    ax = ax or _frame(ev.shape, beside=1.1)
+    colours = matplotlib.colormaps["viridis"].with_extremes(bad=figures.MISSING)
+    shown = ax.imshow(ev * UNITS[unit], cmap=colours, interpolation="nearest")
+    shown.set_clim(low * UNITS[unit], max(high, low + 1) * UNITS[unit])
     place = ax.get_position()
     bar = ax.figure.add_axes((place.x1 + 0.02, place.y0, 0.025, place.height))
-    ax.figure.colorbar(
-        shown, cax=bar, label="stops from the median luminance", ticks=MaxNLocator(integer=True)
-    )
+    ticks = MaxNLocator(8, steps=[1, 2, 5, 10])
+    ax.figure.colorbar(shown, cax=bar, label=f"{unit} from the median luminance", ticks=ticks)
     ax.set_axis_off()
     return ax
 

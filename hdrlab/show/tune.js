@@ -5,7 +5,7 @@ const PATIENCE = 3000; // ms without an answer before a page that had a kernel c
 const same = (a, b) => a.length === b.length && a.every((value, i) => value === b[i]);
 
 function render({ model, el }) {
-  const root = start(el);
+  const root = start(el, "tune");
   const [names, values] = [model.get("names"), model.get("values")];
   const view = picture(root);
   const note = element(root, "p", { className: "hdrlab-note", role: "status" });

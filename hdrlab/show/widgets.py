@@ -1,39 +1,41 @@
-"""Widgets: steps to play back and forth, and parameters to tune, of any function with any drawing.
+"""Widgets: steps to play, parameters to tune, pictures to compare, and the Detail Brush.
 
-play  draws every state once and moves through the frames in the browser: at once, and with no kernel too
-tune  calls a function on each move of a slider; a few positions are stored for a page that has no kernel
+play   draws every state once and moves through the frames in the browser: at once, and with no kernel too
+tune   calls a function on each move of a slider; a few positions are stored for a page that has no kernel
+wipe   two pictures with a movable edge between them: `show.compared`
+blink  pictures in one place, one after the other: `show.compared`
+brush  the Detail Brush over a radiance map: `show.lens`
 
-Neither knows an algorithm: `states` is any iterable (the library's `<verb>_steps`, or a generator of yours),
-`f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure.
+The first two know no algorithm: `states` is any iterable (the library's `<verb>_steps`, or a generator of
+yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure.
 """
 
 from collections.abc import Callable, Iterable
 from itertools import islice
-from pathlib import Path
 from typing import Any, TypeVar
 
 import anywidget
 import traitlets
 
 from hdrlab.io import web
-from hdrlab.show import positions
+from hdrlab.show import again, positions
+from hdrlab.show.compared import Blinker, Wiper, blink, wipe
+from hdrlab.show.lens import Brush, brush
 from hdrlab.show.pictures import encode, render, require_alt, short
+from hdrlab.show.scripts import STYLE, script
+
+__all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "play", "tune", "wipe"]
 
 State = TypeVar("State")
 
-HERE = Path(__file__).parent
 MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
-
-
-def _script(name: str) -> str:
-    return (HERE / "canvas.js").read_text("utf-8") + (HERE / name).read_text("utf-8")
 
 
 class Player(anywidget.AnyWidget):
     """Frames to move through; `index` is the one that is shown."""
 
-    _esm = _script("play.js")
-    _css = HERE / "widgets.css"
+    _esm = script("play.js")
+    _css = STYLE
     frames = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP
     alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
     name = traitlets.Unicode("step").tag(sync=True)
@@ -54,7 +56,8 @@ def play(
     states : iterable
         The states of an algorithm, 1 to 200 of them.
     draw : function
-        Takes a state, and returns a uint8 picture, an Axes or a Figure.
+        Takes a state, and returns a uint8 picture, an Axes or a Figure. The Axes of `plots` are drawn on
+        again for the next picture, so it must not keep them.
     alt : str, or function of a state
         What the picture shows. To a str the step's number is added.
     name : str
@@ -72,9 +75,9 @@ def play(
     >>> player.alts[1]
     'A square, ever lighter, step 2'
     """
-    frames, alts = [], []
+    frames, alts, kept = [], [], again.Kept()
     for k, state in enumerate(islice(states, MOST + 1)):
-        frames.append(encode(draw(state)))
+        frames.append(again.drawn(draw, state, encode, kept))
         alts.append(
             require_alt(alt(state) if callable(alt) else alt) + ("" if callable(alt) else f", {name} {k + 1}")
         )
@@ -86,8 +89,8 @@ def play(
 class Tuner(anywidget.AnyWidget):
     """Sliders on a function's parameters: `at` is where they stand, `frame` the picture of `shown`."""
 
-    _esm = _script("tune.js")
-    _css = HERE / "widgets.css"
+    _esm = script("tune.js")
+    _css = STYLE
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)  # each position's text
     at = traitlets.List(traitlets.Int()).tag(sync=True)  # the browser moves this
@@ -137,7 +140,7 @@ def tune(
     f : function
         Its parameters named in `ranges` get sliders, which start at its defaults, or else in the middle.
     draw : function
-        Takes what `f` returns, and returns a uint8 picture, an Axes or a Figure.
+        Takes what `f` returns; else as for `play`.
     alt : str
         What the picture shows; the parameters' values are added.
     stored : int
@@ -165,8 +168,11 @@ def tune(
     if not grids:
         raise ValueError("expected at least one range, such as smoothness=(1, 100), got none")
 
+    kept = again.Kept()
+
     def picture(at: list[int]) -> bytes:
-        return web.jpeg(render(draw(f(**positions.values(grids, at)))))
+        found = f(**positions.values(grids, at))
+        return again.drawn(draw, found, lambda drawn: web.jpeg(render(drawn)), kept)
 
     at = positions.start(f, grids)
     few = positions.few(grids, at, stored)
