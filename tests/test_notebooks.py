@@ -7,7 +7,8 @@ import nbformat
 import pytest
 
 NOTEBOOKS = sorted((Path(__file__).parents[1] / "notebooks").glob("*.ipynb"))
-PICTURES = {"picture", "strip", "play", "tune"}
+PICTURES = {f"pictures.{name}" for name in ("picture", "radiance", "strip")}
+PICTURES |= {f"widgets.{name}" for name in ("play", "tune", "wipe", "blink", "brush")}
 LONGEST = 100  # letters: what JupyterLab shows at 1280 px without scrolling
 
 pytestmark = pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
@@ -20,7 +21,7 @@ def cells_of(path, kind):
 def calls_of(cell):
     """Return the calls that make a picture: pictures.picture(...), widgets.play(...)."""
     calls = [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Call)]
-    return [call for call in calls if isinstance(call.func, ast.Attribute) and call.func.attr in PICTURES]
+    return [call for call in calls if ".".join(ast.unparse(call.func).split(".")[-2:]) in PICTURES]
 
 
 def kinds_of(cell):

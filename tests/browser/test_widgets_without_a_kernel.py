@@ -1,58 +1,14 @@
 """The widgets' scripts on a plain page: no kernel answers, and no server is asked for anything."""
 
-import base64
-import json
-
-import anywidget
 import numpy as np
 import pytest
+from laboratory import open_widget
 
 from hdrlab.show import widgets
-
-# What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
-PAGE = """<!DOCTYPE html><html lang="en"><title>A widget</title><style>{css}</style>
-<div id="at"></div><script type="module">
-const unpack = (value) => {{
-  if (Array.isArray(value)) return value.map(unpack);
-  if (value?.base64 === undefined) return value;
-  const bytes = Uint8Array.from(atob(value.base64), (letter) => letter.charCodeAt(0));
-  const larger = new Uint8Array(bytes.length + 11);
-  larger.set(bytes, 7);
-  return new DataView(larger.buffer, 7, bytes.length);
-}};
-const state = Object.fromEntries(Object.entries({state}).map(([name, value]) => [name, unpack(value)]));
-const listeners = {{}};
-window.model = {{
-  saved: 0,
-  get: (name) => state[name],
-  set: (name, value) => {{ state[name] = value; (listeners["change:" + name] ?? []).forEach((f) => f()); }},
-  save_changes: () => {{ window.model.saved += 1; }},
-  on: (name, f) => (listeners[name] ??= []).push(f),
-  off: () => {{}},
-}};
-window.reached = [];
-document.addEventListener("keydown", (event) => window.reached.push(event.key));
-const script = URL.createObjectURL(new Blob([{script}], {{ type: "text/javascript" }}));
-const widget = (await import(script)).default;
-widget.render({{ model: window.model, el: document.getElementById("at") }});
-</script></html>"""
 
 
 def square(level=100):
     return np.full((40, 60), level, np.uint8)
-
-
-def open_page(page, widget):
-    def packed(value):
-        if isinstance(value, bytes):
-            return {"base64": base64.b64encode(value).decode()}
-        return [packed(each) for each in value] if isinstance(value, list) else value
-
-    own = set(widget.trait_names(sync=True)) - set(anywidget.AnyWidget.class_trait_names())
-    state = {name: packed(getattr(widget, name)) for name in own if not name.startswith("_")}
-    texts = {"state": json.dumps(state), "script": json.dumps(str(widget._esm)), "css": str(widget._css)}
-    page.set_content(PAGE.format(**texts))
-    page.wait_for_function("document.querySelector('canvas')?.getAttribute('aria-label')", timeout=5_000)
 
 
 def level(page):
@@ -76,7 +32,7 @@ def until_level(page, expected):
 
 @pytest.fixture
 def player(page):
-    open_page(page, widgets.play(range(0, 250, 50), square, alt="A square"))
+    open_widget(page, widgets.play(range(0, 250, 50), square, alt="A square"))
     yield page
     assert page.problems == []
     assert [url for url in page.requests if not url.startswith(("blob:", "data:"))] == []
@@ -84,7 +40,7 @@ def player(page):
 
 @pytest.fixture
 def tuner(page):
-    open_page(page, widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)))
+    open_widget(page, widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)))
     yield page
     assert page.problems == []
 
@@ -139,7 +95,7 @@ def test_without_a_kernel_each_of_two_sliders_has_its_own_stored_pictures(page):
     def shade(level=100, more=0):
         return square(level + more)
 
-    open_page(
+    open_widget(
         page, widgets.tune(shade, lambda drawn: drawn, alt="Gray", stored=2, level=(0, 200), more=(0, 55))
     )
     page.get_by_role("slider", name="level").press("End")

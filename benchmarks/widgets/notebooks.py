@@ -1,0 +1,95 @@
+"""A notebook in JupyterLab: the time to its first picture, and the latency of every slider."""
+
+from itertools import pairwise
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any
+
+import numpy as np
+
+from benchmarks.widgets import browsers
+
+FIRST = "first picture, s"
+WORST = {kind: f"slowest slider of {kind}, 95 %, ms" for kind in ("play", "tune")}
+PRESSES = 24  # of the arrow keys, for each slider
+LOST = 5000.0  # ms, after which a picture counts as one that does not come
+Figures = dict[str, Any]
+
+FIRST_PICTURE = """async () => {
+    const images = document.getElementsByTagName("img"), canvas = ".hdrlab canvas:not([aria-label=''])";
+    const seen = () => document.querySelector(canvas)
+        || [...images].some((one) => one.naturalWidth && one.closest(".jp-OutputArea-output"));
+    const start = performance.now();
+    window.jupyterapp.commands.execute("notebook:run-all-cells");
+    while (!seen() && performance.now() - start < 60_000) await new Promise(requestAnimationFrame);
+    return (performance.now() - start) / 1000;
+}"""
+
+# Either the alt text or the pixels tell that another picture is there; both change in the same moment.
+WATCH = """([el, lost]) => {{
+    const pixels = {digest}, canvas = el.querySelector("canvas");
+    const [text, before] = [canvas.getAttribute("aria-label"), pixels(el)];
+    const other = () => canvas.getAttribute("aria-label") !== text || pixels(el) !== before;
+    window.latency = new Promise((resolve) => {{
+        addEventListener("keydown", (event) => {{
+            const look = () => {{
+                const passed = performance.now() - event.timeStamp;
+                if (other() || passed > lost) resolve(passed);
+                else requestAnimationFrame(look);
+            }};
+            requestAnimationFrame(look);
+        }}, {{ capture: true, once: true }});
+    }});
+}}"""
+
+
+def opened(_: Path, name: str) -> Figures:
+    """Return what a notebook takes: first picture, the worst of each kind, then each slider's p50 and p95."""
+    with TemporaryDirectory() as home, browsers.lab(Path(home)) as (page, tools, server):
+        server.open(page, name)
+        figures: Figures = {FIRST: page.evaluate(FIRST_PICTURE)}
+        server.until_done(page)
+        each = {kind: sliders(page, tools.DIGEST, kind) for kind in WORST}
+    figures |= {WORST[kind]: max(p95 for _, p95 in found.values()) for kind, found in each.items() if found}
+    return figures | each["play"] | each["tune"]
+
+
+def sliders(page: Any, digest: str, kind: str) -> Figures:
+    """Return the latency of every slider of one kind of widget, median and 95 %, in ms."""
+    found: Figures = {}
+    for number, widget in enumerate(page.locator(f".hdrlab[data-kind={kind}]").all(), 1):
+        widget.scroll_into_view_if_needed()
+        names = widget.locator(".hdrlab-slider span:first-child").all_inner_texts()
+        for name, slider in zip(names, widget.get_by_role("slider").all(), strict=True):
+            latencies = moved(page, widget, slider, WATCH.format(digest=digest))
+            found[f"{kind} {number}, {name}: 50, 95 %, ms"] = np.quantile(latencies, (0.5, 0.95)).tolist()
+    return found
+
+
+def moved(page: Any, widget: Any, slider: Any, watch: str) -> list[float]:
+    """Return the latency of each press of an arrow key, there and back again, after two that warm up."""
+    slider.focus()
+    top, at = int(slider.get_attribute("max")), int(slider.input_value())
+    places = bouncing(at, top, PRESSES + 3)
+    latencies = []
+    for here, there in pairwise(places):
+        page.wait_for_timeout(50)  # a reader looks before the next press
+        page.evaluate(watch, [widget.element_handle(), LOST])
+        page.keyboard.press("ArrowRight" if there > here else "ArrowLeft")
+        latencies.append(float(page.evaluate("window.latency")))
+    return latencies[2:]
+
+
+def bouncing(at: int, top: int, count: int) -> list[int]:
+    """Return places 0 ... top, one step at a time, turned back at the ends.
+
+    Examples
+    --------
+    >>> bouncing(1, 2, 6)
+    [1, 2, 1, 0, 1, 2]
+    """
+    places, step = [at], 1
+    while len(places) < count:
+        step = -step if not 0 <= places[-1] + step <= top else step
+        places.append(places[-1] + step)
+    return places

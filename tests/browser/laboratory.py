@@ -1,0 +1,220 @@
+"""A real browser, a JupyterLab that shares no folder with the user's own, and a page without a kernel.
+
+The tests open notebooks and widgets with it, and so do the benchmarks.
+"""
+
+import base64
+import json
+import os
+import secrets
+import shutil
+import socket
+import subprocess
+import sys
+import time
+import urllib.error
+import urllib.request
+from collections.abc import Iterator
+from contextlib import contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import anywidget
+
+ROOT = Path(__file__).parents[2]
+
+SETTINGS = {
+    "apputils-extension/notification": '{"fetchNews": "false", "checkForUpdates": false}',
+    # All cells stay in the page, also those that are scrolled out of sight.
+    "notebook-extension/tracker": '{"windowingMode": "none"}',
+}
+
+# The pixels of a widget's picture, as one number.
+DIGEST = """(el) => {
+    const canvas = el.querySelector("canvas");
+    const { data } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
+    let hash = canvas.width;
+    for (const pixel of new Uint32Array(data.buffer)) hash = Math.imul(hash ^ pixel, 16777619);
+    return hash;
+}"""
+
+# What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
+PAGE = """<!DOCTYPE html><html lang="en"><title>A widget</title><style>{css}</style>
+<div id="at"></div><script type="module">
+const unpack = (value) => {{
+  if (Array.isArray(value)) return value.map(unpack);
+  if (value?.base64 === undefined) return value;
+  const bytes = Uint8Array.from(atob(value.base64), (letter) => letter.charCodeAt(0));
+  const larger = new Uint8Array(bytes.length + 11);
+  larger.set(bytes, 7);
+  return new DataView(larger.buffer, 7, bytes.length);
+}};
+const state = Object.fromEntries(Object.entries({state}).map(([name, value]) => [name, unpack(value)]));
+const listeners = {{}};
+window.model = {{
+  saved: 0,
+  get: (name) => state[name],
+  set: (name, value) => {{ state[name] = value; (listeners["change:" + name] ?? []).forEach((f) => f()); }},
+  save_changes: () => {{ window.model.saved += 1; }},
+  on: (name, f) => (listeners[name] ??= []).push(f),
+  off: () => {{}},
+}};
+window.reached = [];
+document.addEventListener("keydown", (event) => window.reached.push(event.key));
+const script = URL.createObjectURL(new Blob([{script}], {{ type: "text/javascript" }}));
+const widget = (await import(script)).default;
+widget.render({{ model: window.model, el: document.getElementById("at") }});
+</script></html>"""
+
+
+class Absent(Exception):
+    """What must be installed to open a browser is not."""
+
+
+class Lab(NamedTuple):
+    """A running JupyterLab."""
+
+    address: str
+    token: str
+    folder: Path
+
+    def open(self, page: Any, notebook: str) -> None:
+        """Open a notebook and wait for its kernel; the toolbar says idle before the session is ready."""
+        page.goto(f"{self.address}/lab/tree/{notebook}?reset&token={self.token}")
+        page.wait_for_function(
+            """() => {
+                const session = window.jupyterapp?.shell?.currentWidget?.sessionContext;
+                return session?.isReady && session.session?.kernel?.status === "idle";
+            }""",
+            timeout=60_000,
+        )
+
+    def run_all(self, page: Any, *, timeout: float = 100) -> None:
+        """Run every cell from the top and wait until the last one is done."""
+        page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
+        self.until_done(page, timeout=timeout)
+
+    def until_done(self, page: Any, *, timeout: float = 100) -> None:
+        """Wait until the last cell is done."""
+        page.wait_for_function(
+            """() => window.jupyterapp.shell.currentWidget.content.widgets
+                .filter((cell) => cell.model.type === "code" && cell.model.sharedModel.source.trim())
+                .every((cell) => cell.model.executionCount && cell.model.executionState !== "running")""",
+            timeout=1000 * timeout,
+        )
+
+    def close(self) -> None:
+        """End all kernels: twenty of them, one for each notebook, would fill the memory."""
+        for kernel in json.loads(self._ask("GET", "/api/kernels")):
+            self._ask("DELETE", f"/api/kernels/{kernel['id']}")
+
+    def _ask(self, method: str, path: str) -> bytes:
+        headers = {"Authorization": f"token {self.token}"}
+        request = urllib.request.Request(self.address + path, method=method, headers=headers)
+        with urllib.request.urlopen(request, timeout=20) as answer:
+            return bytes(answer.read())
+
+
+@contextmanager
+def chromium() -> Iterator[Any]:
+    """Start the system's Chromium, or raise Absent."""
+    executable = shutil.which("chromium")
+    if find_spec("playwright") is None:
+        raise Absent("playwright is not installed")
+    if executable is None:
+        raise Absent("chromium is not installed")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=executable, args=["--no-sandbox"])
+        yield browser
+        browser.close()
+
+
+@contextmanager
+def jupyterlab(home: Path) -> Iterator[Lab]:
+    """Start a JupyterLab on a copy of the notebooks, with all its folders in `home`, or raise Absent."""
+    if find_spec("jupyterlab") is None:
+        raise Absent("jupyterlab is not installed")
+    folder = Path(shutil.copytree(ROOT / "notebooks", home / "notebooks"))
+    for name, text in SETTINGS.items():
+        file = home / "settings" / "@jupyterlab" / f"{name}.jupyterlab-settings"
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text(text)
+    with socket.socket() as free:
+        free.bind(("127.0.0.1", 0))
+        port = free.getsockname()[1]
+    token = secrets.token_hex(16)
+    server = subprocess.Popen(
+        _command(port, token, folder),
+        env=_environment(home),
+        cwd=folder,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.STDOUT,
+    )
+    try:
+        _wait_for(server, f"http://127.0.0.1:{port}/api/status?token={token}")
+        yield Lab(f"http://127.0.0.1:{port}", token, folder)
+    finally:
+        server.terminate()
+        try:
+            server.wait(10)
+        except subprocess.TimeoutExpired:
+            server.kill()
+            server.wait()
+
+
+def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
+    """Open a plain page with a widget, and wait until its picture is there: no kernel, and no server."""
+
+    def packed(value: Any) -> Any:
+        if isinstance(value, bytes):
+            return {"base64": base64.b64encode(value).decode()}
+        return [packed(each) for each in value] if isinstance(value, list) else value
+
+    own = set(widget.trait_names(sync=True)) - set(anywidget.AnyWidget.class_trait_names())
+    state = {name: packed(getattr(widget, name)) for name in own if not name.startswith("_")}
+    texts = {"state": json.dumps(state), "script": json.dumps(str(widget._esm)), "css": str(widget._css)}
+    page.set_content(PAGE.format(**texts))
+    page.wait_for_function("document.querySelector('canvas')?.getAttribute('aria-label')", timeout=20_000)
+
+
+def _command(port: int, token: str, folder: Path) -> list[str]:
+    options = [
+        "--no-browser",
+        "--allow-root",
+        f"--ServerApp.port={port}",
+        "--ServerApp.port_retries=0",
+        f"--ServerApp.root_dir={folder}",
+        f"--IdentityProvider.token={token}",
+        "--LabApp.expose_app_in_browser=True",
+    ]
+    return [sys.executable, "-m", "jupyterlab", *options]
+
+
+def _environment(home: Path) -> dict[str, str]:
+    own = {
+        "JUPYTER_CONFIG_DIR": "config",
+        "JUPYTER_DATA_DIR": "data",
+        "JUPYTER_RUNTIME_DIR": "runtime",
+        "JUPYTERLAB_WORKSPACES_DIR": "workspaces",
+        "JUPYTERLAB_SETTINGS_DIR": "settings",
+        "IPYTHONDIR": "ipython",
+    }
+    folders = {name: str(home / folder) for name, folder in own.items()}
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    return {**os.environ, **folders, "PYTHONPATH": path}
+
+
+def _wait_for(server: subprocess.Popen[bytes], address: str, *, patience: float = 60) -> None:
+    end = time.monotonic() + patience
+    while time.monotonic() < end:
+        if server.poll() is not None:
+            raise RuntimeError(f"JupyterLab ended with code {server.returncode} before it answered")
+        try:
+            urllib.request.urlopen(address, timeout=2).close()
+            return
+        except (urllib.error.URLError, OSError):
+            time.sleep(0.1)
+    raise RuntimeError(f"JupyterLab did not answer within {patience} s")
