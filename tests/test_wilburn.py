@@ -187,6 +187,38 @@ def test_ramps_are_found_where_they_are(papers):
         assert inside[0] <= one.start < one.stop <= inside[1] and one.stop - one.start > 70
 
 
+def test_a_ramp_does_not_end_by_its_own_noise(papers):
+    """Another draw of a line's noise leaves its ramps where they are, so noise has not chosen their ends.
+
+    A line by itself ends where it seems bright enough: just inside of that, what noise has darkened is left.
+    """
+    first, second = (papers.blurred(as_response("film").f, np.random.default_rng(seed)) for seed in (0, 1))
+    other = first.copy()
+    other[150] = second[150]
+    assert motion.ramps(first)[300:302] == motion.ramps(other)[300:302]
+
+    def first_sample(found):
+        away = first - first.mean(axis=0)
+        return np.mean([away[one.row, one.start] for one in found if not one.rises])
+
+    alone = [one._replace(row=k) for k, line in enumerate(first) for one in motion.ramps(line[None])]
+    tolerance = 3 * 255 * papers.SIGMA / np.sqrt(300)
+    assert abs(first_sample(motion.ramps(first))) < tolerance < -first_sample(alone)
+
+
+def test_a_slanting_edge_is_followed_and_what_lies_elsewhere_is_left_out(papers):
+    image = papers.blurred(as_response("srgb").f, np.random.default_rng(2), lines=40)
+    wide = np.pad(image, ((0, 0), (120, 120)), mode="edge")
+    slanting = np.stack([np.roll(row, 3 * (k - 20)) for k, row in enumerate(wide)])
+    straight, found = motion.ramps(wide), motion.ramps(slanting)
+    assert len(found) == len(straight) == 80
+    for one, other in zip(found, straight, strict=True):
+        assert abs(one.start - 3 * (one.row - 20) - other.start) <= 1  # pixel
+    slanting[7] = wide[7, 0]
+    slanting[7, 150:190] = np.r_[np.arange(240, 40, -10), np.zeros(20)]  # another, steeper edge
+    assert {one.row for one in found} - {one.row for one in motion.ramps(slanting)} == {7}
+
+
 def test_a_line_without_an_edge_has_no_ramp():
     flat = np.full((3, 50), 128, np.uint8)
     dip = np.r_[np.full(20, 255), np.full(9, 100), np.full(20, 255)].astype(
@@ -209,6 +241,19 @@ def test_his_polynomial_holds_the_published_errors(papers, name):
     got = papers.table1(name, sets=1, lines=60)
     assert got["display, polynomial"].rmse.mean() <= 0.012 and got["blur, polynomial"].rmse.mean() <= 0.012
     assert got["display, spline"].disparity.mean() < 0.017 and got["blur, spline"].disparity.mean() < 0.029
+
+
+def test_the_compared_method_holds_the_published_disparity(papers):
+    """Ten sets, of which the worst two are left out, as in the paper."""
+    cameras = [as_response("srgb").f] * 10
+    near, far = (papers.without_outliers(papers.self_calibrated(cameras, off=off)) for off in papers.OFF)
+    assert len(near.rmse) == 8 and near.rmse.mean() < 0.006
+    assert near.disparity.mean() < far.disparity.mean() < 0.017
+
+
+def test_the_variance_is_that_of_the_sets_in_square_percent(papers):
+    apart = 0.01 * np.array([[1.0, 3.0], [-1.0, 3.0]])
+    assert papers.variance(papers.Errors(np.zeros(2), np.zeros(2), apart)) == pytest.approx(1.0)
 
 
 def test_the_spline_reads_real_responses_from_a_display(papers, cameras):
@@ -235,6 +280,7 @@ def test_what_is_no_blend_is_refused(tmp_path):
         lambda: joining.join(two_blends(np.sqrt), count=2),
         lambda: joining.join(two_blends(np.sqrt), ends=0.5),
         lambda: wilburn.join(two_blends(np.sqrt), degree=1),
+        lambda: wilburn.join(two_blends(np.sqrt), ends=-0.1),
         lambda: wilburn.display([1, 2, 3], line),
         lambda: difference(line, line._replace(M=np.linspace(0.6, 0.9, 9))),
         lambda: ln_exposure(line, black=0.1),

@@ -87,6 +87,25 @@ def unit(M: Float, X: Float, s: Float, r: Float) -> Joined:
     return Joined(M, (X - zero) / span, s / span, (r - zero) / span)
 
 
+def within(joined: Joined, blends: Sequence[Blend], ends: float) -> Joined:
+    """Return the curve where its blends lie, less the part `ends` of the samples at either end.
+
+    The lowest and highest brightness measured are those that noise has taken there, and no curve through such
+    samples is right. So a sample's place is where its irradiance puts it, s_j I_ij + r_j.
+
+    Raises
+    ------
+    ValueError
+        For a part that is none.
+    """
+    if not 0 <= ends < 0.25:
+        raise ValueError(f"expected ends from 0 to 0.25, got {ends}")
+    X = np.concatenate([s * one.I + r for one, s, r in zip(blends, joined.s, joined.r, strict=True)])
+    low, high = np.quantile(np.interp(X, joined.X, joined.M), [ends, 1 - ends])
+    at = np.linspace(low, high, POINTS)
+    return unit(at, np.interp(at, joined.M, joined.X), joined.s, joined.r)
+
+
 def difference(found: Joined, truth: Joined, *, fit: bool = False) -> Float:
     """Return found - truth (1024,) over the brightnesses that both measured; the truth goes from 0 to 1.
 

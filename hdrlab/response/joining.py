@@ -28,7 +28,7 @@ from numpy.typing import NDArray
 from scipy.optimize import nnls
 
 from hdrlab.core.steps import last
-from hdrlab.response.blends import POINTS, Blend, Joined, as_blends, domain, unit
+from hdrlab.response.blends import POINTS, Blend, Joined, as_blends, domain, unit, within
 from hdrlab.response.splines import bends, steps
 
 Float = NDArray[np.float64]
@@ -150,8 +150,7 @@ def join(blends: Sequence[Blend], *, ends: float = 0.005, **knobs: Any) -> Joine
     blends : sequence of Blend
         Samples of a few mixtures, within the measured range: see `blends.blend`.
     ends : float
-        Of the samples, this part at either end lies outside of the curve that is returned: the outermost are
-        those that noise has taken there, and steepen it.
+        The part of the samples at either end that lies outside of the curve returned: see `blends.within`.
     count : int
         K, 24 B-splines.
     smoothness : float
@@ -183,10 +182,6 @@ def join(blends: Sequence[Blend], *, ends: float = 0.005, **knobs: Any) -> Joine
     >>> round(float(np.interp(0.5, joined.M, joined.X)), 2), round(float(joined.s[1] / joined.s[0]), 3)
     (0.25, 0.2)
     """
-    if not 0 <= ends < 0.25:
-        raise ValueError(f"expected ends from 0 to 0.25, got {ends}")
     told, state = as_blends(blends), last(join_steps(blends, **knobs))
     low, high = domain(told)
-    low_p, high_p = np.quantile(predict(told, state), [ends, 1 - ends])
-    at = np.linspace(low_p, high_p, POINTS)
-    return unit(low + at * (high - low), np.interp(at, GRID, state.g), state.s, state.r)
+    return within(unit(low + GRID * (high - low), state.g, state.s, state.r), told, ends)

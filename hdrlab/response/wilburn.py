@@ -25,7 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.optimize import minimize
 
 from hdrlab.core.steps import last
-from hdrlab.response.blends import POINTS, Blend, Joined, as_blends, domain, unit
+from hdrlab.response.blends import POINTS, Blend, Joined, as_blends, domain, unit, within
 
 Float = NDArray[np.float64]
 GRID = np.linspace(0, 1, 257)  # where the slope is looked at
@@ -114,13 +114,15 @@ def join_steps(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12) -> I
         yield State(coefficients(free), float(found.fun), int(found.nfev))
 
 
-def join(blends: Sequence[Blend], **knobs: Any) -> Joined:
+def join(blends: Sequence[Blend], *, ends: float = 0.005, **knobs: Any) -> Joined:
     """Return the inverse response that joins the blends, a monotone polynomial, found by simplex.
 
     Parameters
     ----------
     blends : sequence of Blend
         Samples of a few mixtures, within the measured range: see `blends.blend`.
+    ends : float
+        The part of the samples at either end that lies outside of the curve returned: see `blends.within`.
     degree : int
         d of the polynomial, 6.
     runs : int
@@ -153,7 +155,7 @@ def join(blends: Sequence[Blend], **knobs: Any) -> Joined:
     low, high = domain(told)
     s, r = np.array([line(one.I, value((one.M - low) / (high - low), a)) for one in told]).T
     m = np.linspace(0, 1, POINTS)
-    return unit(low + m * (high - low), value(m, a), s, r)
+    return within(unit(low + m * (high - low), value(m, a), s, r), told, ends)
 
 
 def display(P: ArrayLike, joined: Joined) -> tuple[Float, Float]:
