@@ -70,10 +70,19 @@ def test_channels_and_16_bits_are_read_like_gray():
     assert colour.shape == (4, 6, 3) and np.allclose(colour, gray[..., None])
 
 
-def test_neutral_is_the_charts_last_row_and_white_reflects_29_times_what_black_does():
-    assert np.all(np.diff(chart.NEUTRAL) < 0) and chart.NEUTRAL[0] / chart.NEUTRAL[5] == pytest.approx(
-        90 / 3.1
-    )
+def test_the_grays_reflect_what_their_munsell_values_and_their_densities_say():
+    """Closed forms: the polynomial of Newhall, Nickerson and Judd, 1943, and R = 10^-D by the label."""
+    V, D = np.array([9.5, 8, 6.5, 5, 3.5, 2]), np.array([0.05, 0.23, 0.44, 0.70, 1.05, 1.5])
+    Y = 1.2219 * V - 0.23111 * V**2 + 0.23951 * V**3 - 0.021009 * V**4 + 0.0008404 * V**5
+    assert np.allclose(100 * chart.NEUTRAL, Y, atol=0.01)
+    assert np.allclose(chart.NEUTRAL, 10**-D, rtol=0.02)
+
+
+def test_the_reflectances_are_those_of_the_specification_and_near_to_those_of_measured_charts():
+    listed = pytest.importorskip("colour.characterisation").CCS_COLOURCHECKERS
+    Y = {name: [100 * one[2] for one in listed[name].data.values()] for name in listed}
+    assert np.allclose(chart.LUMINOUS.ravel(), Y["ColorChecker 1976"], atol=1e-9)
+    assert np.allclose(chart.LUMINOUS[3], Y["BabelColor Average"][18:], rtol=0.035)
 
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))

@@ -9,6 +9,11 @@ One photograph gives six points of the inverse response, by the reflectances tha
 different times need none: along one patch exposure is proportional to time, which is a blend of its own with
 a scale, the patch's brightness in that place under that light, and no offset. `joining` finds the scales and
 one curve: Wilburn's ground truth.
+
+The reflectances are the specification of the chart, McCamy, Marcus and Davidson, A color-rendition chart,
+1976, as the package colour-science lists it ("ColorChecker 1976"). Printed charts differ: BabelColor's mean
+of 30 is 1.4 % above it for white, 3.3 % below for neutral 5, and 2.2 % above for black. Whoever has measured
+a chart passes its own R.
 """
 
 from typing import Any
@@ -25,12 +30,12 @@ from hdrlab.response.patches import read
 Float = NDArray[np.float64]
 ROWS, COLUMNS = 4, 6
 GAP = 0.15  # about what the classic chart has between its patches, over a patch's width
-LUMINOUS = np.array(  # Y of the patches, row by row, under illuminant C: McCamy, Marcus and Davidson, 1976
+LUMINOUS = np.array(  # Y of the patches in %, row by row, under illuminant C
     [
-        [10.1, 35.8, 19.3, 13.3, 24.3, 43.1],
-        [30.1, 12.0, 19.8, 6.6, 44.3, 43.1],
-        [6.1, 23.4, 12.0, 59.1, 19.8, 19.8],
-        [90.0, 59.1, 36.2, 19.8, 9.0, 3.1],
+        [10.05, 35.82, 19.33, 13.29, 24.27, 43.06],
+        [30.05, 12.00, 19.77, 6.56, 44.29, 43.06],
+        [6.11, 23.39, 12.00, 59.10, 19.77, 19.77],
+        [90.01, 59.10, 36.20, 19.77, 9.00, 3.13],
     ]
 )
 LUMINOUS.setflags(write=False)
@@ -75,7 +80,7 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL, *, low: float = LOW, high
     M : (K,) float
         Brightness of the patches in one channel, 0 to 1.
     R : (K,) float
-        Their reflectances.
+        Their reflectances: those of the specification, or better the chart's own.
     low, high : float
         The brightnesses that are measurements.
 
