@@ -150,7 +150,7 @@ def test_what_tells_nothing_is_refused(images, times, knobs):
 
 @pytest.fixture(scope="module")
 def figures():
-    papers = pytest.importorskip("benchmarks.papers_cerman")
+    papers = pytest.importorskip("benchmarks.papers.cerman")
     return [papers.figure3(rng=seed) for seed in range(3)]
 
 

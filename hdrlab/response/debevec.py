@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
+from hdrlab.response.plausible import checked
 
 Float = NDArray[np.float64]
 
@@ -189,7 +190,8 @@ def recover(
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, or photographs that hold no level seen in two exposures.
+        For fewer than two photographs or two times, photographs that hold no level seen in two exposures, and
+        times that they flatly contradict: see `plausible`.
 
     References
     ----------
@@ -214,7 +216,7 @@ def recover(
     g = straight_toe(g, w)
     if monotone:
         g = rising(g)
-    return g.reshape(256, *stack.shape[3:])
+    return checked(g.reshape(256, *stack.shape[3:]), stack, times, valid=valid)
 
 
 def straight_toe(g: Float, w: Float) -> Float:

@@ -25,6 +25,7 @@ from hdrlab.core.sampling import to_256
 from hdrlab.core.transfer import histogram, mid_step
 from hdrlab.response import linear
 from hdrlab.response.debevec import rising
+from hdrlab.response.plausible import checked
 from hdrlab.response.polynomial import basis, curve
 
 Float = NDArray[np.float64]
@@ -171,7 +172,8 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, or arrays that are no bracket.
+        For photographs whose histograms do not overlap between two exposures, arrays that are no bracket, and
+        times that the photographs flatly contradict: see `plausible`.
 
     References
     ----------
@@ -205,4 +207,5 @@ def recover(
             if model == "table"
             else curve(polynomial(found, order=order))
         )
-    return rising(np.stack(curves, axis=-1)).reshape(256, *stack.shape[3:])
+    g = rising(np.stack(curves, axis=-1)).reshape(256, *stack.shape[3:])
+    return checked(g, stack, times, valid=valid)

@@ -22,6 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_stack, as_times
 from hdrlab.core.transfer import mid_step
 from hdrlab.response.grossberg import histograms
+from hdrlab.response.plausible import checked
 
 Float = NDArray[np.float64]
 LOW = 12.0  # of 256 levels: below, rounding and noise bend a logarithm
@@ -108,7 +109,8 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, or arrays that are no bracket.
+        For photographs whose histograms do not overlap between two exposures, arrays that are no bracket, and
+        times that the photographs flatly contradict: see `plausible`.
 
     References
     ----------
@@ -132,4 +134,5 @@ def recover(
         exponent(list(ladders(h, times, starts=starts, low=low)), alpha=alpha)
         for h in histograms(stack, valid)
     ]
-    return np.stack([curve(gamma, alpha=alpha) for gamma in gammas], axis=-1).reshape(256, *stack.shape[3:])
+    g = np.stack([curve(gamma, alpha=alpha) for gamma in gammas], axis=-1).reshape(256, *stack.shape[3:])
+    return checked(g, stack, times, valid=valid)

@@ -29,6 +29,7 @@ from hdrlab.core.sampling import by_rank, to_256
 from hdrlab.core.steps import last
 from hdrlab.response.debevec import rising
 from hdrlab.response.joint import Table, table, turned
+from hdrlab.response.plausible import checked
 
 Float = NDArray[np.float64]
 ENOUGH = 2**16  # pixels of a frame: an even choice of about so many has the ranks of all
@@ -174,7 +175,8 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs that hold no level seen in two exposures, and for arrays that are no bracket.
+        For photographs that hold no level seen in two exposures, for arrays that are no bracket, and for
+        times that the photographs flatly contradict: see `plausible`.
 
     References
     ----------
@@ -198,7 +200,7 @@ def recover(
 
     channels = chosen(stack, samples, choose, as_mask(valid, stack))
     f = np.stack([found(Z) for Z in channels], axis=-1)
-    return rising(np.log(f)).reshape(256, *stack.shape[3:])
+    return checked(rising(np.log(f)).reshape(256, *stack.shape[3:]), stack, times, valid=valid)
 
 
 def chosen(

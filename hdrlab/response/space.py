@@ -21,6 +21,7 @@ from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
 from hdrlab.response import families
 from hdrlab.response.debevec import rising
+from hdrlab.response.plausible import checked
 
 Float = NDArray[np.float64]
 
@@ -189,7 +190,7 @@ def recover(
     ------
     ValueError
         For fewer than two photographs or two times, a basis that is not of 256 levels, or photographs that
-        hold no level seen in two exposures.
+        hold no level seen in two exposures, and times that they flatly contradict: see `plausible`.
 
     References
     ----------
@@ -217,7 +218,7 @@ def recover(
     g = np.stack(
         [_one(Z[..., c], np.log(times), w / w.max(), space, noise) for c in range(Z.shape[-1])], axis=-1
     )
-    return g.reshape(256, *stack.shape[3:])
+    return checked(g.reshape(256, *stack.shape[3:]), stack, times, valid=valid)
 
 
 def _one(Z: NDArray[np.intp], B: Float, w: Float, space: Space, noise: float) -> Float:
