@@ -2,11 +2,15 @@
 
 import numpy as np
 import pytest
+from laws import photographs as shots
 from numpy.polynomial.polynomial import polyval
 
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
+from hdrlab.core.errors import response_rmse
+from hdrlab.io.emor import read_curves
 from hdrlab.response import ambiguity, mitsunaga, polynomial
+from hdrlab.response.families import ln_inverses
 from hdrlab.response.pairs import HIGHEST, average, both, held, moments
 
 STATED = np.full(3, 0.5)
@@ -130,7 +134,49 @@ def test_the_order_is_that_of_the_camera():
     for order in (1, 2, 3):
         one = ambiguity.trial(rng, order=order, ratios=STATED) if order > 1 else None
         M = average(one.Z, 400)[None] if one else clean(np.zeros(0), STATED)
-        assert mitsunaga.choose_order(moments(M[:, ::2]), moments(M[:, 1::2]), STATED) == order
+        assert mitsunaga.choose_order([M[:, k::5] for k in range(5)], STATED) == order
+
+
+def test_the_order_of_a_power_law_is_not_that_of_the_line_which_other_ratios_would_make_it():
+    taken = bracket("gamma")
+    assert mitsunaga.calibrate(taken.images, taken.times).c.shape[1] + 1 >= 5
+    line = mitsunaga.calibrate(taken.images, taken.times ** (1 / 2.2))
+    assert line.c.shape[1] + 1 == 1  # under such times it is one
+
+
+def test_an_order_that_only_one_part_of_the_picture_asks_for_is_not_taken():
+    """One of five parts shows a scene that moved: the fit to it swings, and the other four know better."""
+    rng = np.random.default_rng(9)
+    c = polynomial.random(rng, order=3)
+    parts = [clean(c, STATED, 80) + 0.001 * rng.standard_normal((1, 80, 4)) for _ in range(5)]
+    parts[2][..., 1] += 0.01 * np.sin(12 * parts[2][..., 1])
+    assert mitsunaga.choose_order(parts, STATED) == 3
+
+
+@pytest.mark.parametrize(
+    ("name", "low", "high"), [("window", 6, 8), ("frobisher", 5, 6), ("stlouis_arch", 4, 5)]
+)
+def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, photographs):
+    """Where the error of eq. 7 falls up to order 10, with maps up to a quarter of a stop off."""
+    taken = photographs(name)
+    step = max(1, taken.images.shape[1] // 400)
+    for images in (taken.images[:, ::step, ::step], taken.images[:, step // 2 :: step, step // 2 :: step]):
+        order = mitsunaga.calibrate(images, taken.times).c.shape[1] + 1
+        assert low <= order <= high
+
+
+def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(shared):
+    """51 of them: 95 in 100 are within 3.8 % with order 5, 7 % with order 10, 3.1 % with the one chosen."""
+    exposure, brightness = read_curves(shared("crf_curves") / "dorf_201.npz")
+    true, errors = ln_inverses(exposure, brightness)[::4], {None: [], 5: [], 10: []}
+    for g, x, m in zip(true, exposure[::4], brightness[::4], strict=True):
+        taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
+        for order, found in errors.items():
+            found.append(response_rmse(mitsunaga.recover(taken.images, taken.times, order=order), g)[0])
+    median = {order: np.median(found) for order, found in errors.items()}
+    worst = {order: np.percentile(found, 95) for order, found in errors.items()}
+    assert median[None] < 0.15 and median[None] < min(median[5], median[10])
+    assert worst[None] < 4 and worst[None] < min(worst[5], worst[10])
 
 
 def test_the_published_trials_of_section_5():
@@ -226,20 +272,15 @@ def test_what_cannot_be_calibrated_is_refused():
     for images, times, said in (
         ([flat], [1], "2 different exposure times"),
         ([flat, flat], [1, 1], "2 different exposure times"),
-        ([flat * 0 + 2, flat * 0 + 254], [1, 2], "no pixels lie between"),
-        ([flat * 0, flat * 0 + 255], [1, 2], "no pixels lie between"),
+        ([flat * 0 + 2, flat * 0 + 254], [1, 2], "expected pixels between"),
+        ([flat * 0, flat * 0 + 255], [1, 2], "expected pixels between"),
     ):
         with pytest.raises(ValueError, match=said):
             mitsunaga.recover(np.stack(images), times)
 
 
-def test_nonsense_gives_a_rising_curve_and_never_nan():
-    rng = np.random.default_rng(8)
-    for images, times in (
-        (np.full((3, 20, 20), 100, np.uint8), [1, 2, 4]),
-        (rng.integers(0, 256, (3, 40, 40)).astype(np.uint8), [1, 2, 4]),
-        (bracket().images, bracket().times[::-1]),
-        (bracket().images, bracket().times * [0.01, 1, 1, 1, 1]),
-    ):
-        g = mitsunaga.recover(images, times)
+def test_a_handful_of_pixels_gives_a_rising_curve():
+    taken = bracket()
+    for images in (taken.images[:, :1, :4], taken.images[:, :2, :8]):
+        g = mitsunaga.recover(images, taken.times)
         assert np.all(np.isfinite(g)) and np.all(np.diff(g) > 0)

@@ -9,10 +9,16 @@ from hdrlab.capture import camera
 from hdrlab.core import weights
 from hdrlab.core.errors import response_rmse
 from hdrlab.radiance.merge import merge
-from hdrlab.response import debevec, grossberg, mann, robertson
+from hdrlab.response import debevec, grossberg, mann, marginal, mitsunaga, robertson, space
 
 FREE = {"debevec": debevec.recover, "robertson": robertson.recover, "histograms": grossberg.recover}
-ALL = FREE | {"power law": mann.recover}
+FORMULAS = {
+    "polynomial": mitsunaga.recover,  # of the order that it chooses
+    "likelihood": marginal.recover,
+    "space": space.recover,
+    "power law": mann.recover,
+}
+ALL = FREE | FORMULAS
 
 
 @pytest.mark.parametrize(

@@ -208,6 +208,25 @@ def test_local_tone_mapping_is_told_from_wrong_times(taken, count):
     assert not same.local and doubt(same, names) == ""
 
 
+@pytest.mark.parametrize(("strength", "local"), [(0, False), (0.3, True), (0.4, True)])
+def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(photographs, strength, local):
+    """frobisher has 426 x 640 pixels, and true times; at 0.3 its parts disagree by 0.08 stops."""
+    images, times = photographs("frobisher")[:2]
+    assert contradictions(tone_mapped(images, strength, 32), times).local == local
+
+
+@pytest.mark.parametrize("count", [5, 7])
+def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_frames_on(taken, count):
+    images, times = taken(count)[:2]
+    assert contradictions(tone_mapped(images, 0.2), times).local
+
+
+def test_what_is_slight_counts_only_where_it_is_sure():
+    stops = np.zeros(3)
+    for regions, signs, local in ((0.03, 5, True), (0.06, 3.2, False), (0.01, 9, False), (0.2, 1, True)):
+        assert Contradictions(stops, np.full(2, regions), np.full(2, signs)).local == local
+
+
 def test_frames_that_no_patch_ties_to_others_are_left_open():
     images = np.stack([np.full((70, 70), z, np.uint8) for z in (40, 120, 255)])
     found = contradictions(images, [1, 2, 4])
@@ -245,22 +264,44 @@ def test_other_words_than_stated_and_estimate_are_refused(taken):
         pipeline.assemble(taken(3), times="guess")
 
 
-@pytest.mark.parametrize("arguments", [["estimate"], ["times.csv"], ["times.csv", "--estimate-times"]])
-def test_the_command_estimates_times_where_it_is_told_to(taken, tmp_path, monkeypatch, capsys, arguments):
+@pytest.fixture
+def rough(taken, tmp_path, monkeypatch):
+    """The names of five photographs in the working folder; their EXIF, and times.csv, are off by a tenth."""
     images, true = taken(5)[:2]
-    rough = true * [1, 1, 1.1, 0.95, 1]
-    for j, (image, seconds) in enumerate(zip(images, rough, strict=True)):
+    times = true * [1, 1, 1.1, 0.95, 1]
+    for j, (image, seconds) in enumerate(zip(images, times, strict=True)):
         exif = Image.Exif()
         exif[0x8769] = {0x829A: TiffImagePlugin.IFDRational(round(seconds * 1e9), 10**9)}
         Image.fromarray(image).save(tmp_path / f"{j}.jpg", exif=exif, quality=98, subsampling=0)
-    rows = [f"{j}.jpg,{seconds}" for j, seconds in enumerate(rough)]
+    rows = [f"{j}.jpg,{seconds}" for j, seconds in enumerate(times)]
     (tmp_path / "times.csv").write_text("\n".join(["file,exposure_time_s", *rows]))
     monkeypatch.chdir(tmp_path)
-    photographs = [f"{j}.jpg" for j in range(5)]
+    return [f"{j}.jpg" for j in range(5)]
+
+
+WAYS = [["estimate"], ["times.csv"], ["times.csv", "--estimate-times"]]
+
+
+@pytest.mark.parametrize("arguments", WAYS)
+def test_the_command_estimates_times_where_it_is_told_to(rough, tmp_path, capsys, arguments):
     with pytest.raises(SystemExit) as stop:
-        cli.run(["assemble", *photographs, "-o", "map.exr", "--align", "none", "--times", *arguments])
+        cli.run(["assemble", *rough, "-o", "map.exr", "--align", "none", "--times", *arguments])
     assert not stop.value.code and (tmp_path / "map.exr").exists()
     assert ("times estimated" in capsys.readouterr().err) == (arguments != ["times.csv"])
+
+
+@pytest.mark.parametrize("arguments", WAYS)
+@pytest.mark.parametrize("response", ["debevec", "all"])
+def test_a_calibration_estimates_times_in_the_same_words(rough, capsys, arguments, response):
+    knobs = ["--align", "none", "--rounds", "0", "--response", response]
+    with pytest.raises(SystemExit) as stop:
+        cli.run(["calibrate", *rough, *knobs, "--times", *arguments])
+    said = capsys.readouterr()
+    estimated = arguments != ["times.csv"]
+    assert not stop.value.code and ("note: times estimated from the pixels" in said.err) == estimated
+    line = next(line for line in said.out.splitlines() if line.startswith(("spread", "debevec  ")))
+    spread = next(float(word) for word in line.split()[::-1] if word[0].isdigit())
+    assert (spread < 0.015) == estimated
 
 
 # Real photographs

@@ -46,7 +46,10 @@ def given(response: str | Path) -> str | Callable[..., Any]:
 @click.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
 @click.option("-o", "--out", multiple=True, type=common.FILE, help=f"Curve to write: {SUFFIXES}. Repeatable.")
-@click.option("--times", type=common.FILE, help="Exposure times, as for assemble.")
+@click.option(
+    "--times", metavar="exif|estimate|FILE", default="exif", help="Exposure times, as for assemble."
+)
+@click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
 @click.option("--align", type=click.Choice([*catalogue.names("align"), "none"]), default="mtb")
 @click.option("--response", type=click.Choice([*METHODS, "all"]), default="debevec")
@@ -56,7 +59,8 @@ def given(response: str | Path) -> str | Callable[..., Any]:
 def calibrate(
     photos: tuple[Path, ...],
     out: tuple[Path, ...],
-    times: Path | None,
+    times: str,
+    estimate_times: bool,
     mask: str | None,
     align: str,
     response: str,
@@ -80,11 +84,18 @@ def calibrate(
         calibration.check_suffix(plot)
     bracket = files.read_bracket(
         photos[0] if len(photos) == 1 else photos,
-        times,
+        None if times in ("exif", "estimate") else Path(times),
         mask=common.colour(mask),
         progress=lambda paths: common.progress(paths, "reading"),
     )
-    state = pipeline.aligned(bracket, align)
+    ready = "times" if estimate_times or times == "estimate" else "align"
+    steps = pipeline.assemble_steps(
+        bracket,
+        align=align,
+        response="auto" if response == "all" else response,
+        times="estimate" if ready == "times" else "stated",
+    )
+    state = next(one for one in steps if one.stage == ready)
     for said in (*state.notes, *state.doubts):
         click.echo(f"note: {said}", err=True)
     if response == "all":

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.response.mitsunaga import coefficients
 from hdrlab.response.pairs import average, held, moments
-from hdrlab.response.polynomial import brightness, random, slope, value
+from hdrlab.response.polynomial import brightness, misfit, random, value
 
 Float = NDArray[np.float64]
 
@@ -119,8 +119,7 @@ def normalised(M: Float, R: float, c: Float) -> float:
     E itself cannot judge R: it is small wherever f is flat, and f^u is flat over most of its range.
     """
     a, b = M.T
-    residual = value(a, c) - R * value(b, c)
-    return float(np.sqrt(np.mean(residual**2 / (slope(a, c) ** 2 + (R * slope(b, c)) ** 2))))
+    return float(np.sqrt(np.mean(misfit(a, b, R, c) ** 2)))
 
 
 def errors_along(M: Float, R: ArrayLike, order: int) -> Float:

@@ -18,7 +18,7 @@ they know instead of being cut.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 from scipy.special import ndtr
 
@@ -38,11 +38,16 @@ class Nodes(NamedTuple):
 
 
 class Support(NamedTuple):
-    """The nodes worth a thought. Pixel i has k[start[i] : start[i + 1]]; levels (P, ...) are its Z there."""
+    """The nodes worth a thought. Pixel i has k[start[i] : start[i + 1]].
+
+    What has to be known of them is P(z | m_qk) at `cells`, each (q, k, z) once; pair j of a pixel and a node
+    has at[q, j] of these in frame q.
+    """
 
     start: Index
     k: Index
-    levels: Index
+    cells: tuple[Index, ...]
+    at: Index
 
 
 def nodes(c: Float, tau: Float, count: int) -> Nodes:
@@ -71,13 +76,19 @@ def predict(c: Float, tau: Float, at: Nodes) -> tuple[Float, Float]:
     return m, np.where(X < 1, 1 / slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)
 
 
-def masses(m: Float, sigma: float) -> tuple[Float, Float, Float]:
-    """Return P(z | m) (P, K, 256), and the derivatives of its logarithm by m and by ln sigma."""
-    u = (EDGES - m[..., None]) / sigma
-    bell = np.exp(-(u**2) / 2) / np.sqrt(2 * np.pi)
-    P = np.diff(ndtr(u)) + STRAY
-    tilt = bell * np.where(np.isfinite(u), u, 0)
-    return P, -np.diff(bell) / (sigma * P), -np.diff(tilt) / P
+def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[Float, Float, Float]:
+    """Return P(z | m), and the derivatives of its logarithm by m and by ln sigma; m and z broadcast."""
+    z, m = np.asarray(z, dtype=np.intp), np.asarray(m)
+    low, high = (EDGES[z] - m) / sigma, (EDGES[z + 1] - m) / sigma
+    bell_low, bell_high = (np.exp(-(u**2) / 2) / np.sqrt(2 * np.pi) for u in (low, high))
+    P = ndtr(high) - ndtr(low) + STRAY
+    tilt = bell_high * np.where(high < np.inf, high, 0) - bell_low * np.where(low > -np.inf, low, 0)
+    return P, (bell_low - bell_high) / (sigma * P), -tilt / P
+
+
+def table(m: Float, sigma: float) -> Float:
+    """Return P(z | m) of all levels, (P, K, 256)."""
+    return np.diff(ndtr((EDGES - m[..., None]) / sigma)) + STRAY
 
 
 def support(Z: Index, P: Float, *, least: float = 1e-7, block: int = 1000) -> Support:
@@ -89,32 +100,46 @@ def support(Z: Index, P: Float, *, least: float = 1e-7, block: int = 1000) -> Su
         kept.append(likelihood > least * likelihood.max(axis=1, keepdims=True))
     counts = np.concatenate([one.sum(axis=1) for one in kept])
     k = np.concatenate([one.nonzero()[1] for one in kept])
-    return Support(np.append(0, np.cumsum(counts)), k, np.repeat(Z, counts, axis=0).T)
+    cell = np.ravel_multi_index((np.arange(len(P))[:, None], k, np.repeat(Z, counts, axis=0).T), P.shape)
+    asked = np.zeros(P.size, bool)
+    asked[cell] = True
+    at = (np.cumsum(asked) - 1)[cell]
+    return Support(np.append(0, np.cumsum(counts)), k, np.unravel_index(np.flatnonzero(asked), P.shape), at)
 
 
 def posterior(P: Float, p: Float, near: Support) -> tuple[Float, Float]:
-    """Return ln P(Z_i) (N,) and each supporting node's share of it, p_k prod_q P(Z_iq | m_qk) / P(Z_i)."""
+    """Return ln P(Z_i) (N,) and each supporting node's share of it, p_k prod_q P(Z_iq | m_qk) / P(Z_i).
+
+    P are the probabilities of the support's cells.
+    """
     joint = p[near.k]
-    for q in range(len(P)):
-        joint = joint * P[q][near.k, near.levels[q]]
+    for cell in near.at:
+        joint = joint * P[cell]
     total = np.add.reduceat(joint, near.start[:-1])
     return np.log(total), joint / np.repeat(total, np.diff(near.start))
 
 
 def scores(weights: Float, near: Support, J: Float, dm: Float, ds: Float) -> Float:
-    """Return the derivatives of ln P(Z_i) by (c, tau[:-1], ln sigma), (N, A).
+    """Return the derivatives of ln P(Z_i) by (c, tau[:-1], ln sigma), (N, A), from those of the cells.
 
     Fisher's identity: the derivative for a known node, averaged over the nodes by their shares.
     """
     shape = len(near.start) - 1, J.shape[1]
     S = np.zeros((shape[0], J.shape[2] + 1))
-    for q in range(len(J)):
-        at = near.k, near.levels[q]
-        S[:, :-1] += csr_array((weights * dm[q][at], near.k, near.start), shape=shape) @ J[q]
-        S[:, -1] += np.add.reduceat(weights * ds[q][at], near.start[:-1])
+    for own, cell in zip(J, near.at, strict=True):
+        S[:, :-1] += csr_array((weights * dm[cell], near.k, near.start), shape=shape) @ own
+        S[:, -1] += np.add.reduceat(weights * ds[cell], near.start[:-1])
     return S
 
 
 def density(weights: Float, near: Support, count: int) -> Float:
     """Return p_k, the mean over the pixels of node k's shares: the step of EM."""
     return np.bincount(near.k, weights, count) / (len(near.start) - 1)
+
+
+def stiffness(A: int, frames: int, trust: float) -> Float:
+    """Return the (A, A) matrix of a prior on theta = (c, tau[:-1], ln sigma): each ln R to within `trust`."""
+    D = np.zeros((frames - 1, A))
+    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(frames - 1, frames, 1)  # tau_q - tau_q+1
+    D[:, -1] = 0  # where ln sigma stands, for tau of the longest frame is 0
+    return D.T @ D / trust**2

@@ -35,10 +35,13 @@ from hdrlab.response.likelihood import (
     posterior,
     predict,
     scores,
+    stiffness,
     support,
+    table,
 )
 from hdrlab.response.pairs import HIGHEST
-from hdrlab.response.polynomial import GRID, rising, slope
+from hdrlab.response.plausible import checked
+from hdrlab.response.polynomial import GRID, curve, rising, slope
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -82,22 +85,13 @@ def unpack(theta: Float, frames: int) -> tuple[Float, Float, float]:
 
 def evaluate(theta: Float, p: Float, task: Task) -> Point:
     """Return the Point at theta for a density p."""
-    c, tau, sigma = unpack(theta, len(task.near.levels))
+    c, tau, sigma = unpack(theta, len(task.near.at))
+    q, k, z = task.near.cells
     m, J = predict(c, tau, task.at)
-    P, dm, ds = masses(m, sigma)
+    P, dm, ds = masses(m[q, k], sigma, z)
     ln, weights = posterior(P, p, task.near)
     penalty = ((theta - task.prior) @ task.stiffness @ (theta - task.prior)) / 2
     return Point(theta, float(ln.sum() - penalty), weights, scores(weights, task.near, J, dm, ds))
-
-
-def stiffness(A: int, frames: int, trust: float) -> Float:
-    """Return the (A, A) matrix that says: each ln R has its prior, with standard deviation `trust`."""
-    D = np.zeros((frames - 1, A))
-    D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(
-        frames - 1, frames, 1
-    )  # ln R_q = tau_q - tau_q+1
-    D[:, -1] = 0  # where ln sigma stands, for tau of the longest frame is 0
-    return D.T @ D / trust**2
 
 
 def ascend(here: Point, task: Task) -> tuple[Point, float]:
@@ -113,7 +107,7 @@ def ascend(here: Point, task: Task) -> tuple[Point, float]:
     for half in range(12):
         theta = here.theta + step / 2**half
         theta[-1] = max(theta[-1], np.log(FINEST))
-        if slope(GRID, unpack(theta, len(task.near.levels))[0]).min() >= LEAST:
+        if slope(GRID, unpack(theta, len(task.near.at))[0]).min() >= LEAST:
             there = evaluate(theta, p, task)
             if there.likelihood >= here.likelihood:
                 return there, float(s @ step)
@@ -125,8 +119,9 @@ def begin(Z: Index, theta: Float, count: int, blur: float) -> tuple[Nodes, Suppo
     c, tau, sigma = unpack(theta, Z.shape[1])
     at = nodes(c, tau, count)
     m = predict(c, tau, at)[0]
-    near = support(Z, masses(m, blur * sigma)[0])
-    P, p = masses(m, sigma)[0], np.full(len(at.x), 1 / len(at.x))
+    near = support(Z, table(m, blur * sigma))
+    q, k, z = near.cells
+    P, p = masses(m[q, k], sigma, z)[0], np.full(len(at.x), 1 / len(at.x))
     for _ in range(5):
         p = density(posterior(P, p, near)[1], near, len(p))
     return at, near, p
@@ -181,48 +176,17 @@ def calibrate(
     trust: float = 0.005,
     pixels: int = 10_000,
     valid: ArrayLike | None = None,
+    **knobs: float,
 ) -> list[State]:
     """Return the last State of each channel of a bracket, starting where `mitsunaga` stops.
 
-    For cameras that are polynomials of this order. It is no `recover`: for others, the misfit costs more
-    than the noise that it takes care of, and `mitsunaga` comes nearer; and it takes seconds a channel.
+    For cameras that are polynomials of this order. For others, the misfit may cost more than the noise that
+    it takes care of, and `mitsunaga` comes nearer. Parameters as of `recover`, and those of `fit_steps`;
+    `polynomial.curve(state.c)` is the response g. It takes seconds a channel.
 
-    Parameters
-    ----------
-    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Photographs, aligned; 16 bits are read at 256 levels.
-    times : (P,) float
-        Exposure times in seconds, at least two different ones.
-    order : int
-        Of the polynomial.
-    trust : float
-        How far the ratios may be from those of the times, as a standard deviation of ln R. Where no
-        polynomial is the camera, its misfit tilts the valley as noise did: then the times know better.
-    pixels : int
-        How many to take, on an even grid.
-    valid : (P, H, W) bool, optional
-        False where a photograph holds no picture.
-
-    Returns
-    -------
-    list of State
-        One a channel; `polynomial.curve(state.c)` is the response g.
-
-    Raises
-    ------
-    ValueError
-        For fewer than two photographs or two times, or photographs that share no levels worth using.
-
-    References
-    ----------
-    The model is that of Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999; the estimator is ours.
-
-    Examples
-    --------
     >>> ramp = np.linspace(1, 100, 2500).reshape(50, 50)  # a linear camera
     >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
     >>> state = calibrate(images, [0.01, 0.02, 0.04], order=2)[0]
-    >>> from hdrlab.response.polynomial import curve
     >>> bool(abs(curve(state.c)[200] - np.log(200 / 128)) < 0.01)
     True
     """
@@ -232,4 +196,64 @@ def calibrate(
     Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
     stated = times[by_time][:-1] / times[by_time][1:]
     channels = zip(np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0), start.c, strict=True)
-    return [fit(own, c, start.R, stated=stated, trust=trust) for own, c in channels]
+    return [fit(own, c, start.R, stated=stated, trust=trust, **knobs) for own, c in channels]
+
+
+def recover(
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    order: int | None = None,
+    trust: float = 0.005,
+    pixels: int = 1500,
+    valid: ArrayLike | None = None,
+) -> Float:
+    """Return the response g that makes the pixel levels likeliest, each channel by itself.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs, aligned; 16 bits are read at 256 levels.
+    times : (P,) float
+        Exposure times in seconds, at least two different ones.
+    order : int, optional
+        Of the polynomial; by default the one that `mitsunaga` chooses.
+    trust : float
+        How far the ratios may be from those of the times, as a standard deviation of ln R. Where no
+        polynomial is the camera, its misfit tilts the valley as noise did: then the times know better.
+    pixels : int
+        How many to take, on an even grid. A second or two a channel; more of them take longer, and change
+        little where the camera is no polynomial.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Returns
+    -------
+    (256,) or (256, 3) float64
+        g, the ln exposure of each level, rising; g[128] = 0 in every channel.
+
+    Raises
+    ------
+    ValueError
+        For fewer than two photographs or two times, photographs that share no levels worth using, and times
+        that they flatly contradict: see `plausible`.
+
+    References
+    ----------
+    The model is that of Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999; the estimator is ours.
+
+    Examples
+    --------
+    >>> ramp = np.linspace(1, 100, 2500).reshape(50, 50)  # a linear camera
+    >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
+    >>> g = recover(images, [0.01, 0.02, 0.04])
+    >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
+    True
+    """
+    if order is None:
+        order = mitsunaga.calibrate(images, times, valid=valid).c.shape[1] + 1
+    states = calibrate(
+        images, times, order=order, trust=trust, pixels=pixels, valid=valid, enough=0.5, most=10
+    )
+    g = np.stack([curve(state.c) for state in states], axis=-1).reshape(256, *np.shape(images)[3:])
+    return checked(g, images, times, valid=valid)

@@ -16,10 +16,12 @@ more turns. `ambiguity` shows the slide; `marginal` has an estimator that knows 
 
 Departures: samples are means of many pixels, used where both frames hold them in 0.05 ... 0.98; f(0) = 0; and
 a ratio is a quotient of sums, not a mean of quotients [eq. 10, which lacks its 1/P], to which dark pixels add
-mostly noise.
+mostly noise. And the order is the least that other parts of the picture ask for, see `choose_order`; that of
+least error [sec. 4] is the highest.
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from functools import reduce
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -29,11 +31,14 @@ from hdrlab.core.arrays import as_mask, as_stack, as_times
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
-from hdrlab.response.pairs import HIGHEST, Moments, average, both, moments
-from hdrlab.response.polynomial import basis, curve
+from hdrlab.response.pairs import HIGHEST, Moments, average, both, held, moments
+from hdrlab.response.plausible import checked
+from hdrlab.response.polynomial import basis, curve, misfit
 
 Float = NDArray[np.float64]
 RIDGE = 1e-7  # of the mean square of M and f: where the samples tell less, the straight line is kept
+PARTS, STRIPES = 5, 20  # of the picture, for the choice of the order: a part is every fifth stripe
+FINEST = 0.01 / 255  # in brightness, a hundredth of a level: what is less is no difference
 SWINGS = basis(np.linspace(0, 1, 256), HIGHEST)  # how each coefficient moves f at the pixel levels
 
 
@@ -99,19 +104,34 @@ def fit(m: Moments, R: ArrayLike, order: int, **knobs: float) -> State:
     return last(fit_steps(m, R, order, **knobs))  # type: ignore[arg-type]
 
 
-def held_out(even: Moments, odd: Moments, R: ArrayLike, order: int) -> float:
-    """Return the error that each half of the samples leaves in the other."""
-    first, second = fit(even, R, order, most=2), fit(odd, R, order, most=2)
-    return float(np.hypot(error(odd, first.R, first.c), error(even, second.R, second.c)))
+def held_out(parts: Sequence[Float], R: Float, order: int) -> Float:
+    """Return the error (K,) of each part of the picture under the c of the others, rms in brightness.
 
-
-def choose_order(even: Moments, odd: Moments, R: ArrayLike, *, margin: float = 0.02) -> int:
-    """Return the least order whose held-out error is within a margin of the best, the same for all channels.
-
-    The error of the samples themselves falls with every order, and would always choose the highest.
+    Not that of eq. 7, which is small wherever f is flat, and high orders make it so. And R stays as stated: a
+    straight line explains a power law as well as the power does, with ratios of its own.
     """
-    errors = np.array([held_out(even, odd, R, order) for order in range(1, HIGHEST + 1)])
-    return 1 + int(np.argmax(errors <= (1 + margin) * errors.min()))
+    m, found = [moments(M) for M in parts], np.zeros(len(parts))
+    for k, M in enumerate(parts):
+        c, used = coefficients(reduce(both, m[:k] + m[k + 1 :]), R, order), held(M)
+        left = [misfit(one[:, :-1], one[:, 1:], R, own) for one, own in zip(M, c, strict=True)]
+        found[k] = np.sqrt(np.mean(np.stack(left)[used] ** 2)) if used.any() else 0
+    return found
+
+
+def choose_order(parts: Sequence[Float], R: ArrayLike) -> int:
+    """Return the least order whose held-out error is within a standard error of the best [Breiman84 3.4.3].
+
+    One for all channels, from samples M (C, N, P) of each part of a picture. Halves of samples that each hold
+    pixels from all over it would not do: what motion and flare add stands in both, and they confirm it.
+    """
+    if len(parts) < 2:
+        return 1
+    R = np.asarray(R, dtype=np.float64)
+    errors = np.stack([held_out(parts, R, order) for order in range(1, HIGHEST + 1)])
+    mean = errors.mean(axis=1)
+    best = int(np.argmin(mean))
+    doubt = np.std(errors[best], ddof=1) / np.sqrt(len(parts))
+    return 1 + int(np.argmax(mean <= mean[best] + max(doubt, FINEST)))
 
 
 def calibrate(
@@ -125,23 +145,31 @@ def calibrate(
     valid: ArrayLike | None = None,
 ) -> State:
     """Return the last State for a bracket: the coefficients and the ratios. Parameters as of `recover`."""
-    M, R = averages(images, times, pixels=pixels, samples=samples, valid=valid)
-    even, odd = moments(M[:, ::2]), moments(M[:, 1::2])
-    m = both(even, odd)
+    parts, R = averages(images, times, pixels=pixels, samples=samples, valid=valid)
+    m = reduce(both, [moments(M) for M in parts])
     if not np.all(m.samples.sum(axis=1)):
-        raise ValueError("no pixels lie between 0.05 and 0.98 of the top level in two neighbouring frames")
-    return fit(m, R, choose_order(even, odd, R) if order is None else order, eps=eps)
+        raise ValueError(
+            "expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames; got none"
+        )
+    return fit(m, R, choose_order(parts, R) if order is None else order, eps=eps)
 
 
 def averages(
     images: ArrayLike, times: ArrayLike, *, pixels: int, samples: int, valid: ArrayLike | None
-) -> tuple[Float, Float]:
-    """Return samples M (C, N, P) of a bracket, from short to long, and the ratios R (P - 1,) of its times."""
+) -> tuple[list[Float], Float]:
+    """Return samples of a bracket, from short to long, and the ratios R (P - 1,) of its times.
+
+    The samples come in PARTS of the picture, M (C, N, P) each: every PARTS-th of its STRIPES.
+    """
     stack = as_stack(images)
     times = as_times(times, len(stack), distinct=2)
     by_time = short_to_long(stack, times)
     Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
-    M = np.stack([average(one, samples) for one in np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)])
+    Z = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
+    stripes = np.array_split(np.arange(Z.shape[1]), STRIPES)  # the grid's pixels come row by row
+    parts = [Z[:, np.concatenate(stripes[k::PARTS])] for k in range(min(PARTS, Z.shape[1]))]
+    each = -(-samples // PARTS)
+    M = [np.stack([average(one, each) for one in part]) for part in parts]
     return M, times[by_time][:-1] / times[by_time][1:]
 
 
@@ -150,7 +178,7 @@ def exposure_ratios(images: ArrayLike, times: ArrayLike, **knobs: Any) -> Float:
     return calibrate(images, times, **knobs).R
 
 
-def recover(images: ArrayLike, times: ArrayLike, **knobs: Any) -> Float:
+def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None, **knobs: Any) -> Float:
     """Return the response g, and take the exposure times for rough.
 
     Parameters
@@ -161,7 +189,8 @@ def recover(images: ArrayLike, times: ArrayLike, **knobs: Any) -> Float:
         Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in part;
         `exposure_ratios` tells to what.
     order : int, optional
-        Of the polynomial; the best by held-out error up to 10 by default.
+        Of the polynomial; by default the least of 1 to 10 whose held-out error is within a standard error of
+        the best.
     eps : float
         Stop when f, 0 to 1, moves by less. A smaller one lets the ratios drift further from the times.
     pixels, samples : int
@@ -177,11 +206,13 @@ def recover(images: ArrayLike, times: ArrayLike, **knobs: Any) -> Float:
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, or photographs that share no levels worth using.
+        For fewer than two photographs or two times, photographs that share no levels worth using, and times
+        that they flatly contradict: see `plausible`.
 
     References
     ----------
-    Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999.
+    Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999. For the standard error, Breiman, Friedman,
+    Olshen and Stone, Classification and regression trees, 1984, sec. 3.4.3.
 
     Examples
     --------
@@ -191,5 +222,5 @@ def recover(images: ArrayLike, times: ArrayLike, **knobs: Any) -> Float:
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    g = np.stack([curve(c) for c in calibrate(images, times, **knobs).c], axis=-1)
-    return g.reshape(256, *np.shape(images)[3:])
+    g = np.stack([curve(c) for c in calibrate(images, times, valid=valid, **knobs).c], axis=-1)
+    return checked(g.reshape(256, *np.shape(images)[3:]), images, times, valid=valid)

@@ -41,6 +41,12 @@ def slope(M: ArrayLike, c: ArrayLike) -> Float:
     return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)
 
 
+def misfit(a: Float, b: Float, R: Float | float, c: Float) -> Float:
+    """Return (f(a) - R f(b)) / sqrt(f'(a)^2 + (R f'(b))^2): what eq. 5 misses, as noise of a and b."""
+    steepness = np.hypot(slope(a, c), R * slope(b, c))
+    return np.asarray((value(a, c) - R * value(b, c)) / np.maximum(steepness, 1e-9))
+
+
 def _chebyshev(M: Float, order: int) -> Float:
     return np.asarray(chebvander(2 * M - 1, max(order - 2, 0))[..., : order - 1], dtype=np.float64)
 
