@@ -173,7 +173,11 @@ def test_figures_stand_for_gray_and_colour_and_for_levels_that_nothing_is_known_
     g = np.broadcast_to(LINEAR.reshape(256, *[1] * len(channels)), (256, *channels))
     r = np.full((2, 256, *channels), np.nan)
     drawn = calibration.calibration(g, r, [0.1, 1], band=Band(g - 0.1, g, g + 0.1), title="debevec")
-    assert isinstance(drawn, Figure) and len(drawn.axes[1].lines) == 3
+    assert isinstance(drawn, Figure) and len(drawn.axes) == 3 and len(drawn.axes[2].lines) == 3
+    edges = [line.get_ydata() for line in drawn.axes[1].lines[:2]]
+    assert np.allclose(edges[0], -0.1 / np.log(2)) and np.allclose(edges[1], 0.1 / np.log(2))
+    assert "band, 0.28" in drawn.get_label()
+    assert len(calibration.calibration(g, r, [0.1, 1], title="debevec").axes) == 2
     over = calibration.overlay({"one": g, "two": 1.1 * g}, title="two")
     assert len(over.axes) == 2 * (channels or (1,))[0]
 

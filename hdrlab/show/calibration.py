@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_table
 from hdrlab.core.errors import HIGH, LOW, radiance_errors, response_rmse
 from hdrlab.io.files import replacing
-from hdrlab.response.bootstrap import Band
+from hdrlab.response.bootstrap import KEPT, Band
 from hdrlab.response.residuals import offsets, rms
 from hdrlab.show import plots
 from hdrlab.show.pictures import require_alt
@@ -126,28 +126,50 @@ def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> d
 
 
 def calibration(g: Float, r: Float, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
-    """Draw a response with its band, and beside it the residuals of each frame."""
-    figure = Figure(figsize=(10.4, 4.2), dpi=100, layout="constrained")
-    left, right = figure.subplots(1, 2)
+    """Draw a response, beside it the band in which it is to be trusted, and the residuals of each frame."""
+    count = 2 if band is None else 3
+    figure = Figure(figsize=(5.2 * count, 4.2), dpi=100, layout="constrained")
+    left, *middle, right = figure.subplots(1, count)
     plots.response(g, ax=left)
+    left.set_title(title, fontsize=10)
     if band is not None:
-        _draw_band(band, left)
+        draw_band(band, g, ax=middle[0])
+        middle[0].set_title("its band: 95 % of the rounds of a bootstrap", fontsize=10)
     draw_residuals(r, times, ax=right)
-    for ax, said in ((left, title), (right, "residuals of the frames, median over a level's pixels")):
-        ax.set_title(said, fontsize=10)
+    right.set_title("residuals of the frames, median over a level's pixels", fontsize=10)
+    for ax in figure.axes:
         ax.grid(color="#D9D9D9", linewidth=0.6)
+    width = "" if band is None else f"its band, {band.width:.4f} stops wide; "
     figure.set_label(
-        f"{title}: the response over ln exposure, from {g.min():.1f} to {g.max():.1f}, with its band; "
-        f"beside it what it leaves unexplained of each frame, {rms(r):.3f} stops rms"
+        f"{title}: the response over ln exposure, from {g.min():.1f} to {g.max():.1f}; {width}"
+        f"and what it leaves unexplained of each frame, {rms(r):.3f} stops rms"
     )
     return figure
 
 
-def _draw_band(band: Band, ax: Axes) -> None:
+def draw_band(band: Band, g: Float, *, ax: Axes | None = None) -> Axes:
+    """Draw how far a band lies from g, stops over the pixel level: upon a curve of ten stops none shows."""
+    ax = ax or plots.axes()
     channels = plots.CHANNELS if band.low.ndim == 2 else plots.GRAY
-    columns = (np.reshape(one, (len(one), -1)).T for one in (band.low, band.high))
-    for (_, colour, _), low, high in zip(channels, *columns, strict=True):
-        ax.fill_betweenx(np.arange(len(low)), low, high, color=colour, alpha=0.25, linewidth=0)
+    columns = [np.reshape(one - g, (len(g), -1)).T / np.log(2) for one in (band.low, band.high)]
+    for (name, colour, style), low, high in zip(channels, *columns, strict=True):
+        level = np.arange(len(low))
+        ax.fill_between(level, low, high, color=colour, alpha=0.2, linewidth=0)
+        for edge, label in ((low, name), (high, None)):
+            ax.plot(level, edge, color=colour, linestyle=style, linewidth=1, label=label)
+    most = max(0.02, 1.3 * max(float(np.quantile(np.abs(one[:, KEPT]), 0.98)) for one in columns))
+    ax.axhline(0, color="#1A1A1A", linewidth=0.8)
+    ax.set(xlabel="pixel level Z", ylabel="stops from the curve", xlim=(0, len(g) - 1), ylim=(-most, most))
+    _shade(ax)
+    if len(channels) > 1:
+        ax.legend(fontsize=8, loc="upper center", ncols=3, framealpha=0.9)
+    return ax
+
+
+def _shade(ax: Axes) -> None:
+    """Shade the levels below 10 and above 250, where no method is held to anything."""
+    for low, high in ((0, LOW), (HIGH, 255)):
+        ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
 
 
 def draw_residuals(r: Float, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
@@ -157,11 +179,11 @@ def draw_residuals(r: Float, times: ArrayLike, *, ax: Axes | None = None) -> Axe
     colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
     for line, time, colour in zip(lines, np.asarray(times).tolist(), colours, strict=True):
         ax.plot(np.arange(256), line, color=colour, linewidth=1.1, label=plots.seconds(time))
-    most = max(
-        0.1, 1.2 * float(np.ma.filled(np.abs(lines[:, LOW : HIGH + 1]).max(), 0))
-    )  # not the noise below
+    told = np.ma.compressed(np.abs(lines[:, KEPT]))  # not the noise below, nor a few levels with few pixels
+    most = max(0.1, 1.5 * float(np.quantile(told, 0.99))) if len(told) else 0.1
     ax.axhline(0, color="#1A1A1A", linewidth=0.8)
     ax.set(xlabel="pixel level Z", ylabel="g(Z) − ln E − ln t, stops", xlim=(0, 255), ylim=(-most, most))
+    _shade(ax)
     ax.legend(fontsize=7, ncols=3, loc="lower center", framealpha=0.9)
     return ax
 
@@ -184,6 +206,7 @@ def overlay(curves: Mapping[str, Float], *, title: str = "") -> Figure:
             below.plot(np.arange(256), stops - middle[:, c], color=colour, linestyle=style, linewidth=1.2)
         above.set(title=channel, xlabel="exposure, stops from level 128", xlim=span, ylim=(-4, 259))
         below.set(xlabel="pixel level Z", xlim=(0, 255), ylim=(-1, 1))
+        _shade(below)
     grid[0, 0].set_ylabel("pixel level Z")
     grid[1, 0].set_ylabel("stops from the methods' median")
     for ax in grid.flat:
