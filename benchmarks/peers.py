@@ -4,9 +4,12 @@ import importlib
 import shutil
 from collections.abc import Callable
 from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
 from types import ModuleType
 
-from benchmarks.rows import Run
+from benchmarks.measure import process
+from benchmarks.rows import Run, Usage
+from hdrlab.core.bracket import Bracket
 
 OPENCV, COLOUR, PFS, OPENEXR = "OpenCV", "colour-hdri", "pfstools", "OpenEXR"
 PACKAGES = {OPENCV: "opencv-python-headless", COLOUR: "colour-hdri", OPENEXR: "OpenEXR"}
@@ -40,6 +43,30 @@ def pfstools(program: str) -> str:
     if found is None:
         raise Missing(f"no {program} on the path (apt install pfstools)")
     return found
+
+
+def pfs_bracket(bracket: Bracket, folder: Path) -> Path:
+    """Return a file with the frames of a bracket as pfstools read them."""
+    frames, listed = folder / "photographs.pfs", folder / "photographs.hdrgen"
+    lines = []
+    for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
+        path = folder / f"photograph-{j}.ppm"
+        path.write_bytes(b"P6\n%d %d\n255\n" % image.shape[1::-1] + image.tobytes())
+        lines.append(f"{path} {1 / time:.9g} 1 100 0\n")
+    listed.write_text("".join(lines), encoding="utf8")
+    process([pfstools("pfsinhdrgen"), str(listed)], one=False, target=frames)
+    return frames
+
+
+def pfs_run(command: list[str], source: Path, one: bool, idle: tuple[str, ...] = ("pfstag",)) -> Run:
+    """Return a run of one of the pfstools, less what the idle one takes: to read and write the same alone."""
+    busy, rest = ([pfstools(program), *options] for program, *options in (command, idle))
+
+    def run() -> Usage:
+        spent = process(busy, one=one, source=source)
+        return spent.net(process(rest, one=one, source=source))
+
+    return run
 
 
 def present(makers: dict[str, Callable[[], Run]]) -> tuple[dict[str, Run], dict[str, str]]:

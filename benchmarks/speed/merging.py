@@ -6,11 +6,10 @@ from typing import Any
 import numpy as np
 
 from benchmarks import data, peers
-from benchmarks.measure import process
 from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.weights import gaussian
+from hdrlab.io.curves import write_curve
 from hdrlab.radiance.merge import merge
 
 
@@ -62,39 +61,10 @@ def colour_hdri(bracket: Bracket, g: Array) -> Run:
 
 
 def pfstools(bracket: Bracket, g: Array, folder: Path, one: bool) -> Run:
-    """Return pfshdrcalibrate, the response given, less what it takes to read the frames and do nothing."""
-    calibrate, idle, reader = map(peers.pfstools, ("pfshdrcalibrate", "pfstag", "pfsinhdrgen"))
-    response, frames = folder / "response.m", folder / "photographs.pfs"
-    listed = folder / "photographs.hdrgen"
-    response.write_text(pfs_response(g), encoding="ascii")
-    lines = []
-    for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
-        path = folder / f"photograph-{j}.ppm"
-        path.write_bytes(b"P6\n%d %d\n255\n" % image.shape[1::-1] + image.tobytes())
-        lines.append(f"{path} {1 / time:.9g} 1 100 0\n")
-    listed.write_text("".join(lines), encoding="utf8")
-    process([reader, str(listed)], one=one, target=frames)
-
-    def run() -> Usage:
-        busy = process([calibrate, "-f", str(response)], one=one, source=frames)
-        return busy.net(process([idle], one=one, source=frames))
-
-    return run
-
-
-def pfs_response(g: Array) -> str:
-    """Return the response and its weights in the matrices that pfshdrcalibrate reads."""
-    text = ""
-    for name, curve in zip(("IR", "IG", "IB"), g.T, strict=True):
-        rows = [f"{value / np.log(10):e} {z} {np.exp(value):e}" for z, value in enumerate(curve)]
-        text += _matrix(name, rows)
-    return text + _matrix("W", [f"{value:e} {z}" for z, value in enumerate(gaussian())])
-
-
-def _matrix(name: str, rows: list[str]) -> str:
-    size = f"# rows: {len(rows)}\n# columns: {len(rows[0].split())}\n"
-    head = f"# {name}\n# layout\n# name: {name}\n# type: matrix\n{size}"
-    return head + "\n".join(rows) + "\n\n"
+    """Return pfshdrcalibrate, the response given."""
+    frames, response = peers.pfs_bracket(bracket, folder), folder / "response.m"
+    write_curve(response, g)
+    return peers.pfs_run(["pfshdrcalibrate", "-f", str(response)], frames, one)
 
 
 ROWS = (
