@@ -7,13 +7,17 @@ import os
 import sys
 import tempfile
 import time
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 from benchmarks import peers, table
+from benchmarks.experiments import Experiment, Skipped, findings
 from benchmarks.measure import measured
 from benchmarks.rows import Outcome, Row, verdicts
 
 HERE = Path(__file__).parent
+STOPPED = 130  # the exit code of what Ctrl-C ends
 
 
 def subjects() -> list[str]:
@@ -23,21 +27,28 @@ def subjects() -> list[str]:
     return sorted(file.parent.name if file.stem == "__init__" else file.stem for file in with_rows)
 
 
-def chosen(subject: str, names: str | None) -> list[Row]:
+def chosen(subject: str, names: str | None) -> list[Row | Experiment]:
     """Return the rows of a subject: all, or those of these names, separated by commas."""
-    rows: list[Row] = list(importlib.import_module(f"benchmarks.{subject}").ROWS)
+    rows: list[Row | Experiment] = list(importlib.import_module(f"benchmarks.{subject}").ROWS)
     return rows if names is None else [row for row in rows if row.name in names.split(",")]
 
 
 def parse(arguments: list[str] | None) -> argparse.Namespace:
     """Return the options, or end with what is wrong with them."""
-    parser = argparse.ArgumentParser("python -m benchmarks", description="hdrlab beside its peers.")
+    parser = argparse.ArgumentParser(
+        "python -m benchmarks", description="hdrlab beside its peers, and papers."
+    )
     parser.add_argument(
         "subjects", nargs="*", metavar="SUBJECT", help=f"{', '.join(subjects())}; all by default"
     )
     parser.add_argument("--rows", metavar="A,B", help="these rows alone")
     parser.add_argument("--json", metavar="FILE", type=Path, help="write the figures here, too")
-    parser.add_argument("--data", metavar="DIR", type=Path, help="keep the photographs here for next time")
+    parser.add_argument(
+        "--data",
+        metavar="DIR",
+        type=Path,
+        help="read measured curves and maps here, not in ../shared/data; keep photographs for next time",
+    )
     options = parser.parse_args(arguments)
     options.subjects = options.subjects or subjects()
     if unknown := set(options.subjects) - set(subjects()):
@@ -48,39 +59,59 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     return options
 
 
-def run(subject: str, rows: list[Row], folder: Path) -> list[Outcome]:
-    """Measure and print a subject's rows; one that breaks does not stop the others."""
+def run(subject: str, rows: list[Row | Experiment], folder: Path) -> Iterator[Outcome]:
+    """Measure, print and yield a subject's rows; one that breaks does not stop the others."""
     load = f"{os.cpu_count()} processors, load {os.getloadavg()[0]:.1f}"
     print(f"{subject} on {load}; {peers.versions()}\n", flush=True)
-    outcomes: list[Outcome] = []
     for row in rows:
+        results: Mapping[str, Any] | None
         try:
-            results, missing = measured(subject, row, folder)
+            results, said = done(subject, row, folder)
+        except Skipped as reason:
+            results, said = {}, f"{row.name}: skipped, {reason}"
         except RuntimeError as error:
-            print(f"{row.name}: failed, {error}\n", flush=True)
-            outcomes.append((row, None))
-            continue
-        print(table.block(row, results, missing) + "\n", flush=True)
-        outcomes.append((row, results))
-    return outcomes
+            results, said = None, f"{row.name}: failed, {error}"
+        print(said + "\n", flush=True)
+        yield row, results
+
+
+def done(subject: str, row: Row | Experiment, folder: Path) -> tuple[Mapping[str, Any], str]:
+    """Return the figures of a row, and its block of the table."""
+    if isinstance(row, Experiment):
+        found = findings(row, folder)
+        return found, table.experiment(row, found)
+    results, missing = measured(subject, row, folder)
+    return results, table.block(row, results, missing)
+
+
+def plain(figures: Any) -> Any:
+    """Return figures as JSON has them."""
+    return figures._asdict() if hasattr(figures, "_asdict") else figures
 
 
 def main(arguments: list[str] | None = None) -> int:
     """Return the exit code: 0 where every hold that could be judged is met."""
     options = parse(arguments)
     start = time.perf_counter()
+    outcomes: list[Outcome] = []
+    stopped = False
     with tempfile.TemporaryDirectory() as scratch:
         folder = options.data or Path(scratch)
         folder.mkdir(parents=True, exist_ok=True)
-        outcomes: list[Outcome] = []
-        for subject in options.subjects:
-            outcomes += run(subject, chosen(subject, options.rows), folder)
+        try:
+            for subject in options.subjects:
+                outcomes.extend(run(subject, chosen(subject, options.rows), folder))
+        except KeyboardInterrupt:
+            stopped = True
     print(f"{table.summary(outcomes)}; it took {time.perf_counter() - start:.0f} s")
     if options.json:
         figures = {
-            row.name: {who: one._asdict() for who, one in (found or {}).items()} for row, found in outcomes
+            row.name: {who: plain(one) for who, one in (found or {}).items()} for row, found in outcomes
         }
         options.json.write_text(json.dumps(figures, indent=1) + "\n", encoding="utf8")
+    if stopped:
+        print("stopped before the end", file=sys.stderr)
+        return STOPPED
     return int(any(said == "MISSED" for _, _, said in verdicts(outcomes)))
 
 

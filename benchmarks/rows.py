@@ -4,10 +4,10 @@ A hold compares one number, computed from the figures of all who did the work, w
 the goal.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from math import log
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any, NamedTuple, Protocol
 
 OURS = "hdrlab"
 
@@ -79,10 +79,29 @@ class Row(NamedTuple):
     accuracy: str = "error"
 
 
-Outcome = tuple[Row, Results | None]  # None where the work failed
+class Judged(Protocol):
+    """What must hold of figures."""
+
+    @property
+    def what(self) -> str: ...
+
+    def verdict(self, results: Any, /) -> str: ...
 
 
-def verdicts(outcomes: list[Outcome]) -> list[tuple[Row, Hold, str]]:
+class Named(Protocol):
+    """A row of any subject."""
+
+    @property
+    def name(self) -> str: ...
+
+    @property
+    def holds(self) -> Sequence[Judged]: ...
+
+
+Outcome = tuple[Named, Mapping[str, Any] | None]  # None where the work failed
+
+
+def verdicts(outcomes: Sequence[Outcome]) -> list[tuple[Named, Judged, str]]:
     """Return what became of every hold; where the work failed, all of them are missed."""
     return [
         (row, hold, "MISSED" if results is None else hold.verdict(results))

@@ -1,5 +1,6 @@
 """The figures as text: a block per row, who did the work line by line, then what it must hold."""
 
+from benchmarks.experiments import Experiment, Found, listed
 from benchmarks.rows import Figures, Outcome, Results, Row, best_peer, verdicts
 
 COLUMNS = ("one thread", "by default", "peak memory")
@@ -13,6 +14,22 @@ def block(row: Row, results: Results, missing: dict[str, str]) -> str:
         lines.append(_line(who + (" *" if who == best and len(results) > 2 else ""), _cells(figures)))
     lines += [f"  {peer}: missing, {reason}" for peer, reason in missing.items()]
     return "\n".join(lines + [verdict(row, n, results) for n in range(len(row.holds))])
+
+
+def experiment(row: Experiment, found: Found) -> str:
+    """Return the block of an experiment: published, found, what must hold, and whether it does."""
+    holds = {hold.what: hold for hold in row.holds}
+    lines = [("", "published", "hdrlab", "hold", "")]
+    for what, numbers in found.items():
+        hold = holds.get(what)
+        published = hold.published if hold else row.published.get(what, "-")
+        rest = (hold.limits, hold.verdict(found)) if hold else ("-", "")
+        lines.append((what, published, listed(numbers), *rest))
+    widths = [max(map(len, column)) for column in zip(*lines, strict=True)]
+    cells = [
+        "   ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)) for line in lines
+    ]
+    return "\n".join([f"{row.name}: {row.title}", *(f"  {line}".rstrip() for line in cells)])
 
 
 def verdict(row: Row, n: int, results: Results) -> str:

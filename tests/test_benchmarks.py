@@ -1,6 +1,8 @@
 """The benchmarks' own arithmetic: what is measured, what must hold of it, and what the exit code says."""
 
 import json
+import math
+import os
 import subprocess
 import sys
 import time
@@ -12,7 +14,8 @@ import pytest
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
 from benchmarks import __main__ as command
-from benchmarks import measure, peers, table
+from benchmarks import experiments, measure, peers, table
+from benchmarks.experiments import Experiment, Skipped, at_least, at_most, near
 from benchmarks.rows import (
     OURS,
     Case,
@@ -116,7 +119,7 @@ def test_an_unknown_subject_or_row_is_refused_with_those_there_are(arguments, kn
 
 
 def test_every_subject_has_rows_of_different_names():
-    assert "speed" in command.subjects()
+    assert {"papers", "speed"} <= set(command.subjects())
     for subject in command.subjects():
         names = [row.name for row in command.chosen(subject, None)]
         assert names and len(set(names)) == len(names)
@@ -128,6 +131,94 @@ def test_a_subject_is_found_by_having_rows(monkeypatch, tmp_path):
     (tmp_path / "tools.py").write_text('"""Not one."""\n')
     monkeypatch.setattr(command, "HERE", tmp_path)
     assert command.subjects() == ["papers"]
+
+
+def experiment(find, *holds, name="rerun"):
+    return Experiment(name, "an old experiment", lambda folder: find(), holds)
+
+
+def missing():
+    raise Skipped("no curves in --data or ../shared/data")
+
+
+def broken():
+    raise ZeroDivisionError("no light")
+
+
+@pytest.mark.parametrize(
+    ("hold", "value", "verdict"),
+    [
+        (at_most("x", 1, 2), (1, 2), "ok"),
+        (at_most("x", 1, 2), (1, 2.1), "MISSED"),
+        (at_most("x", 1, np.inf), (1, 9e9), "ok"),
+        (at_least("x", 3), (3,), "ok"),
+        (at_least("x", 3), (2.9,), "MISSED"),
+        (near("x", 4, by=0.05), (4.05,), "ok"),
+        (near("x", 4, by=0.05), (3.9,), "MISSED"),
+        (at_most("x", 1), (np.nan,), "MISSED"),
+    ],
+)
+def test_a_hold_of_an_experiment_judges_number_by_number(hold, value, verdict):
+    assert hold.verdict({"x": value}) == verdict
+    assert hold.verdict({}) == "not judged"
+
+
+@pytest.mark.parametrize(("limit", "code"), [(2, 0), (1, 1)])
+def test_an_experiment_is_printed_beside_what_was_published(limit, code, monkeypatch, tmp_path, capsys):
+    row = experiment(lambda: {"error, %": 1.5, "more": [1, 2]}, at_most("error, %", limit, published="2.7"))
+    monkeypatch.setattr(command, "chosen", lambda subject, names: [row])
+    figures = tmp_path / "figures.json"
+    assert command.main(["papers", "--json", str(figures)]) == code
+    said = [line.split() for line in capsys.readouterr().out.splitlines()]
+    assert ["error,", "%", "2.7", "1.5", "<=", str(limit), ("ok", "MISSED")[code]] in said
+    assert ["more", "-", "1,", "2", "-"] in said
+    assert json.loads(figures.read_text())["rerun"] == {"error, %": [1.5], "more": [1, 2]}
+
+
+@pytest.mark.parametrize(
+    ("find", "code", "reason"),
+    [(missing, 0, "skipped, no curves"), (broken, 1, "ZeroDivisionError, no light")],
+)
+def test_an_experiment_without_data_is_skipped_and_a_broken_one_is_missed(
+    find, code, reason, monkeypatch, capsys
+):
+    rows = [experiment(find, at_most("x", 1)), experiment(lambda: {"x": 0}, at_most("x", 1), name="next")]
+    monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
+    assert command.main(["papers"]) == code
+    said = capsys.readouterr().out
+    assert reason in said and "1 of 2 holds are met" in said
+
+
+def test_ctrl_c_ends_with_what_is_known_so_far(monkeypatch, capsys):
+    def interrupted():
+        raise KeyboardInterrupt
+
+    rows = [experiment(lambda: {"x": 0}, at_most("x", 1)), experiment(interrupted, at_most("x", 1))]
+    monkeypatch.setattr(command, "chosen", lambda subject, names: rows)
+    assert command.main(["papers"]) == 130
+    said = capsys.readouterr()
+    assert "1 of 1 holds are met" in said.out and "stopped" in said.err
+
+
+@pytest.mark.parametrize("processes", [1, 2])
+def test_work_along_many_items_keeps_their_order(processes, monkeypatch):
+    monkeypatch.setattr(experiments, "PROCESSES", processes)
+    before = {name: os.environ.get(name) for name in measure.THREADS}
+    assert experiments.along(abs, range(-3, 3), "numbers") == [3, 2, 1, 0, 1, 2]
+    assert {name: os.environ.get(name) for name in measure.THREADS} == before
+
+
+def test_work_that_fails_in_another_process_fails_here(monkeypatch):
+    monkeypatch.setattr(experiments, "PROCESSES", 2)
+    with pytest.raises(ValueError, match="math domain|nonnegative"):
+        experiments.along(math.sqrt, [1.0, -1.0, 4.0], "roots")
+
+
+def test_data_are_read_from_the_folder_that_is_named_first(tmp_path):
+    (tmp_path / "crf_curves").mkdir()
+    assert experiments.real(tmp_path, "crf_curves") == tmp_path / "crf_curves"
+    with pytest.raises(Skipped, match="no nothing"):
+        experiments.real(tmp_path, "nothing")
 
 
 def test_everyone_runs_once_to_warm_up_and_once_in_each_of_at_least_five_rounds(monkeypatch):

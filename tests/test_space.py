@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from laws import photographs as shots
 
 from hdrlab.capture import camera, responses
+from hdrlab.core.errors import response_rmse
 from hdrlab.io.emor import read_curves, read_emor
 from hdrlab.response import families, space
 
@@ -13,7 +15,7 @@ POWERS = np.stack([X**gamma for gamma in np.arange(0.3, 1.01, 0.05)])
 
 @pytest.fixture(scope="module")
 def papers():
-    return pytest.importorskip("benchmarks.papers_space")
+    return pytest.importorskip("benchmarks.papers.space")
 
 
 @pytest.fixture(scope="module")
@@ -171,3 +173,12 @@ def test_five_gray_patches_and_the_prior_find_a_response_to_a_percent(papers, cu
 def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
     g = families.ln_inverses(*measured)
     assert g.shape == (201, 256) and np.all(np.isfinite(g)) and np.all(np.diff(g, axis=1) >= -1e-12)
+
+
+def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prior(measured):
+    """51 of the 201, none of them among the formulas, and of 8 bits with noise: 0.4 % is typical."""
+    errors = []
+    for g, x, m in zip(families.ln_inverses(*measured)[::4], *(one[::4] for one in measured), strict=True):
+        taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
+        errors.append(response_rmse(space.recover(taken.images, taken.times), g)[0])
+    assert np.median(errors) < 0.6 and np.percentile(errors, 95) < 2 and max(errors) < 3

@@ -1,0 +1,153 @@
+"""The experiments of Mitsunaga and Nayar 1999: random cameras, two frames of unknown ratio, Canon, flatness.
+
+error  mean of |f - truth| over the pixel levels, percent of the range
+
+Section 5: `ambiguity.trial` states how cameras, ratios, radiance and noise are drawn; a seed's 100 trials are
+drawn one after the other. The Canon's pictures are lost: its published ratios are the truth of such a trial,
+with a camera of seed 0. Flat patches are 200 x 200 pixels of brightness 0.5 with noise of 0.01.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from benchmarks.experiments import Experiment, along, at_most, near, spread
+from hdrlab.response import ambiguity, marginal, mitsunaga, polynomial, selection
+from hdrlab.response.pairs import average, moments
+
+Float = NDArray[np.float64]
+STATED = np.full(3, 0.5)
+CANON, CANON_STATED = np.array([0.419, 0.292, 0.570, 0.512]), np.array([0.5, 0.25, 0.5, 0.5])
+TRUST = 0.058  # standard deviation of ln R where R is uniform in 0.45 ... 0.55
+SEED, OTHER_SEEDS = 0, tuple(range(1, 11))
+PAPER, TURNS = "the paper's scheme, worst mean error, %", "its turns, at most"
+OURS = "ours: median, 95 %, worst, %"
+
+
+class Trials(NamedTuple):
+    """Section 5, trial by trial: errors and turns of the paper's scheme, errors of ours (if run)."""
+
+    paper: Float
+    turns: NDArray[np.intp]
+    ours: Float
+
+
+def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trials:
+    """Return the Trials of a seed [Mitsunaga99 fig. 3: at most 2.7 %, fewer than 10 turns].
+
+    Ours takes about a second a trial.
+    """
+    rng = np.random.default_rng(seed)
+    drawn = [ambiguity.trial(rng) for _ in range(trials)]
+    runs = [paper_states(one) for one in drawn]
+    paper = [ambiguity.mean_error(states[-1].c[0], one.c) for states, one in zip(runs, drawn, strict=True)]
+    better = along(marginal_error, drawn, f"seed {seed}") if ours else []
+    return Trials(np.array(paper), np.array([len(states) for states in runs]), np.array(better))
+
+
+def paper_states(one: ambiguity.Trial) -> list[mitsunaga.State]:
+    """Return the paper's scheme, turn by turn, from ratios of 0.5."""
+    return list(mitsunaga.fit_steps(moments(average(one.Z)[None]), STATED, 5))
+
+
+def marginal_error(one: ambiguity.Trial) -> float:
+    """Return the error of marginal maximum likelihood, from where the paper's scheme stopped."""
+    start = paper_states(one)[-1]
+    return ambiguity.mean_error(marginal.fit(one.Z, start.c[0], start.R, stated=STATED, trust=TRUST).c, one.c)
+
+
+def figure4(*, seed: int = SEED, sigma: float = 0.0) -> ambiguity.Valley:
+    """Return the error along the ratio of two frames, truth 0.7, and what a search from 0.625 finds."""
+    return ambiguity.valley(polynomial.random(np.random.default_rng(seed)), sigma=sigma)
+
+
+def canon(*, seed: int = SEED) -> tuple[Float, Float]:
+    """Return the ratios (4,) of the Canon as the paper's scheme and ours find them, from the stated ones."""
+    one = ambiguity.trial(np.random.default_rng(seed), ratios=CANON)
+    paper = mitsunaga.fit(moments(average(one.Z)[None]), CANON_STATED, 5)
+    return paper.R, marginal.fit(one.Z, paper.c[0], paper.R).R
+
+
+def kept(t: int, *, seed: int = SEED, side: int = 200, sigma: float = 0.01) -> float:
+    """Return the percentage of flat patches that pass the test, of an average of t frames [sec. 6.1]."""
+    noise = np.random.default_rng([seed, t]).normal(0.5, sigma, (t, side, side))
+    return float(100 * selection.flat(noise, sigma=sigma)[2:-2, 2:-2].mean())
+
+
+def cameras(_: Path) -> Mapping[str, ArrayLike]:
+    """Return what 100 random cameras give."""
+    found = section5()
+    return {PAPER: found.paper.max(), TURNS: found.turns.max(), OURS: spread(found.ours)}
+
+
+def other_seeds(_: Path) -> Mapping[str, ArrayLike]:
+    """Return what ten times 100 others give: the worst seed's figures, and each seed's."""
+    each = {seed: section5(seed=seed) for seed in OTHER_SEEDS}
+    spreads = {f"seed {seed}, {OURS}": spread(found.ours) for seed, found in each.items()}
+    return {
+        f"worst seed, {PAPER}": max(found.paper.max() for found in each.values()),
+        f"worst seed, {OURS}": np.max(list(spreads.values()), axis=0),
+        "each seed, the paper's scheme, %": [found.paper.max() for found in each.values()],
+        **spreads,
+    }
+
+
+def two_frames(_: Path) -> Mapping[str, ArrayLike]:
+    """Return what figure 4 shows."""
+    found = figure4()
+    return {"ratio found": found.found, "local minima along the ratio": found.minima}
+
+
+def canon_ratios(_: Path) -> Mapping[str, ArrayLike]:
+    """Return the Canon's ratios."""
+    paper, ours = canon()
+    return {"ratios, ours": ours, "ratios, the paper's scheme": paper}
+
+
+def flatness(_: Path) -> Mapping[str, ArrayLike]:
+    """Return the test's threshold, and what share of flat patches passes."""
+    return {"threshold": selection.threshold(25, psi=0.05), "flat patches kept, %": [kept(1), kept(100)]}
+
+
+ROWS = (
+    Experiment(
+        "mitsunaga",
+        "100 random cameras of order 5, ratios of 0.45 to 0.55 stated as 0.5, noise 0.005, seed 0",
+        cameras,
+        (
+            at_most(PAPER, 2.7, published="2.7"),
+            at_most(TURNS, 9, published="< 10"),
+            at_most(OURS, 0.2, 0.7, 2.0),
+        ),
+    ),
+    Experiment(
+        "mitsunaga-seeds",
+        "the same with seeds 1 to 10",
+        other_seeds,
+        (at_most(f"worst seed, {PAPER}", 3.2), at_most(f"worst seed, {OURS}", 0.2, 0.7, 2.0)),
+    ),
+    Experiment(
+        "mitsunaga-figure4",
+        "two frames of ratio 0.7, a line search from 0.625",
+        two_frames,
+        (near("ratio found", 0.7, by=0.01, published="0.7"),),
+    ),
+    Experiment(
+        "mitsunaga-canon",
+        "the Canon's ratios as truth, stated as 0.5, 0.25, 0.5, 0.5",
+        canon_ratios,
+        (near("ratios, ours", *CANON, by=0.005, published="converges"),),
+    ),
+    Experiment(
+        "mitsunaga-flat",
+        "chi-square of 25 pixels at psi = 0.05, on one frame and on the average of 100",
+        flatness,
+        (
+            near("threshold", 36.4, by=0.05, published="36.4"),
+            near("flat patches kept, %", 95, 95, by=1, published="95"),
+        ),
+    ),
+)
