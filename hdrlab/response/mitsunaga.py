@@ -104,17 +104,23 @@ def fit(m: Moments, R: ArrayLike, order: int, **knobs: float) -> State:
     return last(fit_steps(m, R, order, **knobs))  # type: ignore[arg-type]
 
 
-def held_out(parts: Sequence[Float], R: Float, order: int) -> Float:
-    """Return the error (K,) of each part of the picture under the c of the others, rms in brightness.
+def others(parts: Sequence[Float]) -> list[Moments]:
+    """Return the Moments of all parts of the picture but one, for each of them."""
+    m = [moments(M) for M in parts]
+    return [reduce(both, m[:k] + m[k + 1 :]) for k in range(len(m))]
+
+
+def held_out(parts: Sequence[Float], R: Float, order: int, without: Sequence[Moments] | None = None) -> Float:
+    """Return the error (K,) of each part of the picture under the c of the `others`, rms in brightness.
 
     Not that of eq. 7, which is small wherever f is flat, and high orders make it so. And R stays as stated: a
     straight line explains a power law as well as the power does, with ratios of its own.
     """
-    m, found = [moments(M) for M in parts], np.zeros(len(parts))
-    for k, M in enumerate(parts):
-        c, used = coefficients(reduce(both, m[:k] + m[k + 1 :]), R, order), held(M)
-        left = [misfit(one[:, :-1], one[:, 1:], R, own) for one, own in zip(M, c, strict=True)]
-        found[k] = np.sqrt(np.mean(np.stack(left)[used] ** 2)) if used.any() else 0
+    found = np.zeros(len(parts))
+    for k, (M, m) in enumerate(zip(parts, without or others(parts), strict=True)):
+        c, used = coefficients(m, R, order), held(M)
+        left = misfit(M[..., :-1], M[..., 1:], R, c)
+        found[k] = np.sqrt(np.mean(left[used] ** 2)) if used.any() else 0
     return found
 
 
@@ -127,7 +133,8 @@ def choose_order(parts: Sequence[Float], R: ArrayLike) -> int:
     if len(parts) < 2:
         return 1
     R = np.asarray(R, dtype=np.float64)
-    errors = np.stack([held_out(parts, R, order) for order in range(1, HIGHEST + 1)])
+    without = others(parts)
+    errors = np.stack([held_out(parts, R, order, without) for order in range(1, HIGHEST + 1)])
     mean = errors.mean(axis=1)
     best = int(np.argmin(mean))
     doubt = np.std(errors[best], ddof=1) / np.sqrt(len(parts))

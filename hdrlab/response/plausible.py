@@ -34,7 +34,7 @@ INNER = (
     225,
 )  # away from shoulder and toe, where film that was scanned has a floor, and the curve a cliff
 RANKS, FEWEST = 1000, 30  # ranks, and how many of them two frames must both hold, to be compared
-ENOUGH = 2**16  # pixels of a frame, on an even grid
+ENOUGH = 2**14  # pixels of a frame, on an even grid
 
 
 def ranks(stack: Array, valid: NDArray[np.bool_] | None) -> NDArray[np.intp]:

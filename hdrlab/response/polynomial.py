@@ -13,7 +13,7 @@ eq. 3 are so alike that at N = 10 their normal equations lose all digits; these 
 """
 
 import numpy as np
-from numpy.polynomial.chebyshev import chebder, chebvander
+from numpy.polynomial.chebyshev import chebder, chebval, chebvander
 from numpy.typing import ArrayLike, NDArray
 
 Float = NDArray[np.float64]
@@ -27,17 +27,22 @@ def basis(M: ArrayLike, order: int) -> Float:
 
 
 def value(M: ArrayLike, c: ArrayLike) -> Float:
-    """Return f(M) = M + sum_n c_n b_n(M) [Mitsunaga99 eq. 3]."""
-    M, c = np.asarray(M, dtype=np.float64), np.asarray(c, dtype=np.float64)
-    return np.asarray(M + basis(M, len(c) + 1) @ c)
+    """Return f(M) = M + sum_n c_n b_n(M) [Mitsunaga99 eq. 3]; of c (C, N - 1), for the channels of M.
+
+    Examples
+    --------
+    >>> value([0, 0.5, 1], []).tolist()  # with no terms a straight line
+    [0.0, 0.5, 1.0]
+    """
+    M = np.asarray(M, dtype=np.float64)
+    return np.asarray(M + M * (1 - M) * chebval(2 * M - 1, _first(c, M), tensor=False))
 
 
 def slope(M: ArrayLike, c: ArrayLike) -> Float:
-    """Return f'(M), by the product rule."""
-    M, c = np.asarray(M, dtype=np.float64), np.asarray(c, dtype=np.float64)
-    order = len(c) + 1
-    T = _chebyshev(M, order) @ c
-    dT = 2 * _chebyshev(M, order) @ np.r_[chebder(c), 0][: len(c)] if len(c) > 1 else 0.0
+    """Return f'(M), by the product rule; of c (C, N - 1), for the channels of M (C, ...)."""
+    M = np.asarray(M, dtype=np.float64)
+    c = _first(c, M)
+    T, dT = (chebval(2 * M - 1, each, tensor=False) for each in (c, 2 * chebder(c)))
     return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)
 
 
@@ -45,6 +50,13 @@ def misfit(a: Float, b: Float, R: Float | float, c: Float) -> Float:
     """Return (f(a) - R f(b)) / sqrt(f'(a)^2 + (R f'(b))^2): what eq. 5 misses, as noise of a and b."""
     steepness = np.hypot(slope(a, c), R * slope(b, c))
     return np.asarray((value(a, c) - R * value(b, c)) / np.maximum(steepness, 1e-9))
+
+
+def _first(c: ArrayLike, M: Float) -> Float:
+    """Return c with its terms first, (n, C, 1, ...) for M (C, ...), and a term of 0 where there is none."""
+    c = np.asarray(c, dtype=np.float64)
+    c = np.moveaxis(c, -1, 0) if c.shape[-1] else np.zeros((1, *c.shape[:-1]))
+    return c.reshape(*c.shape, *(1,) * (M.ndim + 1 - c.ndim))
 
 
 def _chebyshev(M: Float, order: int) -> Float:
