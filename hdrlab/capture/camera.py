@@ -3,54 +3,38 @@
 E        radiance (H, W[, 3]) float32, any linear unit
 t        exposure time, s
 X        exposure at the sensor, float32: 1 fills the well
-N        electrons in the well, 0 to full_well
 M        brightness, 0 to 1
 Z        pixel level, 0 to 2^bits - 1
 offsets  (P, 2) int, (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference
 
-The light goes through the camera in this order, one function each:
+The light goes through the camera in this order, one function each, those of the sensor in `capture.sensor`:
 
-    E -> views -> exposure -> photons -> readout -> (hot pixels) -> response f -> grain -> quantise -> Z
+    E -> views -> falloff -> exposure -> photons -> readout -> (hot pixels) -> f -> grain -> quantise -> Z
+
+A `Sensor` puts a converter with a black level after the readout, and a Bayer mosaic before the photons.
 """
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture.responses import Curve, Response, as_response
+from hdrlab.capture.sensor import (
+    Float,
+    Seed,
+    Sensor,
+    develop,
+    exposure,
+    falloff,
+    grain,
+    photons,
+    quantise,
+    read,
+    readout,
+)
+from hdrlab.core import mosaic
 from hdrlab.core.arrays import Array, as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
-
-Float = NDArray[np.float32]
-Seed = int | np.random.Generator
-
-
-def exposure(E: Float, time: float, *, sensitivity: float = 1.0) -> Float:
-    """Return X = s E t: light, times how long it was let in, times how strongly the sensor answers."""
-    with np.errstate(over="ignore"):  # an infinite exposure fills the well like any other too long one
-        return np.float32(sensitivity) * (E * np.float32(time))
-
-
-def photons(X: Float, *, full_well: float, rng: np.random.Generator) -> Float:
-    """Return N ~ Poisson(full_well X), at most full_well: light comes in photons, and a full well spills."""
-    arriving = full_well * np.minimum(X, 4.0)  # what would fill it four times over fills it surely
-    return np.minimum(rng.poisson(arriving), full_well).astype(np.float32)
-
-
-def readout(N: Float, *, read_noise: float, rng: np.random.Generator) -> Float:
-    """Return N + Normal(0, read_noise), electrons: what the amplifier adds, in the dark too."""
-    return N + np.float32(read_noise) * rng.standard_normal(N.shape, np.float32)
-
-
-def grain(M: Array, *, gray_noise: float, bits: int, rng: np.random.Generator) -> Array:
-    """Return M + Normal(0, gray_noise) levels: noise after the response, the same at every brightness."""
-    return M + np.float32(gray_noise / (2**bits - 1)) * rng.standard_normal(M.shape, np.float32)
-
-
-def quantise(M: Array, *, bits: int = 8) -> Array:
-    """Return Z = round((2^bits - 1) M), clamped to the levels there are: uint8 or uint16."""
-    top = 2**bits - 1
-    return np.floor(np.clip(M, 0, 1) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
 def views(E: Array, offsets: ArrayLike) -> list[Array]:
@@ -115,6 +99,10 @@ def shoot(
     read_noise: float = 0.0,
     gray_noise: float = 0.0,
     hot: float = 0.0,
+    vignetting: float = 0.0,
+    sensor: Sensor | None = None,
+    bayer: bool = False,
+    white: ArrayLike = (1.0, 1.0, 1.0),
     offsets: ArrayLike | None = None,
     rng: Seed = 0,
 ) -> Bracket:
@@ -134,6 +122,10 @@ def shoot(
     gray_noise : pixel levels, standard deviation, after the response; 1 is the noise of [Cerman06 sec. 4.2]
     hot : share of the sensor's elements (pixels of a gray photograph, channels of pixels of RGB) stuck at a
         full well, the same ones in every photograph
+    vignetting : share of the light that the lens loses in the corners, 0 to 1
+    sensor : Sensor with a converter, whose full_well and read_noise count then instead of those above
+    bayer : the sensor sees one colour per pixel, R G / G B, and the others are interpolated; wants a sensor
+    white : gains (3,) of the channels, as of `sensor.balance`; want a sensor
     offsets : (P, 2) int, (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
         relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
         saw is `views(E, offsets)[j]`.
@@ -162,7 +154,14 @@ def shoot(
     moves = np.zeros((len(times), 2), int) if offsets is None else np.asarray(offsets)
     if moves.shape[:1] != times.shape:
         raise ValueError(f"expected {len(times)} offsets, one per time, got {describe(moves)}")
-    _check(bits, sensitivity, full_well, read_noise, gray_noise, hot)
+    _check(bits, sensitivity, full_well, read_noise, gray_noise, hot, vignetting)
+    if sensor is None:
+        if bayer or np.any(np.asarray(white) != 1):
+            raise ValueError(f"expected a sensor for a mosaic and white balance, got {bayer} and {white!r}")
+    elif full_well < np.inf:
+        raise ValueError("expected the well and its noise in the sensor or beside it, got both")
+    elif E.ndim == 2 and (bayer or np.any(np.asarray(white) != 1)):
+        raise ValueError(f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}")
 
     rng = np.random.default_rng(rng)
     order = np.argsort(times, kind="stable")
@@ -170,16 +169,35 @@ def shoot(
     stuck = rng.random(seen[0].shape) < hot
     images = []
     for view, time in zip(seen, times[order], strict=True):
-        X = exposure(view, time, sensitivity=sensitivity)
-        if full_well < np.inf:
+        X = exposure(_dimmed(view, vignetting), time, sensitivity=sensitivity)
+        if sensor is not None:
+            X = _through(np.where(stuck, 4, X), sensor, bayer, white, rng)
+        elif full_well < np.inf:
             X = readout(photons(X, full_well=full_well, rng=rng), read_noise=read_noise, rng=rng) / full_well
-        M = f(np.where(stuck, 1, np.clip(X, 0, 1)))
+        M = f(np.clip(X, 0, 1) if sensor is not None else np.where(stuck, 1, np.clip(X, 0, 1)))
         images.append(quantise(grain(M, gray_noise=gray_noise, bits=bits, rng=rng), bits=bits))
     return bracket(np.stack(images), times[order], linear=as_response(response) is as_response("linear"))
 
 
+def _dimmed(E: Float, vignetting: float) -> Float:
+    bright = falloff(E.shape, vignetting)
+    return E * (bright if E.ndim == 2 else bright[..., None]) if vignetting else E
+
+
+def _through(X: Float, sensor: Sensor, bayer: bool, white: ArrayLike, rng: np.random.Generator) -> Float:
+    """Return X as a sensor with a converter reports it: through its filters, digitised, developed."""
+    seen = mosaic.sample(X, mosaic.tile(mosaic.BAYER, X.shape[:2])) if bayer else X
+    return develop(read(seen, sensor, rng=rng), sensor, white=white, bayer=bayer)
+
+
 def _check(
-    bits: int, sensitivity: float, full_well: float, read_noise: float, gray_noise: float, hot: float
+    bits: int,
+    sensitivity: float,
+    full_well: float,
+    read_noise: float,
+    gray_noise: float,
+    hot: float,
+    vignetting: float,
 ) -> None:
     if bits not in (8, 16):
         raise ValueError(f"expected 8 or 16 bits, got {bits}")
@@ -188,5 +206,7 @@ def _check(
     if not (0 <= read_noise < np.inf and 0 <= gray_noise < np.inf and 0 <= hot <= 1):
         got = f"read_noise {read_noise}, gray_noise {gray_noise}, hot {hot}"
         raise ValueError(f"expected noise of at least 0 and a share of hot pixels from 0 to 1, got {got}")
+    if not 0 <= vignetting <= 1:
+        raise ValueError(f"expected a vignetting from 0 to 1, got {vignetting}")
     if read_noise > 0 and full_well == np.inf:
         raise ValueError("expected a finite full_well for read_noise, which is counted in electrons; got inf")

@@ -1,0 +1,110 @@
+"""Photon transfer: a sensor's gain and read noise, from photographs of a white wall (Janesick, 2007).
+
+Z    RAW levels   (M, 2, H, W): M exposures of an even surface, two photographs of each; the first one dark
+S    signal       (M,) levels: the mean of a pair, less that of the dark pair
+V    variance     (M,) levels^2: half the variance of the difference of a pair
+K    gain         electrons per level;  R  read noise, electrons
+
+Photons come by chance: of N electrons the variance is N. Counted in levels, N / K, it is N / K^2 = S / K, so
+
+    V = S / K + (R / K)^2 + 1 / 12
+
+is a straight line, whose slope is 1 / K, and the dark pair lies where it begins. The difference of two
+photographs is taken because dust, vignetting and unlike pixels are the same in both: they cancel.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, describe
+
+Float = NDArray[np.float64]
+
+ROUNDING = 1 / 12  # levels^2, the variance that rounding to whole levels adds
+SAFE = 0.8  # of the highest signal: above it the well may have begun to cut the noise off
+
+
+class Transfer(NamedTuple):
+    """A sensor, from its own noise.
+
+    Attributes
+    ----------
+    gain : K, electrons per level
+    read_noise : R, electrons
+    black : level of no light
+    full_well : electrons at the highest signal that was seen; the well, where the brightest pair is full
+    S, V : (M,) levels and levels^2, the photon transfer curve
+    used : (M,) bool, the pairs that the line was drawn through
+    """
+
+    gain: float
+    read_noise: float
+    black: float
+    full_well: float
+    S: Float
+    V: Float
+    used: NDArray[np.bool_]
+
+
+def variance(pair: Array) -> float:
+    """Return V = var(Z_1 - Z_2) / 2 of two photographs (2, H, W): of their noise, and of nothing else."""
+    return float((pair[0].astype(np.float64) - pair[1]).var() / 2)
+
+
+def line(S: Float, V: Float) -> float:
+    """Return the slope 1 / K of V - V_0 = S / K, V_0 that of the dark pair, by weighted least squares.
+
+    A variance of n pixels errs by V sqrt(2 / n), so the weights are 1 / V^2; the first pair is the dark one.
+    """
+    w = 1 / np.maximum(V, ROUNDING) ** 2
+    return float((w * S * (V - V[0])).sum() / (w * S**2).sum())
+
+
+def calibrate(Z: ArrayLike) -> Transfer:
+    """Calibrate a sensor by photon transfer.
+
+    Parameters
+    ----------
+    Z : (M, 2, H, W) RAW levels, whole numbers, from dark to bright: Z[0] with the lens cap on, the others of
+        an evenly lit surface. At least two brighter pairs; ten that go up to a full well tell that as well.
+        Of a sensor with filters, the pixels of one colour.
+
+    Returns
+    -------
+    transfer : Transfer
+
+    Raises
+    ------
+    ValueError
+        For levels that are no pairs, or fewer than two lit pairs below the full ones, or no noise to read.
+
+    References
+    ----------
+    Janesick, Photon Transfer: DN -> lambda, SPIE Press 2007.
+
+    Examples
+    --------
+    >>> rng = np.random.default_rng(0)
+    >>> N = np.array([0, 500, 1000, 2000, 4000])[:, None, None, None] * np.ones((5, 2, 64, 64))
+    >>> Z = np.round((rng.poisson(N) + rng.normal(0, 6, N.shape)) / 2 + 100).astype(np.uint16)
+    >>> found = calibrate(Z)
+    >>> round(found.gain, 1), round(found.read_noise), round(found.black)
+    (2.0, 6, 100)
+    """
+    Z = np.asarray(Z)
+    if Z.ndim != 4 or Z.shape[1] != 2 or Z.dtype.kind not in "iu" or len(Z) < 3 or Z[0, 0].size < 100:
+        raise ValueError(f"expected levels (M, 2, H, W), a dark pair and two more or more, got {describe(Z)}")
+    mean = Z.mean(axis=(1, 2, 3))
+    S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
+    used = (S <= SAFE * S.max()) & (S >= 0)
+    if used.sum() < 3 or not S.max() > 0:
+        raise ValueError(
+            f"expected two pairs between the dark and the brightest, got signals {S.round(1).tolist()}"
+        )
+    slope = line(S[used], V[used])
+    if not slope > 0:
+        raise ValueError("expected noise that grows with the light, as of RAW levels; got one that does not")
+    R = np.sqrt(max(V[0] - ROUNDING, 0)) / slope
+    return Transfer(1 / slope, float(R), float(mean[0]), float(S.max() / slope), S, V, used)

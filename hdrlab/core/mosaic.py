@@ -1,0 +1,65 @@
+"""Mosaics: a sensor has one filter per pixel, and what it did not see its neighbours tell (Bayer, 1976).
+
+E    light      (H, W, 3), what falls on the sensor
+c    channel    (H, W) int, 0 to 2: the colour of each pixel's filter
+X    mosaic     (H, W), X = E_c: what the sensor sees
+E^   the picture (H, W, 3) again, each channel a weighted mean of the nearest pixels that saw it
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import correlate
+
+from hdrlab.core.arrays import Array, describe
+
+BAYER = np.array([[0, 1], [1, 2]])  # R G / G B
+TENT = np.array([[1.0, 2, 1], [2, 4, 2], [1, 2, 1]]) / 4  # falls to 0 at a distance of two pixels
+
+
+def tile(pattern: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return a pattern (h, w) repeated over a sensor of shape (H, W).
+
+    Examples
+    --------
+    >>> tile(BAYER, (2, 4)).tolist()
+    [[0, 1, 0, 1], [1, 2, 1, 2]]
+    """
+    p = np.asarray(pattern)
+    if p.ndim != 2 or 0 in p.shape or len(shape) != 2 or min(shape) < 1:
+        raise ValueError(f"expected a pattern (h, w) and a shape (H, W), got {p.shape} and {shape}")
+    return np.tile(p, [-(-n // m) for n, m in zip(shape, p.shape, strict=True)])[: shape[0], : shape[1]]
+
+
+def sample(E: ArrayLike, c: ArrayLike) -> Array:
+    """Return X = E_c, the mosaic (H, W) of a picture (H, W, 3): of each pixel the channel of its filter."""
+    E, c = np.asarray(E), as_channels(c, np.shape(E)[:2])
+    if E.ndim != 3 or E.shape[2] != 3:
+        raise ValueError(f"expected a picture (H, W, 3), got {describe(E)}")
+    return np.take_along_axis(E, c[..., None], axis=-1)[..., 0]
+
+
+def as_channels(c: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.intp]:
+    """Return the channels (H, W) of a sensor's pixels, 0 to 2, or raise a ValueError."""
+    channels = np.asarray(c)
+    if channels.shape != tuple(shape) or not np.all(np.isin(channels, (0, 1, 2))):
+        raise ValueError(f"expected channels 0 to 2 of shape {tuple(shape)}, got {describe(channels)}")
+    return channels.astype(np.intp)
+
+
+def demosaic(X: ArrayLike, c: ArrayLike) -> NDArray[np.floating[Any]]:
+    """Return E^ (H, W, 3) of a Bayer mosaic: of a channel that a pixel did not see the mean beside it.
+
+    Each channel is X where its filter is, and T (m X) / T m elsewhere, with m 1 where its filter is and T the
+    tent. Inside a Bayer picture this is bilinear interpolation, and at the picture's edge the mean of the
+    neighbours there are. Edges get coloured seams, for the channels are sampled in different places.
+    """
+    X, c = np.asarray(X), as_channels(c, np.shape(X))
+    X = X.astype(np.result_type(X, np.float32), copy=False)
+    return np.stack([np.where(c == k, X, _beside(X, (c == k).astype(X.dtype))) for k in range(3)], axis=-1)
+
+
+def _beside(X: Array, m: Array) -> Array:
+    around = correlate(m, TENT, mode="constant")
+    return correlate(X * m, TENT, mode="constant") / np.maximum(around, 1e-9)
