@@ -198,7 +198,7 @@ def portrait(dark):
     return Z, face, elsewhere
 
 
-FOUND = {  # (way, dark): recall in the face, and share of hair, flag, rocket and wall taken for skin
+FOUND = {  # (way, dark): recall in the face, and share of flag, rocket and wall taken for skin
     ("chrominance", False): (0.76, 0.02),
     ("chrominance", True): (0.91, 0.01),
     ("locus", False): (0.94, 0.11),

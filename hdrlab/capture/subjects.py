@@ -59,7 +59,7 @@ def backlight(shape: tuple[int, int] = SHAPE) -> Subject:
     """
     x, y, pixel = _plane(shape)
     shade = 500.0
-    sky = cover(rgb(1500, 2600, 4500), np.exp(np.minimum(-np.abs(y + 0.2), 0) / 0.35), rgb(8000, 5600, 3500))
+    sky = cover(rgb(1500, 2600, 4500), np.exp(np.minimum(-np.abs(y + 0.2), 0) / 0.35), rgb(7000, 6400, 5600))
     hills = within(-0.18 + 0.04 * np.sin(5 * x + 1) + 0.015 * np.sin(13 * x) - y, 2 * pixel)
     E = cover(sky, hills, rgb(700, 620, 700) * (0.6 + _texels("grass", x, y, pixel)))
     u, v = 0.44 + 0.45 * x / 1.0, 0.22 - 0.45 * (y - 0.03)  # the face stands in the middle of the picture

@@ -106,7 +106,13 @@ def by_chrominance(Z: ArrayLike, skin: Skin | None = None, *, reach: float = REA
 
 
 def by_locus(Z: ArrayLike) -> NDArray[np.bool_]:
-    """Return the pixels (...) between the parabolas of the skin locus, white left out [Soriano03 sec. 3]."""
+    """Return the pixels (...) between the parabolas of the skin locus, white left out [Soriano03].
+
+    Examples
+    --------
+    >>> by_locus(np.array([[224, 172, 105], [60, 90, 200]])).tolist()  # skin, and a blue cloth
+    [True, False]
+    """
     Z = np.asarray(Z, np.float64)
     total = np.maximum(Z.sum(axis=-1), 1)
     r, g = Z[..., 0] / total, Z[..., 1] / total

@@ -1,0 +1,1 @@
+"""Beyond one shot after another: other cameras, other brackets, one paper per module."""

@@ -1,0 +1,176 @@
+"""Assorted pixels: a mosaic of exposures on one sensor (Nayar and Mitsunaga 2000; Narasimhan and Nayar 2005).
+
+E      radiance        (H, W) or (H, W, 3), in the unit that fills a pixel of transparency 1
+e      transparency    (H, W), 0 to 1, of the little filter before each pixel
+c      channel         (H, W) int, 0 to 2: the colour of each pixel; None on a gray sensor
+X      exposure        (H, W), X = e E_c; a pixel is full at 1
+Z      level           (H, W) uint8 or uint16
+w      weight          (H, W), 1 / variance of Z / e; 0 where a pixel is full
+E^     what comes back: (G w Z / e) / (G w), G a Gaussian: a mean of the neighbours that know something
+
+One photograph holds what a bracket would, and pays with sharpness: where the light is strong only the dark
+filters tell, where it is weak only the clear ones. The range grows by log10(max e / min e) decades at the
+bright end, and loses a quarter of a decade at the dark one, where every fourth pixel has to do for all.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.core.arrays import Array, as_radiance, describe, levels
+from hdrlab.core.mosaic import BAYER, as_channels, sample
+
+Float = NDArray[np.float64]
+
+FOUR = np.array([[1.0, 1 / 4], [1 / 64, 1 / 16]])  # four exposures, two stops apart, in a square
+FULL = 0.995  # of the highest level: from here a pixel may have been full
+
+
+def colours_and_exposures(exposures: ArrayLike = FOUR[0]) -> tuple[Array, Array]:
+    """Return patterns (4, 4) of channels and transparencies: Bayer cells, clear and dark in turn.
+
+    Each colour is seen through each filter, at the same number of pixels.
+    """
+    clear, dark = np.asarray(exposures, np.float64)
+    cells = np.array([[clear, dark], [dark, clear]])
+    return np.tile(BAYER, (2, 2)), np.kron(cells, np.ones((2, 2)))
+
+
+def gained(e: ArrayLike) -> float:
+    """Return log10(max e / min e), the decades that the mosaic adds to those of one pixel."""
+    e = np.asarray(e, np.float64)
+    return float(np.log10(e.max() / e.min()))
+
+
+def shoot(
+    E: ArrayLike,
+    e: ArrayLike,
+    c: ArrayLike | None = None,
+    *,
+    full_well: float = np.inf,
+    read_noise: float = 0.0,
+    bits: int = 8,
+    rng: int | np.random.Generator = 0,
+) -> Array:
+    """Take one photograph through the filters: X = e E_c with photon and read noise, in levels.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3) radiance, 1 fills a clear pixel
+    e : (H, W) transparencies
+    c : (H, W) channels of an RGB scene
+    full_well, read_noise : electrons
+    bits : 8 or 16
+    rng : seed, or a generator, which is advanced
+
+    Returns
+    -------
+    Z : (H, W) uint8 or uint16
+
+    Raises
+    ------
+    ValueError
+        For radiance, transparencies or channels that do not fit together.
+    """
+    E, e = as_radiance(E), _transparency(e, np.shape(E)[:2])
+    if (c is None) != (E.ndim == 2) or bits not in (8, 16):
+        raise ValueError(f"expected channels for RGB alone, and 8 or 16 bits, got {describe(E)} and {bits}")
+    if not (full_well > 0 and 0 <= read_noise < np.inf):
+        raise ValueError(
+            f"expected a positive well and noise of at least 0, got {full_well} and {read_noise}"
+        )
+    light = E if c is None else sample(E, c)
+    X = np.minimum(e * light, 4.0)
+    rng = np.random.default_rng(rng)
+    if full_well < np.inf:
+        N = np.minimum(rng.poisson(full_well * X), full_well) + rng.normal(0, read_noise, X.shape)
+        X = N / full_well
+    top = 2**bits - 1
+    return np.floor(np.clip(X, 0, 1) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
+
+
+def weight(Z: Array, e: Float, *, full_well: float = np.inf, read_noise: float = 0.0) -> Float:
+    """Return w = 1 / var(Z / e) = e^2 / (X / well + (read / well)^2 + 1 / (12 top^2)); 0 for a full pixel."""
+    top = levels(Z) - 1
+    X = Z / top
+    noise = X / full_well + (read_noise / full_well) ** 2 + 1 / (12 * top**2)
+    return np.where(X < FULL, e**2 / noise, 0)
+
+
+def spread(values: Float, w: Float, sigma: float) -> tuple[Float, Float]:
+    """Return (G w values) / (G w), and G w: normalised convolution."""
+    total = gaussian_filter(w, sigma)
+    return gaussian_filter(w * values, sigma) / np.maximum(total, 1e-300), total
+
+
+def reconstruct(
+    Z: ArrayLike,
+    e: ArrayLike,
+    c: ArrayLike | None = None,
+    *,
+    sigma: float = 0.5,
+    full_well: float = np.inf,
+    read_noise: float = 0.0,
+) -> Float:
+    """Reconstruct radiance from a photograph of assorted pixels.
+
+    Parameters
+    ----------
+    Z : (H, W) uint8 or uint16, linear
+    e : (H, W) transparencies
+    c : (H, W) channels 0 to 2, or None for a gray sensor
+    sigma : of G, pixels: small, so that it hardly blurs where many pixels know; it reaches two pixels far
+    full_well, read_noise : electrons, for the weights
+
+    Returns
+    -------
+    E : (H, W) or (H, W, 3) float64; where no pixel in reach is below full, the least that the light can be
+
+    Raises
+    ------
+    ValueError
+        For levels, transparencies or channels that do not fit together.
+
+    References
+    ----------
+    Nayar and Mitsunaga, High dynamic range imaging: spatially varying pixel exposures, CVPR 2000.
+    Narasimhan and Nayar, Enhancing resolution along multiple imaging dimensions using assorted pixels,
+    PAMI 2005.
+
+    Examples
+    --------
+    >>> from hdrlab.core.mosaic import tile
+    >>> e = tile(FOUR, (8, 8))
+    >>> E = reconstruct(shoot(np.full((8, 8), 20.0), e), e)
+    >>> bool(np.abs(E / 20 - 1).max() < 0.02)
+    True
+    """
+    Z = np.asarray(Z)
+    if Z.ndim != 2 or Z.dtype not in (np.uint8, np.uint16) or Z.size == 0:
+        raise ValueError(f"expected levels (H, W) of uint8 or uint16, got {describe(Z)}")
+    e = _transparency(e, Z.shape)
+    w = weight(Z, e, full_well=full_well, read_noise=read_noise)
+    values = Z / (levels(Z) - 1) / e
+    if c is None:
+        return _fill(values, w, e, sigma)
+    seen = [as_channels(c, Z.shape) == k for k in range(3)]
+    return np.stack([_fill(values, w * m, e, sigma, m) for m in seen], axis=-1)
+
+
+def _fill(values: Float, w: Float, e: Float, sigma: float, seen: Array | bool = True) -> Float:
+    """Return E^ from the pixels in reach, from farther ones where none knows, at last the bound 1 / min e."""
+    E, total = spread(values, w, sigma)
+    for wider in (2 * sigma, 4 * sigma):
+        unknown = total < 1e-6 * w.max() * (e.min() / e.max()) ** 2
+        if not unknown.any() or not w.any():
+            break
+        more, more_total = spread(values, w, wider)
+        E, total = np.where(unknown, more, E), np.where(unknown, more_total, total)
+    return np.where(total > 0, E, 1 / e[np.broadcast_to(seen, e.shape)].min())
+
+
+def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> Float:
+    checked = np.asarray(e, np.float64)
+    if checked.shape != shape or not np.all((checked > 0) & (checked <= 1)):
+        raise ValueError(f"expected transparencies {shape} above 0 and at most 1, got {describe(checked)}")
+    return checked

@@ -1,0 +1,141 @@
+"""Coded exposure: a shutter that flutters keeps a moving thing sharp (Raskar et al., SIGGRAPH 2006).
+
+x      the thing, at rest       (n[, ...]): light along the way that it moves, any linear unit
+h      shutter                  (m,) of 0 and 1, closed and open; the thing moves a pixel per chop
+y      what the sensor gets     (n + m - 1[, ...]): y = h * x / m, the light of the chops that were open
+A      the same as a matrix     (n + m - 1, n), each column h / m, a row lower than the one before
+H      its transfer             |H(w)| = |sum of h_k e^(-i w k)| / m: what is left of each spatial frequency
+sigma  noise of the sensor, in the unit of y
+
+An open shutter is a box, and a box answers some frequencies with 0: these are lost, and no computation brings
+them back. A code of open and shut that looks random has no such zeros. It lets half of the light in.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.linalg import solve
+
+from hdrlab.core.arrays import describe
+
+Float = NDArray[np.float64]
+
+RASKAR = np.array([int(chop) for chop in "1010000111000001010000110011110111010111001001100111"])  # 52 chops
+FREQUENCIES = 4096
+
+
+def as_code(h: ArrayLike) -> Float:
+    """Return a shutter's chops (m,) as 0.0 and 1.0, at least one of them open."""
+    code = np.asarray(h, np.float64)
+    if code.ndim != 1 or not np.all((code == 0) | (code == 1)) or not code.any():
+        raise ValueError(f"expected a code of 0 and 1, one of them open, got {describe(code)}")
+    return code
+
+
+def box(m: int) -> Float:
+    """Return the shutter of an ordinary camera: open for all of its m chops."""
+    return np.ones(m)
+
+
+def transfer(h: ArrayLike, count: int = FREQUENCIES) -> Float:
+    """Return |H(w)| at `count` frequencies from 0 to pi (half a cycle per pixel)."""
+    code = as_code(h)
+    return np.asarray(np.abs(np.fft.rfft(code / len(code), 2 * (count - 1))), np.float64)
+
+
+def amplification(h: ArrayLike) -> float:
+    """Return the root mean square of 1 / |H|: how noise grows when the blur is undone; inf for a zero."""
+    H = transfer(h)
+    return float(np.sqrt(np.mean(1 / H**2))) if H.min() > 1e-12 else np.inf
+
+
+def worth(h: ArrayLike) -> float:
+    """Return how many pictures of one chop, averaged, are as clean as one picture of this code.
+
+    The average of n of them has a noise of amplification(one) / sqrt(n), so n is the quotient squared.
+    """
+    one = np.zeros(len(as_code(h)))
+    one[0] = 1
+    return (amplification(one) / amplification(h)) ** 2
+
+
+def smear(x: ArrayLike, h: ArrayLike) -> Float:
+    """Return y = h * x / m along the first axis: each open chop adds the thing where it is by then."""
+    x, code = np.asarray(x, np.float64), as_code(h)
+    y = np.zeros((len(x) + len(code) - 1, *x.shape[1:]))
+    for k in np.flatnonzero(code):
+        y[k : k + len(x)] += x / len(code)
+    return y
+
+
+def matrix(h: ArrayLike, n: int) -> Float:
+    """Return A (n + m - 1, n), for which smear(x, h) = A x."""
+    return smear(np.eye(n), h)
+
+
+def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> Float:
+    """Return the thing at rest, by least squares: A' A x = A' (y - background).
+
+    Parameters
+    ----------
+    y : (n + m - 1[, ...]), a photograph in linear light; the thing moved down the first axis, m pixels
+    h : (m,) the shutter's chops, 0 and 1
+    background : what stands beside and behind the thing, as the sensor saw it; the thing hides none of it
+
+    Returns
+    -------
+    x : (n[, ...]) float64
+
+    Raises
+    ------
+    ValueError
+        For a photograph no longer than the code, or one that is not finite.
+
+    References
+    ----------
+    Raskar, Agrawal and Tumblin, Coded exposure photography: motion deblurring using fluttered shutter,
+    SIGGRAPH 2006.
+
+    Examples
+    --------
+    >>> x = np.array([0.0, 1.0, 4.0, 2.0])
+    >>> sharpen(smear(x, [1, 0, 1, 1]), [1, 0, 1, 1]).round(6) + 0.0
+    array([0., 1., 4., 2.])
+    """
+    y, code = np.asarray(y, np.float64), as_code(h)
+    n = len(y) - len(code) + 1
+    if y.ndim < 1 or n < 1 or not np.all(np.isfinite(y)):
+        raise ValueError(f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}")
+    lit = y - background
+    A = matrix(code, n)
+    x: Float = solve(A.T @ A, A.T @ lit.reshape(len(lit), -1), assume_a="pos")
+    return x.reshape(n, *y.shape[1:])
+
+
+def expose(
+    x: ArrayLike,
+    h: ArrayLike,
+    *,
+    gain: float = 1.0,
+    sigma: float = 0.0,
+    bits: int = 8,
+    rng: int | np.random.Generator = 0,
+) -> Float:
+    """Return one photograph of the moving thing, 1 = full: smeared, noisy, clipped, rounded to levels."""
+    X: Float = gain * smear(x, h)
+    X = X + np.random.default_rng(rng).normal(0, sigma, X.shape)
+    top = 2**bits - 1
+    return np.round(np.clip(X, 0, 1) * top) / top
+
+
+def combine(photographs: ArrayLike, gains: ArrayLike) -> Float:
+    """Return y of several photographs with different gains: each pixel from those in which it is not full.
+
+    The weight is gain^2, for noise of the sensor alone; a pixel that is full in all takes the smallest gain's
+    value.
+    """
+    X, g = np.asarray(photographs, np.float64), np.asarray(gains, np.float64)
+    if X.ndim < 2 or g.shape != X.shape[:1] or not np.all(g > 0):
+        raise ValueError(f"expected photographs (P, n, ...) and P positive gains, got {describe(X)} and {g}")
+    g = g.reshape(-1, *[1] * (X.ndim - 1))
+    w = np.where((X < 0.999) | (g == g.min()), g**2, 0)
+    return (w * X / g).sum(axis=0) / w.sum(axis=0)
