@@ -2,7 +2,10 @@
 
 lecture                                where
 -------------------------------------  --------------------------------------------------------------------
-Light to numbers                       capture.camera.shoot, capture.scenes.room
+Light to numbers                       capture.camera.shoot, scenes.chapel, scenes.room
+What the sensor does, and its range    capture.sensor, capture.ranges, capture.transfer.calibrate
+Exposure, and planning a bracket       capture.exposure, capture.planning.plan
+Metering, automatic exposure           capture.metering, capture.autoexposure.expose
 Photographs in, with their exposure    io.photos.read_bracket
 Median threshold bitmaps               align.mtb.align, align.shift.shift
 The response by least squares          response.debevec.gsolve, response.debevec.recover
@@ -24,6 +27,8 @@ Photographic tone reproduction         tonemap.reinhard.tonemap
 Gradients                              tonemap.fattal.tonemap, core.poisson
 Which picture is better?               tonemap.quality.tmqi, show.contact.contact_sheet
 A picture without a radiance map       enhance.mertens.fuse
+A badly exposed photograph, and skin   enhance.battiato.correct, enhance.relight, enhance.skin
+Other cameras: pixels, shutters        beyond.assorted, beyond.flutter
 All of it in a row                     pipeline.assemble, pipeline.develop
 Steps, sliders, plots                  show.widgets.play, show.widgets.tune, show.plots
 
@@ -36,6 +41,7 @@ __version__ = "0.1.0"
 
 CHAPTERS = [
     "align",
+    "beyond",
     "capture",
     "core",
     "enhance",
@@ -43,6 +49,7 @@ CHAPTERS = [
     "pipeline",
     "radiance",
     "response",
+    "scenes",
     "show",
     "tonemap",
 ]

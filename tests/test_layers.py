@@ -13,7 +13,8 @@ CHAPTERS = ("io", "capture", "align", "response", "radiance", "tonemap", "enhanc
 BELOW = {"core": set()}  # which rooms each room may use, beside itself
 BELOW |= {chapter: {"core"} for chapter in CHAPTERS}
 BELOW["pipeline"] = {"core", *CHAPTERS}
-BELOW["show"] = BELOW["pipeline"] | {"pipeline"}
+BELOW["scenes"] = {"core", "io", "capture"}
+BELOW["show"] = BELOW["pipeline"] | {"pipeline", "scenes"}
 BELOW["course"] = BELOW["demo"] = BELOW["show"] | {"show"}
 BELOW["cli"] = BELOW["course"] | {"course", "demo"}
 BELOW["__main__"] = {"cli"}
@@ -25,8 +26,13 @@ ONLY_IN = {  # package -> rooms
     ),
     **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets", "IPython"], {"show"}),
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
+    **dict.fromkeys(["mitsuba", "drjit"], {"scenes"}),
+    **dict.fromkeys(
+        ["nbformat", "nbclient", "sphinx", "docutils", "ziamath", "latex2mathml"], {"course"}
+    ),  # the site
     "jinja2": {"show", "course"},
     "lazy_loader": {"__init__"},
+    "threadpoolctl": {"show"},
 }
 EVERYWHERE = {"numpy", "scipy", "skimage"}
 NOWHERE = {"cv2", "colour_hdri", "pytest", "hypothesis"}  # oracles and tools of the tests

@@ -114,6 +114,14 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
     ------
     ValueError
         For NaN, infinite or negative values, and with `half` for values above 65504.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "light.exr"
+    >>> write(file, [[0.25, 1e6]])
+    >>> read(file).tolist()
+    [[0.25, 1000000.0]]
     """
     E = as_radiance(E)
     if half and E.max() > LARGEST_HALF:

@@ -1,0 +1,14 @@
+"""The embedded scenes, whose radiance is known: three places rendered beforehand, and a room.
+
+scenes.chapel(), scenes.workshop(), scenes.street()   radiance (H, W, 3) of a place
+scenes.layers("street")                               its depth as well, and somebody to walk through it
+scenes.compose(layers, (dy, dx))                      the place with that visitor, here or there
+scenes.room(), scenes.decades(E)                      `hdrlab.capture.scenes`
+
+How the places were made: `hdrlab.scenes.models`, and `python -m hdrlab.scenes.render`.
+"""
+
+from hdrlab.capture.scenes import decades, room
+from hdrlab.scenes.places import PLACES, Layers, chapel, compose, layers, street, workshop
+
+__all__ = ["PLACES", "Layers", "chapel", "compose", "decades", "layers", "room", "street", "workshop"]

@@ -1,0 +1,1 @@
+"""The places as models: solids, materials and lights, in numpy alone."""

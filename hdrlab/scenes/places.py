@@ -1,0 +1,192 @@
+"""The places that travel with the package: a dark chapel, a workshop by a sunny yard, a street at night.
+
+E      radiance (H, W, 3) float32, cd/m^2, primaries of sRGB
+depth  (H, W) float32, metres from the camera along its axis
+mover  radiance (H, W, 3) of a visitor, cd/m^2, already multiplied by the mask
+mask   (H, W) float32, the share of a pixel that the visitor hides, 0 to 1
+
+They were rendered by `hdrlab.scenes.render` out of `hdrlab.scenes.models`, and are read from OpenEXR files.
+"""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.io.layers import read_layers
+
+Float = NDArray[np.float32]
+Shape = tuple[int, int]
+FOLDER = Path(__file__).parent
+PLACES = ("chapel", "workshop", "street")
+
+
+class Layers(NamedTuple):
+    """A place, and a visitor who is not in it yet.
+
+    Attributes
+    ----------
+    radiance : (H, W, 3), cd/m^2, of the place without the visitor
+    depth : (H, W), metres along the camera's axis
+    mover : (H, W, 3), cd/m^2, radiance of the visitor times `mask`
+    mask : (H, W), share of a pixel that the visitor hides or shades, 0 to 1
+    """
+
+    radiance: Float
+    depth: Float
+    mover: Float
+    mask: Float
+
+
+def chapel(shape: Shape | None = None) -> Float:
+    """Return the radiance of a dark chapel: stained glass with the sun behind it, candles, and pews.
+
+    Parameters
+    ----------
+    shape : (H, W), pixels, at most 512 x 768, which is the default; see `layers`
+
+    Returns
+    -------
+    E : (H, W, 3) float32, cd/m^2, positive everywhere
+
+    Raises
+    ------
+    ValueError
+        For a shape that is not two numbers from 1 to the size of the scene.
+
+    Examples
+    --------
+    >>> chapel((64, 96)).shape
+    (64, 96, 3)
+    """
+    return layers("chapel", shape).radiance
+
+
+def workshop(shape: Shape | None = None) -> Float:
+    """Return the radiance of a workshop: a bench and its tools, before a window on a sunny yard.
+
+    Parameters, what is returned and what is raised are those of `chapel`.
+
+    Examples
+    --------
+    >>> workshop((64, 96)).shape
+    (64, 96, 3)
+    """
+    return layers("workshop", shape).radiance
+
+
+def street(shape: Shape | None = None) -> Float:
+    """Return the radiance of a street at night: lamps, lit windows, wet stones, and an alley without a light.
+
+    Parameters, what is returned and what is raised are those of `chapel`.
+
+    Examples
+    --------
+    >>> street((64, 96)).shape
+    (64, 96, 3)
+    """
+    return layers("street", shape).radiance
+
+
+def layers(name: str, shape: Shape | None = None) -> Layers:
+    """Return a place with its depth and its visitor.
+
+    A smaller shape is averaged over areas, in linear light, as a coarser sensor behind the same lens would
+    see it. Where its sides have another ratio, two edges are cut off: pixels stay square.
+
+    Parameters
+    ----------
+    name : "chapel", "workshop" or "street"
+    shape : (H, W), pixels, at most the scene's own size, which is the default
+
+    Returns
+    -------
+    Layers, of that shape
+
+    Raises
+    ------
+    ValueError
+        For another name, or a shape that is not two numbers from 1 to the size of the scene.
+
+    Examples
+    --------
+    >>> layers("street", (64, 96)).depth.shape
+    (64, 96)
+    """
+    if name not in PLACES:
+        raise ValueError(f"expected one of {', '.join(PLACES)}, got {name!r}")
+    read = read_layers(FOLDER / f"{name}.exr")
+    visitor = read["mover"]
+    found = Layers(read["radiance"], read["depth"], visitor[..., :3], visitor[..., 3])
+    return Layers(*(resample(layer, found.depth.shape if shape is None else shape) for layer in found))
+
+
+def compose(place: Layers, offset: ArrayLike = (0, 0)) -> Float:
+    """Return E = mover + (1 - mask) radiance, the place with its visitor [Porter84 sec. 4].
+
+    Parameters
+    ----------
+    place : Layers
+    offset : (dy, dx) whole pixels, how far down and right of his place in the layer the visitor stands; what
+        leaves the frame is not seen
+
+    Returns
+    -------
+    E : (H, W, 3) float32, cd/m^2
+
+    Raises
+    ------
+    ValueError
+        For an offset that is not two whole numbers.
+
+    Examples
+    --------
+    Three photographs of a street, while somebody walks through it:
+
+    >>> from hdrlab.capture.camera import shoot
+    >>> street = layers("street", (64, 96))
+    >>> moments = [shoot(compose(street, (0, dx)), [0.1]) for dx in (-8, 0, 8)]
+
+    References
+    ----------
+    Porter and Duff, Compositing digital images, SIGGRAPH 1984.
+    """
+    move = np.asarray(offset)
+    if move.shape != (2,) or move.dtype.kind not in "iu":
+        raise ValueError(f"expected an offset (dy, dx) of whole pixels, got {describe(move)}")
+    visitor = np.dstack([place.mover, place.mask])
+    moved = np.zeros_like(visitor)
+    here, there = zip(
+        *(overlap(n, d) for n, d in zip(place.mask.shape, move.tolist(), strict=True)), strict=True
+    )
+    moved[here] = visitor[there]
+    return moved[..., :3] + (1 - moved[..., 3:]) * place.radiance
+
+
+def overlap(length: int, shift: int) -> tuple[slice, slice]:
+    """Return where along an axis a layer moved by `shift` lies in its frame, and which part of it that is."""
+    return slice(max(shift, 0), max(length + shift, 0)), slice(max(-shift, 0), max(length - shift, 0))
+
+
+def resample(layer: Float, shape: Shape) -> Float:
+    """Return the means of a layer over the areas of a coarser grid of square pixels, the largest it holds."""
+    if len(shape) != 2 or any(not 1 <= n <= full for n, full in zip(shape, layer.shape, strict=False)):
+        raise ValueError(f"expected a shape (H, W) from (1, 1) to {layer.shape[:2]}, got {shape}")
+    pixel = min(full / n for n, full in zip(shape, layer.shape, strict=False))
+    for axis, n in enumerate(shape):
+        edges = (layer.shape[axis] - n * pixel) / 2 + pixel * np.arange(n + 1)
+        layer = mean_between(layer, edges, axis)
+    return layer
+
+
+def mean_between(layer: Float, edges: NDArray[np.float64], axis: int) -> Float:
+    """Return the mean of a layer along an axis between each two edges, which may lie inside a pixel."""
+    total = np.cumsum(layer, axis=axis, dtype=np.float64)
+    total = np.concatenate([np.zeros_like(total.take([0], axis)), total], axis)
+    whole = np.minimum(edges.astype(int), layer.shape[axis] - 1)
+    share = np.expand_dims(edges - whole, [k for k in range(layer.ndim) if k != axis])
+    sums = (1 - share) * total.take(whole, axis) + share * total.take(whole + 1, axis)
+    means = np.diff(sums, axis=axis) / (edges[1] - edges[0])
+    return np.maximum(means, 0).astype(np.float32)  # where all is 0, rounding may have left less
