@@ -388,3 +388,17 @@ def test_a_brush_that_makes_no_sense_is_refused(given, message):
     given = {"E": np.ones((9, 9)), "alt": "A wall"} | given
     with pytest.raises(ValueError, match=message):
         widgets.brush(given.pop("E"), **given)
+
+
+def test_a_slider_computes_on_one_thread():
+    """Whoever starts JupyterLab without telling the linear algebra still gets an answer at once."""
+    from threadpoolctl import threadpool_info
+
+    seen = []
+
+    def f(k=1):
+        seen.extend(pool["num_threads"] for pool in threadpool_info())
+        return np.full((4, 4), k, np.uint8)
+
+    widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
+    assert seen and set(seen) == {1}

@@ -16,6 +16,7 @@ from typing import Any, TypeVar
 
 import anywidget
 import traitlets
+from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
 from hdrlab.show import again, positions
@@ -28,6 +29,7 @@ __all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "pl
 
 State = TypeVar("State")
 
+THREADS = ThreadpoolController()  # of the linear algebra that is loaded by now
 MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
 
 
@@ -171,7 +173,8 @@ def tune(
     kept = again.Kept()
 
     def picture(at: list[int]) -> bytes:
-        found = f(**positions.values(grids, at))
+        with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
+            found = f(**positions.values(grids, at))
         return again.drawn(draw, found, lambda drawn: web.jpeg(render(drawn)), kept)
 
     at = positions.start(f, grids)
