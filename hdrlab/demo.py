@@ -1,4 +1,4 @@
-"""The main job on an embedded scene: photograph a room whose radiance is known, assemble, compare.
+"""The main job on an embedded scene: photograph a chapel whose radiance is known, assemble, compare.
 
 The camera keeps its response to itself, the hand shakes, the sensor is noisy and has a few stuck pixels: all
 that a real bracket has, and the truth besides.
@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from hdrlab import pipeline
+from hdrlab import pipeline, scenes
 from hdrlab.align.shift import crop
-from hdrlab.capture import camera, responses, scenes
+from hdrlab.capture import camera, responses
 from hdrlab.core.errors import Truth
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import write_radiance
@@ -27,8 +27,8 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     """Write the demo's files into `out`, and yield a line about each step when it is done."""
     rng = np.random.default_rng(seed)
     out.mkdir(parents=True, exist_ok=True)
-    scene = scenes.room()
-    yield f"scene      a room with a window, {scenes.decades(scene):.1f} decades"
+    scene = scenes.chapel()
+    yield f"scene      a chapel with stained glass, {scenes.decades(scene):.1f} decades"
     times = camera.times_around(scene)
     shaken = camera.shake(len(times), rng=rng)
     bracket = camera.shoot(scene, times, response=RESPONSE, offsets=shaken, rng=rng, **NOISE)  # type: ignore[arg-type]
