@@ -34,6 +34,19 @@ def test_examples_run(name, monkeypatch, tmp_path):
     assert failed == 0
 
 
+ALGORITHMS = ("align", "beyond", "capture", "core", "enhance", "radiance", "response", "tonemap")
+PARTS = {  # of something with examples: of the procedural room, and of merging
+    *(f"hdrlab.capture.{name}" for name in ("garden", "interior", "subjects")),
+    "hdrlab.radiance.blocks",
+}
+
+
+@pytest.mark.parametrize("name", [name for name in MODULES if name.split(".")[1] in ALGORITHMS])
+def test_every_module_with_an_algorithm_has_an_example(name):
+    if name.count(".") > 1 and name not in PARTS:
+        assert "    >>> " in source(name)
+
+
 @pytest.mark.parametrize("name", MODULES)
 def test_every_module_and_public_function_is_explained(name):
     tree = ast.parse(source(name))

@@ -56,7 +56,15 @@ def overlap(fixed: Words, moving: Words, dy: int) -> tuple[Words, Words]:
 
 
 def disagreement(fixed: Words, moved: Words) -> Counts:
-    """Return how many bits differ and how many are compared: XOR, AND with both exclusions, bit count."""
+    """Return how many bits differ and how many are compared: XOR, AND with both exclusions, bit count.
+
+    Examples
+    --------
+    >>> everywhere = pack(np.ones((1, 4), bool))
+    >>> fixed, moved = (np.stack([pack(mask), everywhere]) for mask in ([[1, 1, 0, 0]], [[1, 0, 0, 0]]))
+    >>> disagreement(fixed, moved).tolist()  # of 4 pixels one differs
+    [1, 4]
+    """
     compared = fixed[1] & moved[1]
     return np.array([count((fixed[0] ^ moved[0]) & compared), count(compared)])
 

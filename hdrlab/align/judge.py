@@ -43,7 +43,15 @@ def quarters(bits: Words) -> list[Words]:
 
 
 def confidence(far: Counts) -> float:
-    """Return 1 - error / the mean error 8 pixels around: 1 is a perfect match, 0 no better than elsewhere."""
+    """Return 1 - error / the mean error 8 pixels around: 1 is a perfect match, 0 no better than elsewhere.
+
+    Examples
+    --------
+    >>> found = np.full((3, 3, 2), [40, 100])
+    >>> found[1, 1] = [4, 100]
+    >>> confidence(found)
+    0.9
+    """
     errors = error(far)
     elsewhere = (errors.sum() - errors[1, 1]) / 8
     return float(1 - errors[1, 1] / elsewhere) if elsewhere > 0 else 0.0

@@ -45,7 +45,13 @@ def blind(moving: int, fixed: int) -> Verdict:
 
 
 def by_brightness(images: Array) -> list[int]:
-    """Return the order of the images from dark to bright, judged on every eighth pixel."""
+    """Return the order of the images from dark to bright, judged on every eighth pixel.
+
+    Examples
+    --------
+    >>> by_brightness(np.array([200, 10, 90], np.uint8)[:, None, None] * np.ones((1, 16, 16), np.uint8))
+    [1, 2, 0]
+    """
     return [int(j) for j in np.argsort([image[::8, ::8].mean() for image in images], kind="stable")]
 
 

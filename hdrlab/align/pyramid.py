@@ -47,7 +47,13 @@ def gray(image: Array, *, luma: bool = False) -> Gray:
 
 
 def shrink(Y: Gray) -> Gray:
-    """Return Y at half the size: the mean of each 2 x 2 pixels, rounded."""
+    """Return Y at half the size: the mean of each 2 x 2 pixels, rounded.
+
+    Examples
+    --------
+    >>> shrink(np.array([[0, 10, 4, 4], [20, 30, 4, 4]], np.uint8)).tolist()
+    [[15, 4]]
+    """
     rows, columns = Y.shape[0] // 2 * 2, Y.shape[1] // 2 * 2
     pairs = np.add(Y[0:rows:2, :columns], Y[1:rows:2, :columns], dtype=np.uint16)
     return ((pairs[:, 0::2] + pairs[:, 1::2] + 2) >> 2).astype(np.uint8)

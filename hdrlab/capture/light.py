@@ -48,7 +48,14 @@ def from_window(P: Points, face: int, window: Box) -> Points:
 
 
 def from_globe(P: Points, face: int, centre: Points, radius: float) -> Points:
-    """Return F = cos radius^2 / |v|^2 of a bright sphere, with v the sight of its centre."""
+    """Return F = cos radius^2 / |v|^2 of a bright sphere, with v the sight of its centre.
+
+    Examples
+    --------
+    >>> lamp = np.array([[0.0], [0.0], [2.0]])
+    >>> float(from_globe(0 * lamp, 4, lamp, 0.5)[0])  # (radius / distance)^2, straight ahead
+    0.0625
+    """
     v = centre - P
     return np.maximum(facing(v, face), 0) * radius**2 / length(v) ** 3
 

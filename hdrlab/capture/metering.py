@@ -180,7 +180,13 @@ def multi_spot(B: ArrayLike, places: Sequence[At], *, share: float = 0.03) -> fl
 
 
 def optimum(EV_pre: float, B_pre: float, B_opt: float = GRAY) -> float:
-    """Return EV_opt = EV_pre + log2 B_pre - log2 B_opt [Battiato08 eq. 1.2]; right where no pixel is full."""
+    """Return EV_opt = EV_pre + log2 B_pre - log2 B_opt [Battiato08 eq. 1.2]; right where no pixel is full.
+
+    Examples
+    --------
+    >>> float(optimum(10, 0.72))  # four times too bright: two stops more of exposure value
+    12.0
+    """
     return EV_pre + np.log2(B_pre) - np.log2(B_opt)
 
 

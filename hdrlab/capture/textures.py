@@ -60,7 +60,13 @@ def look_up(name: str, u: Points, v: Points, w: Points) -> Points:
 
 
 def cover(below: Points, share: Points, above: Points | float) -> Points:
-    """Return one surface over another, of which it hides a share of 0 to 1 [Porter84 sec. 4]."""
+    """Return one surface over another, of which it hides a share of 0 to 1 [Porter84 sec. 4].
+
+    Examples
+    --------
+    >>> cover(np.array([[0.2]]), np.array([0.25]), 1.0).tolist()
+    [[0.4]]
+    """
     return below + share * (above - below)
 
 

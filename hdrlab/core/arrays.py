@@ -41,7 +41,13 @@ def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
 
 
 def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.float64]:
-    """Return `times` as float64 (count,), positive, so many of them distinct, or raise a ValueError."""
+    """Return `times` as float64 (count,), positive, so many of them distinct, or raise a ValueError.
+
+    Examples
+    --------
+    >>> as_times([0.5, 1], 2).tolist()
+    [0.5, 1.0]
+    """
     checked = np.asarray(times, dtype=np.float64)
     if checked.shape != (count,):
         raise ValueError(f"expected {count} exposure times, one per image, got {describe(checked)}")

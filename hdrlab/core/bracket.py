@@ -45,6 +45,12 @@ def bracket(
     ------
     ValueError
         For images, times, names or masks that do not fit together; it says what was expected and what came.
+
+    Examples
+    --------
+    >>> dark, light = np.full((2, 3), 10, np.uint8), np.full((2, 3), 80, np.uint8)
+    >>> bracket([light, dark], [1 / 15, 1 / 120]).times.round(4).tolist()
+    [0.0083, 0.0667]
     """
     images = as_stack(images)
     times = as_times(times, len(images))

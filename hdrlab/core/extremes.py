@@ -23,7 +23,14 @@ def darkest(L: Float, *, cut: float = 1e-4) -> float:
 
 
 def brightest(L: Float, *, cut: float = 1e-4) -> float:
-    """Return the luminance that a fraction `cut` of the lit pixels lies above; 0 without light."""
+    """Return the luminance that a fraction `cut` of the lit pixels lies above; 0 without light.
+
+    Examples
+    --------
+    >>> L = np.append(np.linspace(1, 2, 999), 1e6).astype(np.float32)  # one hot pixel
+    >>> round(brightest(L), 2)
+    2.0
+    """
     return _ranked(lit(L), cut, from_top=True)
 
 

@@ -51,7 +51,13 @@ def gray(picture: ArrayLike) -> Float:
 
 
 def statistics(picture: ArrayLike) -> Statistics:
-    """Return plain figures of a picture (H, W) or (H, W, 3) uint8; a ValueError for anything else."""
+    """Return plain figures of a picture (H, W) or (H, W, 3) uint8; a ValueError for anything else.
+
+    Examples
+    --------
+    >>> statistics(np.array([[0, 0, 128, 255]], np.uint8)).black
+    0.5
+    """
     picture = as_picture(picture)
     y = gray(picture)
     channels = picture.reshape(*picture.shape[:2], -1)

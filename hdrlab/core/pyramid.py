@@ -85,7 +85,14 @@ def laplacian(image: ArrayLike, levels: int) -> list[Float]:
 
 
 def collapsed(pyramid: Sequence[Float]) -> Float:
-    """Return g_0 by g_k = L_k + enlarged(g_(k+1)), coarse to fine: `laplacian` undone [Burt83 eq. 4]."""
+    """Return g_0 by g_k = L_k + enlarged(g_(k+1)), coarse to fine: `laplacian` undone [Burt83 eq. 4].
+
+    Examples
+    --------
+    >>> image = np.random.default_rng(0).random((5, 6), np.float32)
+    >>> bool(np.allclose(collapsed(laplacian(image, 3)), image))
+    True
+    """
     image = pyramid[-1]
     for detail in reversed(pyramid[:-1]):
         coarse, image = image, np.empty_like(detail)

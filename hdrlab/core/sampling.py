@@ -27,7 +27,13 @@ def to_256(images: Array) -> NDArray[np.uint8]:
 
 
 def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Samples:
-    """Return Z (N, P[, 3]): the level at rank (i + 1/2) / N of each frame's histogram, channel by channel."""
+    """Return Z (N, P[, 3]): the level at rank (i + 1/2) / N of each frame's histogram, channel by channel.
+
+    Examples
+    --------
+    >>> by_rank(np.arange(8, dtype=np.uint8).reshape(1, 2, 4), 4).ravel().tolist()
+    [1, 3, 5, 7]
+    """
     stack = as_stack(images)
     step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     pixels = to_256(stack[:, ::step, ::step])

@@ -8,7 +8,13 @@ State = TypeVar("State")
 
 
 def last(states: Iterable[State]) -> State:
-    """Return the last of `states`, which is what an iterating verb answers."""
+    """Return the last of `states`, which is what an iterating verb answers.
+
+    Examples
+    --------
+    >>> last(x * x for x in range(4))
+    9
+    """
     kept = deque(states, maxlen=1)
     if not kept:
         raise ValueError("expected at least one state, got none")

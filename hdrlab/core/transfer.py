@@ -41,6 +41,11 @@ def mid_step(h_A: ArrayLike, h_B: ArrayLike) -> Float:
 
     NaN where that is on B's lowest or highest step: these have no outer edge, as they hold all that is
     darker or brighter. NaN, too, for levels below or above all of A's pixels, which have no rank.
+
+    Examples
+    --------
+    >>> float(mid_step([1, 2, 1, 0], [0, 1, 2, 1])[1])
+    2.0
     """
     H_A, H_B = _shares(h_A, h_B)
     middle = H_A - np.diff(H_A, prepend=0) / 2

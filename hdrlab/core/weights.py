@@ -14,7 +14,13 @@ Table = NDArray[np.float64]
 
 
 def hat(n: int = 256) -> Table:
-    """Return w(z) = z below the middle, n - 1 - z above it [Debevec97 eq. 4], scaled to 1 in the middle."""
+    """Return w(z) = z below the middle, n - 1 - z above it [Debevec97 eq. 4], scaled to 1 in the middle.
+
+    Examples
+    --------
+    >>> hat()[[0, 127, 128, 255]].tolist()
+    [0.0, 1.0, 1.0, 0.0]
+    """
     z = np.arange(n)
     return np.minimum(z, n - 1 - z) / ((n - 2) // 2)
 

@@ -52,7 +52,13 @@ def offset(average: float, target: float = TARGET, *, a: float = A, c: float = C
 
 
 def curve(delta: float, *, a: float = A, c: float = C) -> Float:
-    """Return Y' = f(f^-1(Y) + delta) of the 256 levels [Battiato08 eq. 1.11]."""
+    """Return Y' = f(f^-1(Y) + delta) of the 256 levels [Battiato08 eq. 1.11].
+
+    Examples
+    --------
+    >>> curve(1.0)[[0, 64, 128, 255]].round().tolist()
+    [0.0, 90.0, 176.0, 255.0]
+    """
     return f(inverse(LEVELS, a=a, c=c) + delta, a=a, c=c)
 
 

@@ -24,6 +24,14 @@ def describe_file(path: str | Path) -> dict[str, Any]:
     ------
     ValueError
         For a file that is neither, or whose header is damaged.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "light.pfm"
+    >>> pfm.write(file, [[0.25, 1e6]])
+    >>> describe_file(file)["width"]
+    2
     """
     form = radiance.SUFFIXES.get(Path(path).suffix.lower())
     about = {rgbe: _rgbe, pfm: _pfm, exr: _exr, None: _photo}[form]

@@ -78,7 +78,13 @@ def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> l
 
 
 def positive(value: Any) -> float | None:
-    """Return a tag or a text as a number, or None where it is none, 0 (no contacts in the lens), or n/0."""
+    """Return a tag or a text as a number, or None where it is none, 0 (no contacts in the lens), or n/0.
+
+    Examples
+    --------
+    >>> positive("0.5"), positive(0)
+    (0.5, None)
+    """
     if isinstance(value, tuple | list):
         value = value[0] if value else None
     try:

@@ -80,6 +80,14 @@ def write(path: str | Path, E: ArrayLike, *, flip: bool = True) -> None:
     ------
     ValueError
         For NaN, infinite or negative values.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "light.pfm"
+    >>> write(file, [[0.25, 1e6]])
+    >>> read(file).tolist()
+    [[0.25, 1000000.0]]
     """
     E = as_radiance(E)
     if flip:

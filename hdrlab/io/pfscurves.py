@@ -98,7 +98,13 @@ def squeezed(columns: Float) -> Float:
 
 
 def ln_exposure(f: Float) -> Float:
-    """Return ln f (n, channels), with levels of no exposure on lines between those that have one."""
+    """Return ln f (n, channels), with levels of no exposure on lines between those that have one.
+
+    Examples
+    --------
+    >>> ln_exposure(np.array([[1.0], [0.0], [4.0]])).round(3).ravel().tolist()
+    [0.0, 0.693, 1.386]
+    """
     if np.any(f < 0) or not np.all(np.any(f > 0, axis=0)):
         raise ValueError(f"expected exposures that are not negative, and not all zero, got {describe(f)}")
     level = np.arange(len(f))

@@ -94,7 +94,13 @@ def to_radiance(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
 
 
 def to_pixels(E: NDArray[np.float32]) -> NDArray[np.uint8]:
-    """Return m = floor(256 E 2^(128 - e)) and e, so that the largest m is 128 or more [Ward91]."""
+    """Return m = floor(256 E 2^(128 - e)) and e, so that the largest m is 128 or more [Ward91].
+
+    Examples
+    --------
+    >>> to_pixels(np.array([[[1.0, 0.5, 0.25]]], np.float32)).tolist()
+    [[[128, 64, 32, 129]]]
+    """
     brightest = E.max(axis=-1, keepdims=True)
     _, exponent = np.frexp(brightest)
     mantissa = np.ldexp(E, 8 - exponent)

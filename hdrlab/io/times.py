@@ -57,6 +57,14 @@ def read_times(path: str | Path) -> dict[str, float]:
     ------
     ValueError
         Naming the file, the line, and what was expected there.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "times.txt"
+    >>> _ = file.write_text("night.png 0.5")
+    >>> read_times(file)
+    {'night.png': 2.0}
     """
     try:
         text = Path(path).read_text("utf-8-sig")

@@ -53,6 +53,13 @@ def stuck(shortest: Array, longest: Array) -> NDArray[np.bool_]:
 
     Its level moves by less than 1/32 of the range, and it stands out from all its eight neighbours by a
     quarter of the range: above them in the shortest frame (hot), or below them in the longest (dead).
+
+    Examples
+    --------
+    >>> shortest, longest = np.zeros((2, 3, 3, 1), np.uint8)
+    >>> shortest[1, 1] = longest[1, 1] = 250  # a hot pixel: bright in the dark, and no brighter in the light
+    >>> int(stuck(shortest, longest).sum())
+    1
     """
     quarter = (np.iinfo(shortest.dtype).max + 1) // 4
     found = np.zeros(shortest.shape[:2], bool)

@@ -80,6 +80,11 @@ def spread(medians: Float) -> float:
     """Return the map's spread in stops: standard deviation over the frames, median over levels and channels.
 
     0 means that every frame tells the same story; NaN that no level stands in two frames.
+
+    Examples
+    --------
+    >>> spread(np.zeros((3, 1, 256)))  # three frames that say the same of every level
+    0.0
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)

@@ -29,7 +29,15 @@ def likelihood(w: Float, g: Float, t: float) -> tuple[Float, Float]:
 
 
 def frame_mean(w: Float, g: Float, t: float) -> tuple[Float, Float]:
-    """Return the terms of E = sum w (X / t) / sum w [Battiato08 eq. 1.20]: the mean of all answers."""
+    """Return the terms of E = sum w (X / t) / sum w [Battiato08 eq. 1.20]: the mean of all answers.
+
+    Examples
+    --------
+    >>> w, g = np.ones(256), np.log(np.arange(1, 257) / 256)
+    >>> (a1, b1), (a2, b2) = frame_mean(w, g, 1.0), frame_mean(w, g, 2.0)
+    >>> float((a1[63] + a2[127]) / (b1[63] + b2[127]))  # a quarter in a second is a half in two
+    0.25
+    """
     return w * np.exp(g) / t, w
 
 

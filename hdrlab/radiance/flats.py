@@ -97,6 +97,12 @@ def pair_tables(Z: NDArray[np.uint8], chosen: Mask) -> NDArray[np.float64]:
 
 
 def tiles(shape: tuple[int, int], *, side: int = 6) -> Mask:
-    """Return the black squares of a chessboard over the patches, (h, w): half to fit, half to hold out."""
+    """Return the black squares of a chessboard over the patches, (h, w): half to fit, half to hold out.
+
+    Examples
+    --------
+    >>> tiles((4, 6), side=2).astype(int).tolist()
+    [[1, 1, 0, 0, 1, 1], [1, 1, 0, 0, 1, 1], [0, 0, 1, 1, 0, 0], [0, 0, 1, 1, 0, 0]]
+    """
     y, x = np.indices(shape)
     return (y // side + x // side) % 2 == 0

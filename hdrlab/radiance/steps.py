@@ -54,7 +54,13 @@ def ascending(times: ArrayLike, count: int) -> Float:
 
 
 def directions(B: Float, *, known: bool = False) -> Float:
-    """Return Q (P, K): the corrections orthogonal to 1, and where g is not known to B."""
+    """Return Q (P, K): the corrections orthogonal to 1, and where g is not known to B.
+
+    Examples
+    --------
+    >>> directions(np.log([1, 2, 4])).shape, directions(np.log([1, 2, 4]), known=True).shape
+    ((3, 1), (3, 2))
+    """
     gauge = np.ones((1, len(B))) if known else np.stack([np.ones(len(B)), B - B.mean()])
     return np.asarray(null_space(gauge, rcond=1e-9), np.float64)
 

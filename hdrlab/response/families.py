@@ -25,7 +25,13 @@ Float = NDArray[np.float64]
 
 
 def power(M: Float, gamma: float) -> Float:
-    """Return X = M^gamma."""
+    """Return X = M^gamma.
+
+    Examples
+    --------
+    >>> power(np.array([0.25, 1.0]), 2).tolist()
+    [0.0625, 1.0]
+    """
     return M**gamma
 
 

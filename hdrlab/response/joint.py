@@ -63,7 +63,13 @@ def table(Z: Array, t: Float, w: Float) -> Table:
 
 
 def in_two_exposures(z: Array, t: Float, w: Float) -> bool:
-    """Return whether a sample of z (P, N) has weight at two different times."""
+    """Return whether a sample of z (P, N) has weight at two different times.
+
+    Examples
+    --------
+    >>> in_two_exposures(np.array([[10], [80]]), np.array([1.0, 2.0]), np.ones(256))
+    True
+    """
     seen = (w > 0)[z]
     low, high = (way(np.where(seen, t[:, None], np.nan), axis=0) for way in (np.fmin.reduce, np.fmax.reduce))
     return bool(np.any(low < high))

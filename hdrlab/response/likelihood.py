@@ -87,7 +87,13 @@ def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[Float, Float, Floa
 
 
 def table(m: Float, sigma: float) -> Float:
-    """Return P(z | m) of all levels, (P, K, 256)."""
+    """Return P(z | m) of all levels, (P, K, 256).
+
+    Examples
+    --------
+    >>> int(table(np.array([[100 / 255]]), 0.01).argmax())
+    100
+    """
     return np.diff(ndtr((EDGES - m[..., None]) / sigma)) + STRAY
 
 

@@ -63,7 +63,13 @@ def average(Z: ArrayLike, count: int = 80) -> Float:
 
 
 def held(M: Float, *, low: float = 0.05, high: float = 0.98) -> NDArray[np.bool_]:
-    """Return (..., P - 1), whether both of two neighbouring frames hold a sample, between low and high."""
+    """Return (..., P - 1), whether both of two neighbouring frames hold a sample, between low and high.
+
+    Examples
+    --------
+    >>> held(np.array([0.1, 0.4, 0.99])).tolist()  # the third frame is clipped
+    [True, False]
+    """
     inside = (M > low) & (M < high)  # NaN is not
     return inside[..., :-1] & inside[..., 1:]
 

@@ -20,7 +20,13 @@ def knots(count: int) -> Float:
 
 
 def steps(m: Float, count: int) -> Float:
-    """Return S_k(m), (l, K): each rises from 0 to 1."""
+    """Return S_k(m), (l, K): each rises from 0 to 1.
+
+    Examples
+    --------
+    >>> steps(np.array([0.0, 1.0]), 5).round(3).tolist()
+    [[1.0, 0.0, 0.0, 0.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0]]
+    """
     B = BSpline.design_matrix(np.clip(m, 0, 1), knots(count), 3).toarray()
     return B[:, ::-1].cumsum(axis=1)[:, ::-1]
 
