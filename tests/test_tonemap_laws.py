@@ -22,7 +22,12 @@ VARIED = {
     "chiu": [{"headroom": 2}, {"headroom": 64, "passes": 0}, {"sigma": 3.5}, {"sigma": 30, "passes": 2}],
     "curves": [{"curve": "linear", "cut": 0}, {"curve": "gamma", "gamma": 0.5}, {"cut": 0.2}],
     "durand": [{"contrast": 1.5, "sigma_s": 8}, {"contrast": 1e4, "cut": 0}, {"sigma_s": 40, "sigma_r": 5}],
-    "fattal": [{"alpha": 0.3, "beta": 0.85}, {"beta": 1, "noise": 1}, {"black": 0, "white": 0}, {"black": 0.1}],
+    "fattal": [
+        {"alpha": 0.3, "beta": 0.85},
+        {"beta": 1, "noise": 1},
+        {"black": 0, "white": 0},
+        {"black": 0.1},
+    ],
     "reinhard": [
         {"key": 0.72, "white": 0.5},
         {"key": "auto", "white": np.inf},

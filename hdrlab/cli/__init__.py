@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import click
 
 from hdrlab import __version__
-from hdrlab.cli import curves, exposures, lessons, maps, photographs
+from hdrlab.cli import curves, exposures, lessons, maps, photographs, site
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
@@ -55,5 +55,6 @@ for command in (
     maps.compare,
     maps.convert,
     maps.info,
+    site.site,
 ):
     main.add_command(command)

@@ -46,6 +46,17 @@ def half(values: ArrayLike) -> tuple[bytes, float]:
     return (values * scale).astype("<f2").tobytes(), scale
 
 
+def pixels(encoded: bytes) -> Image:
+    """Return what `webp` or `jpeg` made of a picture, (H, W, 3).
+
+    Examples
+    --------
+    >>> pixels(webp(np.full((2, 3), 7, np.uint8), lossless=True)).shape
+    (2, 3, 3)
+    """
+    return _rgb(iio.imread(encoded)[..., :3])
+
+
 def data_uri(encoded: bytes, kind: str = "webp") -> str:
     """Return bytes as the address of a picture that travels inside the page."""
     return f"data:image/{kind};base64,{base64.b64encode(encoded).decode('ascii')}"

@@ -1,0 +1,70 @@
+"""The command that makes the course's site."""
+
+import os
+from importlib.util import find_spec
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common
+
+NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
+
+
+@click.command()
+@click.option("--out", type=common.FILE, default="site", help="Folder for the site: empty, or one of before.")
+@click.option(
+    "--notebooks",
+    metavar="FILE",
+    multiple=True,
+    type=click.Path(path_type=Path, exists=True, dir_okay=False),
+    help="Notebook to take in instead of all of the package's. Repeatable.",
+)
+@click.option(
+    "--jobs",
+    type=click.IntRange(1),
+    default=min(4, os.cpu_count() or 1),
+    help="How many notebooks run at a time.",
+)
+def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
+    """Make a site of the course: notebooks that were run, guides, and the reference.
+
+    Its pages need no server and nothing from elsewhere: open index.html, or put the folder on any web server.
+    What has been run is kept in the folder's .cache, so that the next build runs only what has changed.
+    """
+    missing = [name for name in NEEDS if find_spec(name) is None]
+    if missing:
+        raise ValueError(f'expected {", ".join(missing)}, which make the pages: pip install "hdrlab[site]"')
+    from hdrlab.course import materials
+    from hdrlab.course.site import execute, pages
+    from hdrlab.io.terminal import elapsed
+
+    chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
+    if len({one.stem for one in chosen} | {pages.FRONT.stem}) <= len(chosen):
+        raise ValueError(f"expected notebooks of different names, and none called {pages.FRONT.name}")
+    cache = pages.claim(out)
+    running = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
+    try:
+        done = list(common.progress(running, "notebooks", len(chosen) + 1))
+    except execute.NotebookError as error:
+        raise click.ClickException(str(error)) from None
+    in_order = sorted(done, key=lambda one: one.source.stem)
+    with elapsed("pages"):
+        made = pages.build(out, in_order, {"commands.md": _commands()})
+    for complaint in made.complaints:
+        click.echo(f"note: {complaint}", err=True)
+    fresh = sum(one.fresh for one in done)
+    click.echo(
+        f"{made.front}: {made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks; run now: {fresh}"
+    )
+
+
+def _commands() -> str:
+    """Return a page with the help of every command."""
+    from hdrlab import cli
+
+    text = "# Commands\n\nThe library's verbs with files around them. Each line begins with `hdrlab`.\n"
+    for name, command in cli.main.commands.items():
+        context = click.Context(command, info_name=f"hdrlab {name}", terminal_width=88, max_content_width=88)
+        text += f"\n## {name}\n\n```text\n{command.get_help(context)}\n```\n"
+    return text

@@ -1,0 +1,161 @@
+"""Notebooks are run, a few at a time, and kept: the next build runs only what has changed.
+
+What a notebook shows rests on its own cells and on the library, so both are in the key of what is kept.
+"""
+
+import asyncio
+import hashlib
+import os
+import secrets
+import shutil
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import hdrlab
+from hdrlab.io.files import replacing
+
+LIBRARY = Path(hdrlab.__file__).parent
+PATIENCE = 600  # seconds for a cell
+QUIET = ["--IPKernelApp.log_level=40"]  # errors: a kernel warns of its own connections otherwise
+
+
+class Done(NamedTuple):
+    """A notebook, where its executed copy is, and whether it was run just now."""
+
+    source: Path
+    executed: Path
+    fresh: bool
+
+
+class NotebookError(Exception):
+    """A cell of a notebook failed; says which, and how."""
+
+
+def library_key(*, course: bool = False) -> str:
+    """Return a digest of the library's files and of Python; of the course's too, or not."""
+    digest = hashlib.sha256(f"{sys.version} {np.__version__}".encode())
+    for file in sorted(LIBRARY.rglob("*")):
+        name = file.relative_to(LIBRARY)
+        if file.is_file() and file.suffix != ".pyc" and (course or name.parts[0] != "course"):
+            digest.update(name.as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()
+
+
+def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Iterator[Done]:
+    """Run notebooks, at most `jobs` at a time, and yield each when it is done; first those that are kept.
+
+    Raises
+    ------
+    NotebookError
+        For the first cell that fails. What has been run is kept nevertheless.
+    """
+    key = library_key()
+    waiting = []
+    for source in notebooks:
+        kept = cache / "executed" / f"{source.stem}-{_key(source, key)}.ipynb"
+        if kept.exists():
+            yield Done(source, kept, False)
+        else:
+            waiting.append((source, kept))
+    if waiting:
+        yield from _run_all(waiting, cache, jobs)
+
+
+def _key(source: Path, library: str) -> str:
+    return hashlib.sha256(library.encode() + source.read_bytes()).hexdigest()[:16]
+
+
+def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterator[Done]:
+    """Yield what is done. The loop stands still between two of them: their kernels do not."""
+
+    async def one(source: Path, kept: Path) -> Done:
+        async with free:
+            await _run(source, kept, cache)
+        return Done(source, kept, True)
+
+    async def any_of(
+        tasks: set[asyncio.Task[Done]],
+    ) -> tuple[set[asyncio.Task[Done]], set[asyncio.Task[Done]]]:
+        return await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
+
+    async def begin() -> set[asyncio.Task[Done]]:
+        return {asyncio.create_task(one(*each)) for each in waiting}
+
+    async def end(tasks: set[asyncio.Task[Done]]) -> None:
+        for task in tasks:
+            task.cancel()
+        await asyncio.gather(*tasks, return_exceptions=True)
+
+    free = asyncio.Semaphore(jobs)
+    with asyncio.Runner() as runner:
+        tasks = runner.run(begin())
+        try:
+            while tasks:
+                done, tasks = runner.run(any_of(tasks))
+                for task in done:
+                    yield task.result()
+        finally:  # an error, or Ctrl-C: no kernel outlives it
+            runner.run(end(tasks))
+
+
+async def _run(source: Path, kept: Path, cache: Path) -> None:
+    """Run one notebook from the top, and write it to `kept`."""
+    import nbformat
+    from nbclient import NotebookClient
+    from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+
+    notebook = nbformat.read(source, as_version=4)
+    folder = (
+        cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
+    )  # where a notebook may leave something
+    folder.mkdir(parents=True)
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    client: Any = NotebookClient(notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET)
+    client.create_kernel_manager()
+    client.km.connection_file = str(folder / "kernel.json")
+    try:
+        await client.async_start_new_kernel(cwd=str(folder), env=_environment(folder))
+        await client.async_start_new_kernel_client()
+        for index, cell in enumerate(notebook.cells):
+            try:
+                await client.async_execute_cell(cell, index)
+            except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
+                raise NotebookError(f"{source.name}, {_named(cell, index)}: {_said(error)}") from None
+        client.set_widgets_metadata()
+    finally:
+        await _end(client, folder)
+    with replacing(kept) as temporary:
+        nbformat.write(notebook, temporary)
+    for older in set(kept.parent.glob(f"{source.stem}-????????????????.ipynb")) - {kept}:
+        older.unlink()
+
+
+def _environment(folder: Path) -> dict[str, str]:
+    """Return an environment in which the kernel imports this very hdrlab, and writes nothing at home."""
+    path = os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
+    return {**os.environ, "PYTHONPATH": path, "IPYTHONDIR": str(folder / "ipython")}
+
+
+async def _end(client: Any, folder: Path) -> None:
+    try:
+        if client.km.has_kernel:
+            await client.km.shutdown_kernel(now=True)
+    finally:
+        if client.kc is not None:
+            client.kc.stop_channels()
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _named(cell: Any, index: int) -> str:
+    first = next(iter(cell.source.splitlines()), "")
+    return f"cell {index + 1} ({cell.get('id', '')!r}, {first[:60]!r})"
+
+
+def _said(error: Exception) -> str:
+    if name := getattr(error, "ename", ""):
+        return f"{name}: {getattr(error, 'evalue', '')}"
+    return str(error).strip().splitlines()[0]

@@ -1,0 +1,123 @@
+"""A notebook's widgets, taken out of it: each becomes a file of its own, which its page opens with no kernel.
+
+The page carries a picture in the widget's place, so that it is whole before its script has run, and on paper.
+The file is a script and not JSON, since a page that was opened from a folder may read no other file.
+"""
+
+import base64
+import json
+import re
+from collections.abc import Iterator
+from html import escape
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hdrlab.io import web
+from hdrlab.io.files import replacing
+
+VIEW = "application/vnd.jupyter.widget-view+json"
+STATE = "application/vnd.jupyter.widget-state+json"
+NOT_OWN = ("layout", "tabbable", "tooltip")  # traits of every widget
+PICTURES = ("frame", "frames", "picture", "pictures")  # where our widgets keep what they show
+EMBEDDED = re.compile(r'src="data:image/[a-z+]+;base64,([^"]+)"')
+
+
+class Live(NamedTuple):
+    """A widget as its page needs it: name of its files, script, style, state, and its picture."""
+
+    name: str
+    script: str
+    style: str
+    state: dict[str, Any]  # bytes as {"base64": text}
+    picture: bytes
+    alt: str
+
+    def as_script(self) -> str:
+        """Return the file that gives the widget to the page."""
+        content = {"script": self.script, "style": self.style, "state": self.state}
+        return f"hdrlab.widget({json.dumps(self.name)}, {json.dumps(content)});\n"
+
+    def as_html(self, folder: str) -> str:
+        """Return what stands on the page, where `folder` is the address of the files."""
+        height, width = web.pixels(self.picture).shape[:2]
+        return (
+            f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">'
+            f'<img src="{folder}/{self.name}{suffix(self.picture)}" alt="{escape(self.alt)}" width="{width}" '
+            f'height="{height}"></div>'
+        )
+
+
+def suffix(picture: bytes) -> str:
+    """Return .webp or .jpg, as the bytes say."""
+    return ".webp" if picture[8:12] == b"WEBP" else ".jpg"
+
+
+def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, Live]]:
+    """Yield each output of an executed notebook that shows a widget of ours, and the widget."""
+    models = notebook.metadata.get("widgets", {}).get(STATE, {}).get("state", {})
+    for number, output in enumerate(
+        output for output in _outputs(notebook) if VIEW in output.get("data", {})
+    ):
+        model = models.get(output["data"][VIEW]["model_id"])
+        if model is not None and "_esm" in model["state"]:
+            yield output, live(model, f"{name}-{number + 1}")
+
+
+def live(model: Any, name: str) -> Live:
+    """Return a widget from a notebook's record of it."""
+    record = json.loads(json.dumps(model))
+    state = record["state"]
+    for buffer in record.get("buffers", []):
+        *path, last = buffer["path"]
+        place = state
+        for step in path:
+            place = place[step]
+        place[last] = {"base64": buffer["data"]}
+    own = {key: value for key, value in state.items() if not (key.startswith("_") or key in NOT_OWN)}
+    shown = next(own[key] for key in PICTURES if key in own)
+    shown = shown[0] if isinstance(shown, list) else shown
+    alt = own["alts"][0] if "alts" in own else own["alt"]
+    return Live(name, state["_esm"], state.get("_css", ""), own, base64.b64decode(shown["base64"]), alt)
+
+
+def pictures(notebook: Any) -> Iterator[bytes]:
+    """Yield the pictures of an executed notebook that stand in its pages as HTML."""
+    for output in _outputs(notebook):
+        for found in EMBEDDED.findall("".join(output.get("data", {}).get("text/html", ""))):
+            yield base64.b64decode(found)
+
+
+def liveliest(found: list[bytes]) -> bytes | None:
+    """Return the picture that looks most like a photograph: many levels, colours, little white paper."""
+
+    def score(picture: bytes) -> float:
+        Z = web.pixels(picture).astype(np.int16)
+        shares = np.bincount(Z[..., 1].ravel(), minlength=256) / Z[..., 1].size
+        entropy = -np.sum(shares[shares > 0] * np.log2(shares[shares > 0]))
+        colour = np.mean(np.ptp(Z, axis=-1)) / 64
+        paper = np.mean((Z > 250).all(axis=-1))
+        odd = Z.shape[1] < 300 or not 1 < Z.shape[1] / Z.shape[0] < 1.9  # small, or no shape for a card
+        return float(entropy + colour - 8 * paper - 2 * odd)
+
+    return max(found, key=score, default=None)
+
+
+def write(one: Live, folder: Path) -> None:
+    """Write the files of a widget; what stands there as it should is left alone."""
+    write_changed(folder / f"{one.name}.js", one.as_script().encode())
+    write_changed(folder / f"{one.name}{suffix(one.picture)}", one.picture)
+
+
+def write_changed(path: Path, content: bytes) -> None:
+    """Write a file, unless it holds just this: so its time tells whether a page must be made again."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if not path.exists() or path.read_bytes() != content:
+        with replacing(path) as temporary:
+            temporary.write_bytes(content)
+
+
+def _outputs(notebook: Any) -> Iterator[Any]:
+    for cell in notebook.cells:
+        yield from cell.get("outputs", [])

@@ -1,0 +1,208 @@
+"""All that Sphinx reads is put in one folder, and Sphinx makes the site of it.
+
+out/           the site, which takes the place of the one before when all of it is made
+out/.cache/    what the next build need not make again: executed notebooks, sources, pages, Sphinx's notes
+"""
+
+import hashlib
+import io
+import json
+import re
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hdrlab.course.site import live, reference
+from hdrlab.course.site.execute import Done, library_key
+from hdrlab.io import web
+from hdrlab.show.figures import fit
+
+PAGES = Path(__file__).parent / "pages"
+FRONT = PAGES / "front.ipynb"  # the picture of the first page
+CACHE = ".cache"
+WIDGETS = "_widgets"  # where the pages find them
+OWN = ("notebooks", "reference", "_modules", WIDGETS)  # folders whose files are all ours
+COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
+LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
+THUMBNAIL = 480  # pixels wide
+
+
+class Site(NamedTuple):
+    """What was made: the first page, how many pages and widgets there are, and what Sphinx complained of."""
+
+    front: Path
+    pages: int
+    widgets: int
+    complaints: list[str]
+
+
+def claim(out: Path) -> Path:
+    """Return the folder for the cache in `out`, which must be empty or a site of before.
+
+    Raises
+    ------
+    ValueError
+        Where `out` holds something else: a build removes pages that are no more.
+    """
+    cache = out.resolve() / CACHE
+    if out.exists() and not out.is_dir():
+        raise ValueError(f"expected a folder to write the site to, {out} is a file")
+    if out.exists() and any(out.iterdir()) and not cache.is_dir():
+        raise ValueError(f"expected an empty folder or a site of before, {out} holds something else")
+    cache.mkdir(parents=True, exist_ok=True)
+    return cache
+
+
+def build(out: Path, done: Sequence[Done], more: Mapping[str, str]) -> Site:
+    """Make the site of executed notebooks, FRONT among them, and of more pages by name, such as commands.md.
+
+    Where nothing has changed since it was made, it is left as it is.
+    """
+    record = out / CACHE / "made.json"
+    made_of = [library_key(course=True), sorted(one.executed.name for one in done), dict(more)]
+    key = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()
+    if record.exists() and (out / "index.html").exists():
+        before = json.loads(record.read_text("utf-8"))
+        if before["key"] == key:
+            return Site(out / "index.html", *before["site"])
+    record.unlink(missing_ok=True)  # an interrupted build leaves no record
+    site = _build(out, done, more)
+    live.write_changed(record, json.dumps({"key": key, "site": site[1:]}).encode())
+    return site
+
+
+def _build(out: Path, done: Sequence[Done], more: Mapping[str, str]) -> Site:
+    source, html = out.resolve() / CACHE / "source", out.resolve() / CACHE / "html"
+    front = next(one for one in done if one.source == FRONT)
+    notebooks = {one.source.stem: _read(one) for one in done if one.source != FRONT}
+    titles = {name: _title(notebook, name) for name, notebook in notebooks.items()}
+    known = reference.modules()
+    uses = {name: reference.imported(_code(notebook), known) for name, notebook in notebooks.items()}
+    texts = dict(reference.pages(titles, uses))
+    widgets = 0
+    for name, notebook in notebooks.items():
+        texts[f"notebooks/{name}.ipynb"], count = _prepared(notebook, name, set(notebooks), html / WIDGETS)
+        widgets += count
+    hero = next(one for _, one in live.widgets(_read(front), "front"))
+    live.write(hero, html / WIDGETS)
+    texts["index.md"] = _front(hero, titles, html)
+    guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
+    texts |= {page.name: _linked(page.read_text("utf-8"), set(notebooks)) for page in guides}
+    texts |= more
+    for name, text in texts.items():
+        live.write_changed(source / name, text.encode())
+    _forget(source, set(texts))
+    complaints = _sphinx(source, html)
+    _forget_pages(html, set(texts), set(titles))
+    _publish(html, out)
+    return Site(out / "index.html", len(texts), widgets + 1, complaints)
+
+
+def _read(one: Done) -> Any:
+    import nbformat
+
+    return nbformat.read(one.executed, as_version=4)
+
+
+def _code(notebook: Any) -> list[str]:
+    return [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+
+
+def _title(notebook: Any, name: str) -> str:
+    """Return a notebook's title: its first heading, or else its name."""
+    text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
+    return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), name)
+
+
+def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
+    """Return a notebook without its widgets, which go to `folder`, and how many there are."""
+    import nbformat
+
+    found = list(live.widgets(notebook, name))
+    shown = [one.picture for _, one in found] + list(live.pictures(notebook))
+    for output, one in found:
+        live.write(one, folder)
+        output["data"] = {"text/html": one.as_html(f"../{WIDGETS}")}
+    if picture := live.liveliest(shown):
+        live.write_changed(folder / f"{name}.webp", web.webp(fit(web.pixels(picture), THUMBNAIL)))
+    notebook.metadata.pop("widgets", None)
+    notebook.metadata.setdefault("language_info", LANGUAGE)
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            cell.source = _linked(cell.source, known)
+    return nbformat.writes(notebook), len(found)
+
+
+def _linked(text: str, known: set[str]) -> str:
+    """Return Markdown in which a link to a notebook that the site lacks is plain text."""
+
+    def link(found: re.Match[str]) -> str:
+        return found[0] if found[2] in known else found[1]
+
+    return re.sub(r"\[([^\]]+)\]\((?:notebooks/)?(\w+)\.ipynb\)", link, text)
+
+
+def _front(hero: live.Live, titles: dict[str, str], html: Path) -> str:
+    """Return the first page: its words, the widget, the notebooks, and what the menu lists."""
+    cards = ""
+    for name, title in titles.items():
+        picture = f"{WIDGETS}/{name}.webp"
+        image = f'<img src="{picture}" alt="" width="480" height="320" loading="lazy">'
+        shown = image if (html / picture).exists() else ""
+        cards += f'<li><a href="notebooks/{name}.html">{shown}<span>{escape(title)}</span></a></li>\n'
+    text = (PAGES / "index.md").read_text("utf-8")
+    text = text.replace("<!-- front -->", hero.as_html(WIDGETS))
+    text = text.replace("<!-- notebooks -->", f'<ul class="cards">\n{cards}</ul>')
+    return text.replace("<!-- titles -->", "\n".join(f"notebooks/{name}" for name in titles))
+
+
+def _sphinx(source: Path, html: Path) -> list[str]:
+    """Run Sphinx, and return its complaints."""
+    from sphinx.application import Sphinx
+
+    from hdrlab.course.site.sphinx import SETTINGS
+
+    complaints = io.StringIO()
+    app = Sphinx(
+        source,
+        None,
+        html,
+        html.parent / "doctrees",
+        "html",
+        confoverrides=SETTINGS,
+        status=None,
+        warning=complaints,
+    )
+    app.build()
+    return [line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()]
+
+
+def _forget(source: Path, names: set[str]) -> None:
+    """Remove sources of pages that are no more, and what Sphinx has noted of them."""
+    for file in [one for one in source.rglob("*") if one.is_file()]:
+        if file.relative_to(source).as_posix() not in names:
+            file.unlink()
+
+
+def _forget_pages(html: Path, names: set[str], notebooks: set[str]) -> None:
+    """Remove pages and widgets that belong to nothing any more."""
+    pages = {name.rpartition(".")[0] + ".html" for name in names}
+    for folder in ("notebooks", "reference"):
+        for file in (html / folder).glob("*.html"):
+            if file.relative_to(html).as_posix() not in pages:
+                file.unlink()
+    for file in (html / WIDGETS).iterdir():
+        if re.sub(r"-\d+$", "", file.stem) not in notebooks | {"front"}:
+            file.unlink()
+
+
+def _publish(html: Path, out: Path) -> None:
+    """Bring what was made to its place, and remove from our folders there what was not."""
+    made = {file.relative_to(html) for file in html.rglob("*") if file.is_file() and file.name[0] != "."}
+    for name in sorted(made):
+        live.write_changed(out / name, (html / name).read_bytes())
+    for folder in OWN:
+        for file in [one for one in (out / folder).rglob("*") if one.is_file()]:
+            if file.relative_to(out) not in made:
+                file.unlink()

@@ -1,0 +1,76 @@
+// The widgets of a page, with no kernel: each is opened when it comes near the screen.
+// A page from a folder may load scripts but read no files, so a widget's file is a script that calls `widget`.
+(() => {
+  const places = new Map();
+  const styles = new Set();
+
+  const unpack = (value) => {
+    if (Array.isArray(value)) return value.map(unpack);
+    if (value?.base64 === undefined) return value;
+    return new DataView(Uint8Array.from(atob(value.base64), (letter) => letter.charCodeAt(0)).buffer);
+  };
+
+  // What a widget's script asks of its model: values, and who is told when one changes.
+  function modelOf(state) {
+    const listeners = {};
+    return {
+      get: (name) => state[name],
+      set: (name, value) => {
+        state[name] = value;
+        for (const listener of listeners[`change:${name}`] ?? []) listener();
+      },
+      save_changes: () => {},
+      on: (name, listener) => (listeners[name] ??= []).push(listener),
+      off: (name, listener) => (listeners[name] = (listeners[name] ?? []).filter((one) => one !== listener)),
+    };
+  }
+
+  const frame = () => new Promise(requestAnimationFrame);
+
+  async function open(place, { script, style, state }) {
+    if (!styles.has(style)) {
+      styles.add(style);
+      document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
+    }
+    const address = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
+    const { default: widget } = await import(address);
+    URL.revokeObjectURL(address);
+    const el = document.createElement("div");
+    const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value)]));
+    await widget.render({ model: modelOf(values), el });
+    for (let k = 0; k < 120 && !el.querySelector("canvas")?.getAttribute("aria-label"); k++) await frame();
+    place.replaceChildren(el); // the picture that stood here until now is what the canvas begins with
+    place.dataset.state = "open";
+  }
+
+  window.hdrlab = {
+    widget(name, content) {
+      for (const place of places.get(name) ?? [])
+        open(place, content).catch((error) => {
+          place.dataset.state = "failed";
+          console.error(error);
+        });
+    },
+  };
+
+  const near = new IntersectionObserver((entries) => {
+    for (const { isIntersecting, target } of entries) {
+      if (!isIntersecting) continue;
+      near.unobserve(target);
+      const { name, from } = target.dataset;
+      places.set(name, [...(places.get(name) ?? []), target]);
+      document.head.append(Object.assign(document.createElement("script"), { src: from }));
+    }
+  }, { rootMargin: "600px 0px" });
+
+  // What is wider than the page is scrolled, so the keyboard must reach it.
+  function reach() {
+    for (const each of document.querySelectorAll("pre, .wide, div.math"))
+      if (each.scrollWidth > each.clientWidth + 1) each.tabIndex = 0;
+      else each.removeAttribute("tabindex");
+  }
+
+  document.querySelectorAll(".live").forEach((place) => near.observe(place));
+  reach();
+  addEventListener("resize", reach);
+})();

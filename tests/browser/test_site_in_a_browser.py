@@ -1,0 +1,154 @@
+"""The course's site as a reader sees it: opened from its folder, with no kernel and no server.
+
+All notebooks are run for it, once for this file: that is most of its time.
+"""
+
+import functools
+import http.server
+import subprocess
+import sys
+import threading
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from laboratory import DIGEST
+
+NOTEBOOKS = sorted(path.stem for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
+OTHERS = [
+    *("index", "photographs", "instructors", "map", "commands"),
+    *("reference/index", "reference/tonemap", "reference/tonemap.durand", "reference/show.widgets"),
+]
+MINOR = "empty-table-header"  # the empty corner of a table with names on two sides
+PATIENCE = 60_000  # ms: a limit for errors, not for speed
+NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
+pytestmark = pytest.mark.skipif(
+    any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
+)
+
+
+@pytest.fixture(scope="module")
+def site(browser, tmp_path_factory):
+    """The site of all notebooks."""
+    folder = tmp_path_factory.mktemp("site")
+    command = [sys.executable, "-m", "hdrlab", "site", "--out", str(folder / "site"), "--jobs", "2"]
+    ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
+    assert ran.returncode == 0 and ran.stderr == "", ran.stderr
+    return folder / "site"
+
+
+@pytest.fixture
+def opened(site, page):
+    def open_(name, width=1280):
+        page.set_viewport_size({"width": width, "height": 900})
+        page.goto((site / f"{name}.html").as_uri())
+        return page
+
+    yield open_
+    assert page.problems == []
+    assert [url for url in page.requests if not url.startswith((site.as_uri(), "data:", "blob:"))] == []
+
+
+def open_widget(page, place):
+    """Scroll to a widget's place, wait until it is there instead of its picture, and return it."""
+    place.scroll_into_view_if_needed()
+    page.wait_for_function("el => el.dataset.state === 'open'", arg=place.element_handle(), timeout=PATIENCE)
+    return place.locator(".hdrlab")
+
+
+def changed_by(page, widget, move):
+    """Move a control, and wait until the picture is another."""
+    before = widget.evaluate(DIGEST)
+    move()
+    page.wait_for_function(
+        f"([el, before]) => ({DIGEST})(el) !== before",
+        arg=[widget.element_handle(), before],
+        timeout=PATIENCE,
+    )
+
+
+def move(page, widget):
+    """Move one control of a widget: a slider to its other end, or to the last of some pictures."""
+    kind = widget.get_attribute("data-kind")
+    if kind == "blink":
+        return widget.get_by_role("radio").last.check()
+    slider = widget.get_by_role("slider").first
+    at_end = slider.input_value() == slider.get_attribute("max")
+    slider.press("Home" if at_end else "End")
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_every_widget_of_a_notebook_page_answers_with_no_kernel(opened, name):
+    page = opened(f"notebooks/{name}")
+    places = page.locator(".live").all()
+    assert places, "the page shows no widget"
+    for place in places:
+        widget = open_widget(page, place)
+        changed_by(page, widget, lambda widget=widget: move(page, widget))
+
+
+def test_the_brush_follows_the_pointer_and_the_keys(opened, site):
+    found = [file.stem for file in (site / "_widgets").glob("*.js") if '"bins": ' in file.read_text("utf-8")]
+    assert found, "no notebook has a Detail Brush"
+    page = opened(f"notebooks/{found[0].rpartition('-')[0]}")
+    widget = open_widget(page, page.locator(f'[data-name="{found[0]}"]'))
+    changed_by(page, widget, lambda: widget.get_by_role("application").press("ArrowLeft"))
+    box = widget.locator("canvas").bounding_box()
+    changed_by(
+        page, widget, lambda: page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
+    )
+
+
+@pytest.mark.parametrize("name", [*(f"notebooks/{name}" for name in NOTEBOOKS), *OTHERS])
+def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(opened, axe, name):
+    page = opened(name)
+    for place in page.locator(".live").all():
+        open_widget(page, place)
+    for width in (1280, 400):
+        page.set_viewport_size({"width": width, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        found = [each for each in axe(page, "html") if not each.startswith(MINOR)]
+        assert found == [], width
+
+
+@pytest.mark.parametrize("name", ["index", "notebooks/00_welcome"])
+def test_the_menu_of_a_narrow_page_opens_and_closes_by_the_keyboard(opened, name):
+    page = opened(name, 400)
+    menu = page.get_by_role("navigation", name="All pages")
+    assert not menu.is_visible()
+    page.get_by_role("button", name="Menu").press("Enter")
+    assert menu.is_visible()
+    page.keyboard.press("Escape")
+    assert not menu.is_visible()
+
+
+def test_the_first_key_leads_past_the_menu(opened):
+    page = opened("notebooks/00_welcome")
+    page.keyboard.press("Tab")
+    page.keyboard.press("Enter")
+    assert page.evaluate("document.activeElement.id") == "main"
+
+
+def test_the_search_finds_a_page(opened):
+    page = opened("index")
+    page.get_by_role("searchbox", name="Search").fill("bilateral")
+    page.keyboard.press("Enter")
+    page.locator("#search-results li a").first.wait_for(timeout=PATIENCE)
+
+
+def test_the_site_works_from_a_server_too(site, page):
+    handler = functools.partial(_Quiet, directory=str(site))
+    with http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler) as server:
+        threading.Thread(target=server.serve_forever, daemon=True).start()
+        address = f"http://127.0.0.1:{server.server_port}"
+        page.goto(f"{address}/index.html")
+        widget = open_widget(page, page.locator(".live").first)
+        changed_by(page, widget, lambda: move(page, widget))
+        server.shutdown()
+    assert page.problems == []
+    assert [url for url in page.requests if not url.startswith((address, "data:", "blob:"))] == []
+
+
+class _Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *words):
+        pass

@@ -1,0 +1,283 @@
+"""The course's site: what `hdrlab site` makes of notebooks, and what it says of those that fail."""
+
+import json
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from html.parser import HTMLParser
+from importlib.util import find_spec
+from pathlib import Path
+
+import nbformat
+import pytest
+
+from hdrlab.course.site import live, reference
+
+NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
+pytestmark = pytest.mark.skipif(
+    any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
+)
+PATIENCE = 300  # seconds: a limit for errors, not for speed
+
+PLAYED = """import numpy as np
+from hdrlab.show import widgets
+from hdrlab.tonemap import ward
+squares = [np.full((40, 60), 50 * k, np.uint8) for k in range(5)]
+widgets.play(squares, lambda square: square, alt="A square, ever lighter")"""
+BRUSHED = """import numpy as np
+from hdrlab.show import pictures, widgets
+E = np.geomspace(1, 1e6, 320)[None] * np.ones((240, 1))
+widgets.brush(E, alt="A wedge, ever brighter", size=64)"""
+SHOWN = """pictures.radiance(E, alt="The wedge in false colour")"""
+
+
+def notebook(path, title, *cells):
+    """Write a notebook of a title, a formula, a link to the other one, and cells of code."""
+    words = (
+        f"# {title}\n\nSo $g(Z) = \\ln E$, see [one](01_one.ipynb) and [three](03_three.ipynb).\n\n$$x^2$$"
+    )
+    made = nbformat.v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
+    made.cells = [nbformat.v4.new_markdown_cell(words, id="title")]
+    made.cells += [nbformat.v4.new_code_cell(cell, id=f"cell-{k}") for k, cell in enumerate(cells)]
+    nbformat.write(made, path)
+    return path
+
+
+def command(out, *notebooks):
+    return [
+        *(sys.executable, "-m", "hdrlab", "site", "--out", str(out)),
+        *(word for one in notebooks for word in ("--notebooks", str(one))),
+    ]
+
+
+def run(out, *notebooks, folder):
+    return subprocess.run(
+        command(out, *notebooks), cwd=folder, capture_output=True, text=True, timeout=PATIENCE
+    )
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A site of two notebooks, in a folder of its own: (folder, site, the notebooks, what was said)."""
+    folder = tmp_path_factory.mktemp("site")
+    notebooks = [
+        notebook(folder / "01_one.ipynb", "01 · Steps", PLAYED),
+        notebook(folder / "02_two.ipynb", "02 · Light", BRUSHED, SHOWN),
+    ]
+    ran = run("site", *notebooks, folder=folder)
+    assert ran.returncode == 0, ran.stderr
+    return folder, folder / "site", notebooks, ran
+
+
+class Addresses(HTMLParser):
+    """What a page asks for, what it links to, and pictures without alt text."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.asked, self.links, self.silent, self.headings = [], [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attributes = dict(attrs)
+        if tag in ("img", "script", "iframe", "source", "video", "audio") and "src" in attributes:
+            self.asked.append(attributes["src"])
+        if tag == "link" and attributes["rel"] not in ("next", "prev"):
+            self.asked.append(attributes["href"])
+        if tag == "a" and "href" in attributes:
+            self.links.append(attributes["href"])
+        if tag == "img" and "alt" not in attributes:
+            self.silent.append(attrs)
+        if re.fullmatch("h[1-6]", tag):
+            self.headings.append(int(tag[1]))
+
+
+def pages(site):
+    found = [page for page in site.rglob("*.html") if ".cache" not in page.parts]
+    return {page: Addresses(page.read_text("utf-8")) for page in found}
+
+
+def test_a_site_is_made_without_a_complaint_and_writes_in_its_folder_alone(made):
+    folder, site, notebooks, ran = made
+    assert ran.stderr == ""
+    assert "3 widgets, 2 notebooks; run now: 3" in ran.stdout  # the first page has a picture to wipe
+    assert sorted(folder.iterdir()) == sorted([site, *notebooks])
+    assert not list((site / ".cache" / "kernels").iterdir())
+
+
+def test_no_page_asks_for_anything_outside_and_what_it_asks_for_is_there(made):
+    found = pages(made[1])
+    assert len(found) > 100
+    for page, addresses in found.items():
+        for address in addresses.asked:
+            if not address.startswith("data:"):
+                assert not re.match(r"\w+:|//", address), f"{page.name}: {address}"
+                assert (page.parent / address.partition("?")[0]).is_file(), f"{page.name}: {address}"
+
+
+def test_style_sheets_and_scripts_name_no_address_outside(made):
+    for file in [*(made[1] / "_static").glob("*.css"), *(made[1] / "_widgets").glob("*.js")]:
+        text = re.sub(r"/\*.*?\*/", "", file.read_text("utf-8"), flags=re.DOTALL)
+        assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
+
+
+def test_every_link_within_the_site_leads_somewhere(made):
+    found = pages(made[1])
+    for page, addresses in found.items():
+        for link in addresses.links:
+            path = link.partition("#")[0].partition("?")[0]
+            if path and not re.match(r"\w+:", path):
+                assert (page.parent / path).is_file(), f"{page.name}: {link}"
+
+
+def test_every_picture_has_alt_text_and_headings_go_down_one_by_one(made):
+    for page, addresses in pages(made[1]).items():
+        assert not addresses.silent, page.name
+        assert addresses.headings.count(1) == 1, page.name
+        steps = zip(addresses.headings, addresses.headings[1:], strict=False)
+        assert all(after - before <= 1 for before, after in steps), page.name
+
+
+def test_formulas_are_drawn_and_spoken(made):
+    text = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
+    assert text.count("<svg") == text.count("<math") == 2
+    assert "\\ln" not in text
+
+
+def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):
+    text = (made[1] / "notebooks" / "02_two.html").read_text("utf-8")
+    assert 'href="01_one.html"' in text
+    assert "and three." in text and "03_three" not in text
+
+
+def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(made):
+    links = pages(made[1])[made[1] / "map.html"].links
+    assert "reference/tonemap.ward.html#module-hdrlab.tonemap.ward" in links
+    assert "notebooks/01_one.html" in links
+    functions = [link for link in links if "#hdrlab." in link]
+    assert len(functions) > 20
+
+
+def test_a_page_of_the_reference_has_the_legend_the_parameters_and_the_source(made):
+    text = (made[1] / "reference" / "tonemap.chiu.html").read_text("utf-8")
+    assert re.search('<dl class="[^"]*legend', text)
+    for expected in ("headroom", "Parameters", "Raises", "Examples", "[source]"):
+        assert expected in text
+
+
+def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
+    page = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
+    assert 'data-from="../_widgets/01_one-1.js"' in page
+    assert 'alt="A square, ever lighter, step 1"' in page
+    text = (made[1] / "_widgets" / "01_one-1.js").read_text("utf-8")
+    name, content = json.loads("[" + text.removeprefix("hdrlab.widget(").removesuffix(");\n") + "]")
+    assert name == "01_one-1" and len(content["state"]["frames"]) == 5
+
+
+def test_what_is_unchanged_is_not_made_again_and_what_is_gone_is_removed(made, tmp_path):
+    folder, site, (one, two), _ = made
+    before = {page: page.stat().st_mtime_ns for page in pages(site)}
+    begun = time.monotonic()
+    ran = run("site", one, two, folder=folder)
+    assert "run now: 0" in ran.stdout and time.monotonic() - begun < 60
+    assert {page: page.stat().st_mtime_ns for page in pages(site)} == before
+
+    ran = run("site", one, folder=folder)
+    assert ran.returncode == 0 and "run now: 0" in ran.stdout and ran.stderr == ""
+    assert not (site / "notebooks" / "02_two.html").exists()
+    assert not list((site / "_widgets").glob("02_two*"))
+    assert (site / "notebooks" / "01_one.html").exists()
+
+
+def test_a_notebook_that_fails_is_named_with_its_cell(tmp_path):
+    bad = notebook(tmp_path / "bad.ipynb", "Bad", "x = 1", "light = x / 0")
+    ran = run(tmp_path / "site", bad, folder=tmp_path)
+    assert ran.returncode == 1
+    expected = "hdrlab: bad.ipynb, cell 3 ('cell-1', 'light = x / 0'): ZeroDivisionError: division by zero"
+    assert ran.stderr.strip().splitlines() == [expected]
+    assert not (tmp_path / "site" / "index.html").exists()
+
+
+def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(tmp_path):
+    plain = notebook(tmp_path / "plain.ipynb", "Plain", "%matplotlib inline", "1 + 1")
+    text = plain.read_text("utf-8").replace("# Plain", "Plain & simple")
+    plain.write_text(text, "utf-8")
+    ran = run("site", plain, folder=tmp_path)
+    assert ran.returncode == 0 and ran.stderr == ""
+    front = Addresses((tmp_path / "site" / "index.html").read_text("utf-8"))
+    assert "notebooks/plain.html" in front.links and "_widgets/plain.webp" not in front.asked
+
+
+def test_notebooks_of_one_name_are_refused(tmp_path):
+    (tmp_path / "more").mkdir()
+    both = [notebook(folder / "one.ipynb", "One", "1") for folder in (tmp_path, tmp_path / "more")]
+    ran = run("site", *both, folder=tmp_path)
+    assert ran.returncode == 2 and "different names" in ran.stderr
+    assert not (tmp_path / "site").exists()
+
+
+def test_a_folder_with_something_else_in_it_is_left_alone(tmp_path):
+    (tmp_path / "precious.html").write_text("mine")
+    ran = run(tmp_path, folder=tmp_path)
+    assert ran.returncode == 2 and "holds something else" in ran.stderr
+    assert [one.name for one in tmp_path.iterdir()] == ["precious.html"]
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no SIGINT to send")
+def test_ctrl_c_ends_the_kernels_and_leaves_no_half_notebook(tmp_path):
+    told = tmp_path / "kernel"
+    slow = f"import os, time\nopen({str(told)!r}, 'w').write(str(os.getpid()))\ntime.sleep(600)"
+    process = subprocess.Popen(
+        command(tmp_path / "site", notebook(tmp_path / "slow.ipynb", "Slow", slow)),
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+    try:
+        deadline = time.monotonic() + PATIENCE
+        while not (told.exists() and told.read_text()) and time.monotonic() < deadline:
+            time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        _, said = process.communicate(timeout=PATIENCE)
+    finally:
+        process.kill()
+    assert process.returncode == 130 and said.strip() == "hdrlab: interrupted"
+    assert not _alive(int(told.read_text()))
+    assert not [one.name for one in (tmp_path / "site").rglob("*.ipynb") if "slow" in one.name]
+
+
+def _alive(number):
+    try:
+        os.kill(number, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
+def test_the_words_of_a_docstring_stay_as_they_are():
+    lines = ["L   luminance   (H, W)", "    any unit", "s*  scale", "", "Then |x| * 2.", "", ">>> 2 * 3", "6"]
+    text = "\n".join(reference.laid_out(lines, module=True))
+    assert "``L``\n   luminance · (H, W)\n   any unit" in text
+    assert "Then \\|x\\| \\* 2." in text
+    assert ">>> 2 * 3\n6" in text
+
+
+def test_every_row_of_the_lecture_names_what_there_is():
+    """The map's names are modules of the library, or stand in one."""
+    import importlib
+
+    for lecture, where in reference.rows():
+        for name in reference.NAME.findall(where):
+            parts = f"hdrlab.{name}".split(".")
+            try:
+                importlib.import_module(".".join(parts))
+            except ModuleNotFoundError:
+                assert hasattr(importlib.import_module(".".join(parts[:-1])), parts[-1]), (lecture, name)
+
+
+def test_the_sources_of_the_site_travel_with_the_package():
+    folder = Path(live.__file__).parent
+    for name in ("pages/index.md", "pages/front.ipynb", "theme/layout.html", "theme/static/live.js"):
+        assert (folder / name).is_file()
