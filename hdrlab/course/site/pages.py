@@ -76,7 +76,7 @@ def _build(out: Path, done: Sequence[Done], more: Mapping[str, str]) -> Site:
     source, html = out.resolve() / CACHE / "source", out.resolve() / CACHE / "html"
     front = next(one for one in done if one.source == FRONT)
     notebooks = {one.source.stem: _read(one) for one in done if one.source != FRONT}
-    titles = {name: _title(notebook, name) for name, notebook in notebooks.items()}
+    titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
     known = reference.modules()
     uses = {name: reference.imported(_code(notebook), known) for name, notebook in notebooks.items()}
     texts = dict(reference.pages(titles, uses))
@@ -109,10 +109,10 @@ def _code(notebook: Any) -> list[str]:
     return [cell.source for cell in notebook.cells if cell.cell_type == "code"]
 
 
-def _title(notebook: Any, name: str) -> str:
-    """Return a notebook's title: its first heading, or else its name."""
+def _title(notebook: Any) -> str:
+    """Return a notebook's title, its first heading."""
     text = "\n".join(cell.source for cell in notebook.cells if cell.cell_type == "markdown")
-    return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), name)
+    return next((line[2:].strip() for line in text.splitlines() if line.startswith("# ")), "")
 
 
 def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
@@ -128,6 +128,8 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
         live.write_changed(folder / f"{name}.webp", web.webp(fit(web.pixels(picture), THUMBNAIL)))
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
+    if not _title(notebook):
+        notebook.cells.insert(0, nbformat.v4.new_markdown_cell(f"# {name}"))
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             cell.source = _linked(cell.source, known)
