@@ -392,12 +392,10 @@ def test_a_brush_that_makes_no_sense_is_refused(given, message):
 
 def test_a_slider_computes_on_one_thread():
     """Whoever starts JupyterLab without telling the linear algebra still gets an answer at once."""
-    from threadpoolctl import threadpool_info
-
     seen = []
 
     def f(k=1):
-        seen.extend(pool["num_threads"] for pool in threadpool_info())
+        seen.extend(pool["num_threads"] for pool in widgets.THREADS.info())
         return np.full((4, 4), k, np.uint8)
 
     widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
