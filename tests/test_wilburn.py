@@ -21,7 +21,7 @@ SOLVERS = {"simplex": wilburn.join, "spline": joining.join}
 
 @pytest.fixture(scope="module")
 def papers():
-    return pytest.importorskip("benchmarks.papers_wilburn")
+    return pytest.importorskip("benchmarks.papers.mixtures")
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,4 @@
-"""The table and figure 7 of Wilburn, Xu and Matsushita 2008: `papers_wilburn` states the simulated set-up.
+"""The table and figure 7 of Wilburn, Xu and Matsushita 2008: `mixtures` states the simulated set-up.
 
 Table 1 has ten sets for each of five cameras, seed 0; the 201 measured curves have one photograph each, with
 seed k. The paper's table has the means of RMSE and disparity.
@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmarks import papers_wilburn as setup
 from benchmarks.experiments import Experiment, along, at_least, at_most, listed, real, spread
+from benchmarks.papers import mixtures as setup
 from hdrlab.io.emor import read_curves
 from hdrlab.response import motion
 

@@ -1,14 +1,11 @@
 """Fixtures of `laboratory`: a browser, a page that remembers, a JupyterLab, and axe-core."""
 
-import os
-import shutil
-import subprocess
 from collections.abc import Callable, Iterator
-from pathlib import Path
+from importlib.resources import files
 from typing import Any
 
 import pytest
-from laboratory import ROOT, Absent, Lab, chromium, jupyterlab
+from laboratory import Absent, Lab, chromium, jupyterlab
 
 
 @pytest.fixture(scope="session")
@@ -48,10 +45,8 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
 @pytest.fixture(scope="session")
 def axe() -> Callable[..., list[str]]:
     """Return a function that lists what axe-core finds wrong in a part of a page, such as "#at"."""
-    file = axe_file()
-    if file is None:
-        pytest.skip("axe-core is not installed (npm install -g axe-core, or AXE_CORE=axe.min.js)")
-    script = file.read_text(encoding="utf8")
+    carrier = pytest.importorskip("axe_playwright_python", reason="axe-core is not installed")
+    script = (files(carrier) / "axe.min.js").read_text(encoding="utf8")
 
     def violations(page: Any, part: str) -> list[str]:
         page.evaluate(script)
@@ -59,15 +54,3 @@ def axe() -> Callable[..., list[str]]:
         return [f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]]
 
     return violations
-
-
-def axe_file() -> Path | None:
-    """Return the script of axe-core where it is found: as AXE_CORE says, or where npm puts it."""
-    npm = shutil.which("npm")
-    told = subprocess.run([npm, "root", "-g"], capture_output=True, text=True).stdout.strip() if npm else ""
-    folders = [folder / "node_modules" for folder in (ROOT, ROOT.parent)] + ([Path(told)] if told else [])
-    files = [
-        Path(os.environ.get("AXE_CORE", "")),
-        *(folder / "axe-core" / "axe.min.js" for folder in folders),
-    ]
-    return next((file for file in files if file.is_file()), None)

@@ -14,7 +14,7 @@ import sys
 import time
 import urllib.error
 import urllib.request
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
@@ -38,6 +38,8 @@ DIGEST = """(el) => {
     for (const pixel of new Uint32Array(data.buffer)) hash = Math.imul(hash ^ pixel, 16777619);
     return hash;
 }"""
+
+PATIENCE = 60_000  # ms until a moved control shows: a limit for errors; speed is for benchmarks
 
 # What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
 PAGE = """<!DOCTYPE html><html lang="en"><title>A widget</title><style>{css}</style>
@@ -178,6 +180,17 @@ def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
     texts = {"state": json.dumps(state), "script": json.dumps(str(widget._esm)), "css": str(widget._css)}
     page.set_content(PAGE.format(**texts))
     page.wait_for_function("document.querySelector('canvas')?.getAttribute('aria-label')", timeout=20_000)
+
+
+def changed_by(page: Any, widget: Any, move: Callable[[], object]) -> None:
+    """Move a control, and wait until the picture is another."""
+    before = widget.evaluate(DIGEST)
+    move()
+    page.wait_for_function(
+        f"([el, before]) => ({DIGEST})(el) !== before",
+        arg=[widget.element_handle(), before],
+        timeout=PATIENCE,
+    )
 
 
 def _command(port: int, token: str, folder: Path) -> list[str]:

@@ -3,12 +3,9 @@
 from pathlib import Path
 
 import pytest
-from laboratory import DIGEST
+from laboratory import PATIENCE, changed_by
 
 NOTEBOOKS = sorted(path.name for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
-PATIENCE = (
-    20_000  # ms until a moved control shows: a limit for errors, not for speed, which benchmarks measure
-)
 
 # JupyterLab's own, when it runs without its optional servers.
 NOISE = ("/lsp/status", "/api/terminals", "terminals")
@@ -25,17 +22,6 @@ def outputs_of(page):
 def until_painted(page, widget):
     page.wait_for_function(
         "el => el.querySelector('canvas')?.getAttribute('aria-label')", arg=widget.element_handle()
-    )
-
-
-def changed_by(page, widget, move):
-    """Move a control, and wait until the picture is another."""
-    before = widget.evaluate(DIGEST)
-    move()
-    page.wait_for_function(
-        f"([el, before]) => ({DIGEST})(el) !== before",
-        arg=[widget.element_handle(), before],
-        timeout=PATIENCE,
     )
 
 

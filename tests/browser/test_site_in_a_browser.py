@@ -12,7 +12,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from laboratory import DIGEST
+from laboratory import PATIENCE, changed_by
 
 NOTEBOOKS = sorted(path.stem for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 OTHERS = [
@@ -20,7 +20,6 @@ OTHERS = [
     *("reference/index", "reference/tonemap", "reference/tonemap.durand", "reference/show.widgets"),
 ]
 MINOR = "empty-table-header"  # the empty corner of a table with names on two sides
-PATIENCE = 60_000  # ms: a limit for errors, not for speed
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 pytestmark = pytest.mark.skipif(
     any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
@@ -54,17 +53,6 @@ def open_widget(page, place):
     place.scroll_into_view_if_needed()
     page.wait_for_function("el => el.dataset.state === 'open'", arg=place.element_handle(), timeout=PATIENCE)
     return place.locator(".hdrlab")
-
-
-def changed_by(page, widget, move):
-    """Move a control, and wait until the picture is another."""
-    before = widget.evaluate(DIGEST)
-    move()
-    page.wait_for_function(
-        f"([el, before]) => ({DIGEST})(el) !== before",
-        arg=[widget.element_handle(), before],
-        timeout=PATIENCE,
-    )
 
 
 def move(page, widget):
