@@ -25,15 +25,19 @@ def until_painted(page, widget):
     )
 
 
-def move_sliders(page, widget):
+def move_sliders(page, widget, settle=lambda: None):
+    """Move each slider by itself and put it back: in another mode of metering the spot's place is idle."""
     for slider in widget.get_by_role("slider").all():
-        said = slider.get_attribute("aria-valuetext")
+        said, start = slider.get_attribute("aria-valuetext"), slider.input_value()
         slider.focus()
-        back = slider.input_value() == slider.get_attribute("max")
+        back = start == slider.get_attribute("max")
         changed_by(
             page, widget, lambda back=back: [press(page, "Left" if back else "Right") for _ in range(3)]
         )
+        settle()
         assert slider.get_attribute("aria-valuetext") != said
+        changed_by(page, widget, lambda slider=slider, start=start: slider.fill(start))
+        settle()
 
 
 def press(page, arrow):
@@ -48,11 +52,15 @@ def move_play(page, widget):
 
 
 def move_tune(page, widget):
-    move_sliders(page, widget)
+    move_sliders(page, widget, lambda: until_answered(page, widget))
+
+
+def until_answered(page, widget):
+    """Wait until the last position is what stays, and is Python's own answer, not a stored one."""
     names = [label.inner_text() for label in widget.locator(".hdrlab-slider span:first-child").all()]
     texts = [slider.get_attribute("aria-valuetext") for slider in widget.get_by_role("slider").all()]
     wanted = ", ".join(f"{name} = {text}" for name, text in zip(names, texts, strict=True))
-    page.wait_for_function(  # of all moves the last is what stays, and Python's own answer, not a stored one
+    page.wait_for_function(
         """([el, wanted]) => el.querySelector("canvas").getAttribute("aria-label").endsWith(wanted)
             && el.querySelector("[role=status]").textContent === "" """,
         arg=[widget.element_handle(), wanted],
