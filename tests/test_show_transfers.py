@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.legend import Legend
 
 from hdrlab.core import transfer
 from hdrlab.response.grossberg import comparagram
@@ -34,13 +35,19 @@ def test_the_colours_of_a_comparagram_are_not_spent_on_clipped_pixels():
     ax = transfers.comparagram(J)
     norm = ax.images[0].norm
     assert norm.vmax == 400 and norm.vmin == 2
-    assert ax.figure.axes[1].get_ylabel() == "pixels"
+    assert legend(ax) == ["10", "100"] and ax.get_legend().get_title().get_text() == "pixels"
+
+
+def test_the_counts_of_a_comparagram_stand_where_it_has_no_ridge():
+    brighter = np.roll(np.eye(256), 20, axis=1)
+    places = [transfers.comparagram(J).get_legend()._loc for J in (brighter, brighter.T)]
+    assert places == [Legend.codes["lower right"], Legend.codes["upper left"]]
 
 
 def test_the_transfer_lies_on_its_comparagram():
     ax = transfers.comparagram(np.eye(256), T=LEVELS / 2)
     assert all(np.array_equal(line.get_ydata(), LEVELS / 2) for line in ax.lines)
-    assert legend(ax) == ["T, from the histograms"]
+    assert legend(ax) == ["1", "T, from the histograms"]
 
 
 @pytest.mark.parametrize("J", [np.zeros((256, 256)), np.ones((4, 5)), np.ones(256)])

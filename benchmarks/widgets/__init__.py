@@ -1,6 +1,6 @@
 """How quickly widgets answer in a real browser: every notebook in JupyterLab, and the Detail Brush.
 
-latency  from the event of a key on a slider to the frame of the display in which the new pixels can be read
+latency  from the event of a key on a slider to the frame of the display that shows the new picture
 first    from the start of a run to the first picture on the page, its kernel being ready
 
 Headless, so the screen itself takes up to a frame more. Every slider of every `play` and `tune` is moved

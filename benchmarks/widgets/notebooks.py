@@ -25,48 +25,47 @@ FIRST_PICTURE = """async () => {
     return (performance.now() - start) / 1000;
 }"""
 
-# Either the alt text or the pixels tell that another picture is there; both change in the same moment.
-WATCH = """([el, lost]) => {{
-    const pixels = {digest}, canvas = el.querySelector("canvas");
-    const [text, before] = [canvas.getAttribute("aria-label"), pixels(el)];
-    const other = () => canvas.getAttribute("aria-label") !== text || pixels(el) !== before;
-    window.latency = new Promise((resolve) => {{
-        addEventListener("keydown", (event) => {{
-            const look = () => {{
+# The alt text names the position, and is set in the moment in which the pixels are there: to read those back
+# on each frame of the display would take longer than what is measured.
+WATCH = """([el, lost]) => {
+    const canvas = el.querySelector("canvas"), text = canvas.getAttribute("aria-label");
+    window.latency = new Promise((resolve) => {
+        addEventListener("keydown", (event) => {
+            const look = () => {
                 const passed = performance.now() - event.timeStamp;
-                if (other() || passed > lost) resolve(passed);
+                if (canvas.getAttribute("aria-label") !== text || passed > lost) resolve(passed);
                 else requestAnimationFrame(look);
-            }};
+            };
             requestAnimationFrame(look);
-        }}, {{ capture: true, once: true }});
-    }});
-}}"""
+        }, { capture: true, once: true });
+    });
+}"""
 
 
-def opened(_: Path, name: str) -> Figures:
+def opened(_folder: Path, name: str) -> Figures:
     """Return what a notebook takes: first picture, the worst of each kind, then each slider's p50 and p95."""
-    with TemporaryDirectory() as home, browsers.lab(Path(home)) as (page, tools, server):
+    with TemporaryDirectory() as home, browsers.lab(Path(home)) as (page, _, server):
         server.open(page, name)
         figures: Figures = {FIRST: page.evaluate(FIRST_PICTURE)}
         server.until_done(page)
-        each = {kind: sliders(page, tools.DIGEST, kind) for kind in WORST}
+        each = {kind: sliders(page, kind) for kind in WORST}
     figures |= {WORST[kind]: max(p95 for _, p95 in found.values()) for kind, found in each.items() if found}
     return figures | each["play"] | each["tune"]
 
 
-def sliders(page: Any, digest: str, kind: str) -> Figures:
+def sliders(page: Any, kind: str) -> Figures:
     """Return the latency of every slider of one kind of widget, median and 95 %, in ms."""
     found: Figures = {}
     for number, widget in enumerate(page.locator(f".hdrlab[data-kind={kind}]").all(), 1):
         widget.scroll_into_view_if_needed()
         names = widget.locator(".hdrlab-slider span:first-child").all_inner_texts()
         for name, slider in zip(names, widget.get_by_role("slider").all(), strict=True):
-            latencies = moved(page, widget, slider, WATCH.format(digest=digest))
+            latencies = moved(page, widget, slider)
             found[f"{kind} {number}, {name}: 50, 95 %, ms"] = np.quantile(latencies, (0.5, 0.95)).tolist()
     return found
 
 
-def moved(page: Any, widget: Any, slider: Any, watch: str) -> list[float]:
+def moved(page: Any, widget: Any, slider: Any) -> list[float]:
     """Return the latency of each press of an arrow key, there and back again, after two that warm up."""
     slider.focus()
     top, at = int(slider.get_attribute("max")), int(slider.input_value())
@@ -74,7 +73,7 @@ def moved(page: Any, widget: Any, slider: Any, watch: str) -> list[float]:
     latencies = []
     for here, there in pairwise(places):
         page.wait_for_timeout(50)  # a reader looks before the next press
-        page.evaluate(watch, [widget.element_handle(), LOST])
+        page.evaluate(WATCH, [widget.element_handle(), LOST])
         page.keyboard.press("ArrowRight" if there > here else "ArrowLeft")
         latencies.append(float(page.evaluate("window.latency")))
     return latencies[2:]

@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, TypeVar
 
+from matplotlib import rcParams
 from matplotlib.axes import Axes
 
 State = TypeVar("State")
@@ -79,9 +80,6 @@ def look(ax: Axes) -> object:
     """Return what a drawing may change and `wiped` does not bring back."""
     axis = [
         (
-            each.get_scale(),
-            [type(part) for part in (each.get_major_locator(), each.get_major_formatter())],
-            [type(part) for part in (each.get_minor_locator(), each.get_minor_formatter())],
             [each.get_tick_params(which) for which in ("major", "minor")],
             each.get_visible(),
             each.label.get_color(),
@@ -90,20 +88,20 @@ def look(ax: Axes) -> object:
         for each in (ax.xaxis, ax.yaxis)
     ]
     frame = [(spine.get_visible(), spine.get_edgecolor()) for spine in ax.spines.values()]
-    ground = (ax.get_facecolor(), ax.figure.get_facecolor(), ax.get_axisbelow(), ax.axison)
-    title = (ax.title.get_fontsize(), ax.title.get_color())
-    return (axis, frame, ground, title, ax.get_position().bounds, ax.get_aspect(), ax.margins())
+    ground = (ax.figure.get_facecolor(), ax.get_axisbelow(), ax.axison)
+    return (axis, frame, ground, ax.title.get_color(), ax.get_position().bounds, ax.margins())
 
 
 def wiped(ax: Axes) -> Axes:
-    """Return the Axes without what was drawn on them, with limits that follow what comes."""
+    """Return the Axes without what was drawn on them: linear, with limits that follow what comes."""
     for group in (ax.lines, ax.collections, ax.patches, ax.texts, ax.images, ax.artists, ax.tables):
         for artist in list(group):
             artist.remove()
     if legend := ax.get_legend():
         legend.remove()
     for side in ("left", "center", "right"):
-        ax.set_title("", loc=side)
+        ax.set_title("", loc=side, fontsize=rcParams["axes.titlesize"])
+    ax.set(xscale="linear", yscale="linear", aspect="auto", facecolor=rcParams["axes.facecolor"])
     ax.set(xlabel="", ylabel="", xlim=(0, 1), ylim=(0, 1))
     ax.set_prop_cycle(None)
     ax.relim()

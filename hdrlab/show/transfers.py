@@ -10,9 +10,10 @@ x, y equations           y = k x, and which of them are used
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
-from matplotlib.figure import Figure
+from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
@@ -37,16 +38,22 @@ def comparagram(
         raise ValueError(f"expected a comparagram (n, n) with counts in it, got {describe(J)}")
     most = J[1:-1, 1:-1].max() or J.max()
     scale = LogNorm(max(most / 1000, J[J > 0].min()), most)
-    ax = Figure(figsize=(5.3, 4.2), dpi=100).add_axes((0.12, 0.14, 0.64, 0.81))
+    ax = axes(5.4, 4.3)
     ax.set_facecolor("#E6E6E6")  # no pixel has these two levels
     shown = ax.imshow(np.where(J > 0, J, np.nan).T, norm=scale, origin="lower", interpolation="nearest")
+    counts = [count for count in 10.0 ** np.arange(15) if scale.vmin <= count <= scale.vmax]
+    swatches: list[Artist] = [
+        Patch(facecolor=shown.cmap(scale(count)), label=f"{count:,.0f}") for count in counts
+    ]
     if T is not None:
         ax.plot(np.arange(len(J)), T, color="#FFFFFF", linewidth=3.2)
-        ax.plot(np.arange(len(J)), T, color="#D55E00", linewidth=1.6, label="T, from the histograms")
-        ax.legend(loc="lower right", framealpha=0.9)
+        swatches += ax.plot(
+            np.arange(len(J)), T, color="#D55E00", linewidth=1.6, label="T, from the histograms"
+        )
+    if swatches:
+        empty = "lower right" if np.triu(J).sum() >= np.tril(J).sum() else "upper left"
+        ax.legend(handles=swatches, title=label, loc=empty, framealpha=0.9)
     ax.set(xlabel=across, ylabel=up, aspect="auto")
-    beside = ax.figure.add_axes((0.78, 0.14, 0.03, 0.81))
-    ax.figure.colorbar(shown, cax=beside, label=label, format="{x:g}").minorticks_off()
     return ax
 
 
