@@ -6,6 +6,7 @@ import itertools
 import imageio.v3 as iio
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 
 from hdrlab.io import web
 from hdrlab.show import again, plots, widgets
@@ -204,6 +205,27 @@ def test_tune_refuses_no_ranges_and_ranges_of_parameters_that_are_not_there():
         widgets.tune(square, same, alt="A square")
     with pytest.raises(ValueError, match="expected parameters of the function, level, side; got hue"):
         widgets.tune(square, same, alt="A square", hue=(0, 9))
+
+
+def test_a_press_means_a_place_of_the_picture_and_not_of_the_title_above_it():
+    def dotted(down=0.5, right=0.5):
+        return down, right
+
+    def draw(at):
+        figure = Figure(figsize=(4, 2), dpi=50)
+        figure.add_axes((0.1, 0.25, 0.8, 0.5))
+        return figure
+
+    tuner = widgets.tune(
+        dotted, draw, alt="A place", point=("down", "right"), down=(0.0, 1.0), right=(0.0, 1.0)
+    )
+    assert np.allclose(tuner.area, [0.1, 0.25, 0.8, 0.5]) and tuner.point == ["down", "right"]
+
+
+@pytest.mark.parametrize("point", [("level",), ("level", "level", "level"), ("level", "none")])
+def test_a_point_that_is_not_two_parameters_is_refused(point):
+    with pytest.raises(ValueError, match="expected a point of two parameters out of level, got"):
+        widgets.tune(lambda level=1: level, square, alt="A square", point=point, level=(0, 9))
 
 
 def test_tune_refuses_pictures_without_alt_text():

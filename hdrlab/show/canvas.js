@@ -44,6 +44,7 @@ function picture(parent) {
     canvas.setAttribute("aria-label", alt);
   }
   return {
+    canvas,
     // Decoding takes its time: a picture asked for earlier must not land on one asked for later.
     async show(bitmap, alt) {
       const turn = ++asked;

@@ -147,6 +147,15 @@ def render(drawn: object) -> NDArray[np.uint8]:
     raise ValueError(f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}")
 
 
+def pictured(drawn: object) -> tuple[float, float, float, float]:
+    """Return left, top, width and height of the first Axes of what was rendered, as shares of the picture."""
+    figure = getattr(drawn, "figure", None)
+    if figure is None or not figure.axes:
+        return 0.0, 0.0, 1.0, 1.0
+    box = figure.axes[0].get_position()
+    return box.x0, 1 - box.y1, box.width, box.height
+
+
 def require_alt(alt: str) -> str:
     """Return the alt text, or raise a ValueError where it says nothing."""
     if not isinstance(alt, str) or not alt.strip():

@@ -8,6 +8,7 @@ x, y equations           y = k x, and which of them are used
 """
 
 from collections.abc import Mapping
+from typing import Literal
 
 import numpy as np
 from matplotlib.artist import Artist
@@ -51,8 +52,9 @@ def comparagram(
             np.arange(len(J)), T, color="#D55E00", linewidth=1.6, label="T, from the histograms"
         )
     if swatches:
-        empty = "lower right" if np.triu(J).sum() >= np.tril(J).sum() else "upper left"
-        ax.legend(handles=swatches, title=label, loc=empty, framealpha=0.9)
+        brighter = np.triu(J).sum() >= np.tril(J).sum()
+        loc: Literal["lower right", "upper left"] = "lower right" if brighter else "upper left"
+        ax.legend(handles=swatches, title=label, loc=loc, framealpha=0.9)
     ax.set(xlabel=across, ylabel=up, aspect="auto")
     return ax
 

@@ -48,6 +48,21 @@ function render({ model, el }) {
     showStored();
   }
 
+  // A press on the picture, or a drag, moves two sliders at once: down and right, as shares of the pictured area.
+  function point(event) {
+    if (event.type === "pointermove" && !event.buttons) return;
+    const [left, top, width, height] = model.get("area");
+    const [across, down] = place(event, view.canvas);
+    const shares = [(down - top) / height, (across - left) / width];
+    model.get("point").forEach((name, axis) => {
+      const k = names.indexOf(name);
+      const away = values[k].map((value) => Math.abs(Number(value) - shares[axis]));
+      bars[k].input.value = away.indexOf(Math.min(...away));
+      moved = k;
+    });
+    move(moved);
+  }
+
   function move(k) {
     moved = k;
     model.set("at", bars.map((bar) => Number(bar.input.value)));
@@ -59,6 +74,10 @@ function render({ model, el }) {
   }
 
   bars.forEach((bar, k) => bar.input.addEventListener("input", () => move(k)));
+  if (model.get("point").length) {
+    view.canvas.classList.add("hdrlab-point");
+    ["pointerdown", "pointermove"].forEach((kind) => view.canvas.addEventListener(kind, point));
+  }
   model.on("change:at", showBars);
   model.on("change:answers", answer);
   showBars();

@@ -22,7 +22,7 @@ from hdrlab.io import web
 from hdrlab.show import again, positions
 from hdrlab.show.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.lens import Brush, brush
-from hdrlab.show.pictures import encode, render, require_alt, short
+from hdrlab.show.pictures import encode, pictured, render, require_alt, short
 from hdrlab.show.scripts import STYLE, script
 
 __all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "play", "tune", "wipe"]
@@ -103,6 +103,8 @@ class Tuner(anywidget.AnyWidget):
     answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
     stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
     stored = traitlets.List(traitlets.Bytes()).tag(sync=True)
+    point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
+    area = traitlets.List(traitlets.Float()).tag(sync=True)  # left, top, width, height of what is pressed
 
     def __init__(self, picture: Callable[[list[int]], bytes], grids: positions.Grids, **traits: Any):
         self._picture, self._grids = picture, grids
@@ -133,6 +135,7 @@ def tune(
     *,
     alt: str,
     stored: int = 5,
+    point: tuple[str, str] | None = None,
     **ranges: Any,
 ) -> Tuner:
     """Return a widget with a slider per parameter, which shows draw(f(...)) of where the sliders stand.
@@ -147,14 +150,16 @@ def tune(
         What the picture shows; the parameters' values are added.
     stored : int
         How many positions of each slider are computed now, for a page without a kernel.
+    point : (down, right), optional
+        Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets, too.
     **ranges : (low, high), (low, high, step), or a list of values
         A tuple is a range: of integers where both ends are, else in 100 parts; a list holds the very values.
 
     Raises
     ------
     ValueError
-        For bad ranges, parameters that `f` does not have, an empty alt text, or a `draw` that returns
-        something else.
+        For bad ranges, parameters that `f` does not have, a point that is not two of them, an empty alt text,
+        or a `draw` that returns something else.
 
     Examples
     --------
@@ -169,15 +174,23 @@ def tune(
     grids = {name: positions.grid(name, given) for name, given in ranges.items()}
     if not grids:
         raise ValueError("expected at least one range, such as smoothness=(1, 100), got none")
+    if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
+        raise ValueError(f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}")
 
-    kept = again.Kept()
+    kept, area = again.Kept(), [0.0, 0.0, 1.0, 1.0]
+
+    def finish(drawn: object) -> bytes:
+        frame = web.jpeg(render(drawn))
+        area[:] = pictured(drawn)
+        return frame
 
     def picture(at: list[int]) -> bytes:
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
             found = f(**positions.values(grids, at))
-        return again.drawn(draw, found, lambda drawn: web.jpeg(render(drawn)), kept)
+        return again.drawn(draw, found, finish, kept)
 
     at = positions.start(f, grids)
     few = positions.few(grids, at, stored)
     frames = [picture(position) for position in few]
-    return Tuner(picture, grids, at=at, shown=at, frame=frames[0], alt=alt, stored_at=few, stored=frames)
+    told = {"stored_at": few, "stored": frames, "point": list(point or ()), "area": area}
+    return Tuner(picture, grids, at=at, shown=at, frame=frames[0], alt=alt, **told)

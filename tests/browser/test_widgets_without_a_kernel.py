@@ -124,6 +124,23 @@ def test_an_answer_replaces_the_stored_picture(tuner):
     assert tuner.get_by_role("status").inner_text() == ""  # a kernel that has answered is waited for
 
 
+def test_a_press_on_the_picture_moves_both_sliders_of_its_place(page):
+    each = [0.1, 0.3, 0.5, 0.7, 0.9]
+
+    def shade(down=0.5, right=0.5):
+        return square(round(100 * down + 50 * right))
+
+    open_widget(
+        page,
+        widgets.tune(shade, lambda drawn: drawn, alt="Gray", point=("down", "right"), down=each, right=each),
+    )
+    box = page.locator("canvas").bounding_box()
+    page.mouse.click(box["x"] + 0.68 * box["width"], box["y"] + 0.12 * box["height"])
+    texts = [slider.get_attribute("aria-valuetext") for slider in page.get_by_role("slider").all()]
+    assert texts == ["0.1", "0.7"]
+    assert page.evaluate("window.model.get('at')") == [0, 3]
+
+
 def test_a_problem_of_the_function_is_told_beside_the_sliders(tuner):
     tuner.evaluate("""() => {
         window.model.set("problem", "ValueError: too light");
