@@ -5,7 +5,8 @@ t        exposure time, s
 X        exposure at the sensor, float32: 1 fills the well
 M        brightness, 0 to 1
 Z        pixel level, 0 to 2^bits - 1
-offsets  (P, 2) int, (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference
+offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference;
+         or moves (P, 3, 3), see `capture.motion`
 
 The light goes through the camera in this order, one function each, those of the sensor in `capture.sensor`:
 
@@ -17,6 +18,7 @@ A `Sensor` puts a converter with a black level after the readout, and a Bayer mo
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hdrlab.capture.motion import views
 from hdrlab.capture.responses import Curve, Response, as_response
 from hdrlab.capture.sensor import (
     Float,
@@ -32,26 +34,9 @@ from hdrlab.capture.sensor import (
     readout,
 )
 from hdrlab.core import mosaic
-from hdrlab.core.arrays import Array, as_radiance, as_times, describe
+from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
-
-
-def views(E: Array, offsets: ArrayLike) -> list[Array]:
-    """Return what each frame of a moved camera sees: P arrays (h, w[, 3]), views of E.
-
-    Frame j sees E from (top + dy, left + dx) on, so that moved by (dy, dx) it lies on a frame of (0, 0). It
-    is smaller than the scene by the span of the offsets, h = H - (max dy - min dy) and w likewise: it holds
-    real content everywhere, and nothing wraps around.
-    """
-    moves = np.asarray(offsets)
-    if moves.ndim != 2 or moves.shape[1] != 2 or len(moves) == 0 or moves.dtype.kind not in "iu":
-        raise ValueError(f"expected offsets (P, 2) of whole pixels, got {describe(moves)}")
-    corners = moves - moves.min(axis=0)
-    h, w = E.shape[:2] - corners.max(axis=0)
-    if h < 1 or w < 1:
-        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {moves.tolist()}")
-    return [E[y : y + h, x : x + w] for y, x in corners]
 
 
 def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:
@@ -126,9 +111,9 @@ def shoot(
     sensor : Sensor with a converter, whose full_well and read_noise count then instead of those above
     bayer : the sensor sees one colour per pixel, R G / G B, and the others are interpolated; wants a sensor
     white : gains (3,) of the channels, as of `sensor.balance`; want a sensor
-    offsets : (P, 2) int, (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
+    offsets : (P, 2), (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
         relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
-        saw is `views(E, offsets)[j]`.
+        saw is `motion.views(E, offsets)[j]`. Moves (P, 3, 3), as of `motion.hand`, turn and tilt it too.
     rng : seed, or a generator, which is advanced
 
     Returns

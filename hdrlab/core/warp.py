@@ -1,0 +1,168 @@
+"""Pictures moved by homographies: resampled in linear light, and cut to what all of them show.
+
+H        homography (3, 3): H (x, y, 1) is where pixel (x, y) of one picture lies in another, up to a factor
+moves    (P, 3, 3), one for each photograph: where its pixels lie in the picture that they share
+offsets  (P, 2), (dy, dx) pixels, down and right: moves that only shift
+a, b     half-planes (n, 2) and (n,): the points p with a p <= b
+
+Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV and scikit-image have it.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import linprog
+from skimage.transform import warp
+
+from hdrlab.core.arrays import Array, describe
+
+Float = NDArray[np.float64]
+SLACK = (
+    1e-3  # pixels: so far beyond its last pixel a picture goes on; one that is a pixel wide has sides, too
+)
+
+
+def as_moves(moves: ArrayLike, count: int | None = None) -> Float:
+    """Return `moves` as float64 (P, 3, 3) with H[2, 2] = 1, offsets (P, 2) as shifts, or raise a ValueError.
+
+    Examples
+    --------
+    >>> as_moves([[3, -1]])[0].tolist()
+    [[1.0, 0.0, -1.0], [0.0, 1.0, 3.0], [0.0, 0.0, 1.0]]
+    """
+    given = np.asarray(moves)
+    numbers = given.dtype.kind in "iuf" and given.size > 0 and bool(np.isfinite(given).all())
+    if not numbers or given.shape[1:] not in ((2,), (3, 3)):
+        raise ValueError(f"expected finite moves (P, 3, 3) or offsets (P, 2), got {describe(given)}")
+    if count is not None and len(given) != count:
+        raise ValueError(f"expected {count} moves, one per image, got {len(given)}")
+    if given.ndim == 2:
+        shifts = np.tile(np.eye(3), (len(given), 1, 1))
+        shifts[:, :2, 2] = given[:, ::-1]
+        return shifts
+    if np.any(np.abs(np.linalg.det(given)) < 1e-12) or np.any(np.abs(given[:, 2, 2]) < 1e-12):
+        raise ValueError("expected moves that can be undone, got a matrix without an inverse")
+    return given / given[:, 2:, 2:].astype(np.float64)
+
+
+def turn(shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0) -> Float:
+    """Return H of a picture (H, W) turned about its middle, clockwise as seen, enlarged, then shifted."""
+    (dy, dx), phi = np.asarray(offset, float), np.deg2rad(degrees)
+    cos, sin = scale * np.cos(phi), scale * np.sin(phi)
+    y, x = (np.array(shape[:2]) - 1) / 2
+    return np.array(
+        [[cos, -sin, x - cos * x + sin * y + dx], [sin, cos, y - sin * x - cos * y + dy], [0, 0, 1]]
+    )
+
+
+def corners(shape: tuple[int, ...]) -> Float:
+    """Return (x, y) of a picture's four corner pixels, (4, 2), in turn."""
+    h, w = shape[0] - 1, shape[1] - 1
+    return np.array([[0, 0], [w, 0], [w, h], [0, h]], float)
+
+
+def apply(H: ArrayLike, points: ArrayLike) -> Float:
+    """Return where points (..., n, 2), (x, y), lie after H (..., 3, 3)."""
+    H, points = np.asarray(H, float), np.asarray(points, float)
+    moved = points @ np.swapaxes(H[..., :2], -1, -2) + H[..., None, :, 2]
+    return moved[..., :2] / moved[..., 2:]
+
+
+def apart(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) -> Float:
+    """Return how far two moves (..., 3, 3) are apart at the worst corner of a picture, pixels.
+
+    Examples
+    --------
+    >>> float(apart(turn((101, 101), 1), np.eye(3), (101, 101)).round(2))  # 70.7 pixels x pi / 180
+    1.23
+    """
+    off = apply(found, corners(shape)) - apply(truth, corners(shape))
+    return np.asarray(np.hypot(off[..., 0], off[..., 1]).max(axis=-1))
+
+
+def inside(moves: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
+    """Return the rectangle (rows, columns) of shared pixels that every moved picture of `shape` covers.
+
+    It is the largest one of the pictures' own proportions, then widened as far as its sides go.
+
+    Raises
+    ------
+    ValueError
+        Where no pixel is covered by all of them.
+    """
+    H, around = as_moves(moves), corners(shape) + SLACK * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
+    if np.any(around @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
+        raise ValueError("expected moves that keep a picture in front of the camera, got one that does not")
+    quads = apply(H, around)
+    edges = np.roll(quads, -1, axis=1) - quads
+    a = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)  # outwards, unless a picture is mirrored
+    a *= np.sign(np.linalg.det(H[:, :2, :2]))[:, None, None] / np.hypot(*np.moveaxis(a, -1, 0))[..., None]
+    left, top, right, bottom = _largest(a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape)
+    if left > right or top > bottom:
+        raise ValueError(
+            f"expected images that overlap, got moves that leave nothing of images of {shape[:2]} pixels"
+        )
+    return slice(top, bottom + 1), slice(left, right + 1)
+
+
+def _largest(a: Float, b: Float, shape: tuple[int, ...]) -> list[int]:
+    """Return the first and last pixel, x, y, x, y, of the rectangle within half-planes: a linear program.
+
+    Of all points of a rectangle a p is largest at a corner: at the high x where a_x > 0, and so on. So each
+    half-plane is a single inequality in the four sides.
+    """
+    A = np.hstack([np.minimum(a, 0), np.maximum(a, 0)])
+    alike = np.array([[-1, 0, 1, 0, -shape[1]], [0, -1, 0, 1, -shape[0]]])  # high - low = s (W, H)
+    limits = [(None, None)] * 4 + [(0, None)]
+    found = linprog([0, 0, 0, 0, -1], np.pad(A, ((0, 0), (0, 1))), b, alike, np.zeros(2), limits)
+    if found.x is None:
+        return [0, 0, -1, -1]  # nothing
+    box = np.concatenate([np.ceil(found.x[:2] - 2 * SLACK), np.floor(found.x[2:4] + 2 * SLACK)])
+    for side, outwards in enumerate((-1, -1, 1, 1)):
+        meets = np.abs(A[:, side]) > 1e-9
+        room = np.min((b - A @ box)[meets] / np.abs(A[meets, side]))
+        box[side] += outwards * max(np.floor(room + SLACK), 0)
+    return [int(side) for side in box]
+
+
+def sample(image: ArrayLike, H: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return the picture (h, w[, C]) whose pixel p is `image` at H p, by cubic interpolation (Catmull-Rom).
+
+    A value stays between the four pixels around its place, so that a lamp gets no dark ring. The light must
+    be linear; beyond the border the last pixels go on.
+    """
+    image = np.asarray(image, np.float32)
+    if image.ndim == 3:
+        return np.stack([sample(image[..., c], H, shape) for c in range(image.shape[2])], axis=-1)
+    low, high = image, image
+    for axis in (0, 1):
+        after = np.concatenate([low.take(range(1, low.shape[axis]), axis), low.take([-1], axis)], axis)
+        low = np.minimum(low, after)
+        after = np.concatenate([high.take(range(1, high.shape[axis]), axis), high.take([-1], axis)], axis)
+        high = np.maximum(high, after)
+    found = _read(image, H, shape, order=3)
+    return np.clip(found, before(low, H, shape), before(high, H, shape))
+
+
+def nearest(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return the picture (h, w) whose pixel p is the pixel of `image` nearest to H p."""
+    return _read(image, H, shape, order=0)
+
+
+def before(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
+    """Return the picture (h, w) whose pixel p is the pixel of `image` just above and left of H p."""
+    half = np.array([[1, 0, -0.5], [0, 1, -0.5], [0, 0, 1]])
+    return _read(image, half @ np.asarray(H, float), shape, order=0)
+
+
+def _read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
+    return np.asarray(
+        warp(
+            image,
+            np.asarray(H, float),
+            output_shape=shape[:2],
+            order=order,
+            mode="edge",
+            clip=False,
+            preserve_range=True,
+        )
+    )

@@ -1,0 +1,104 @@
+"""Brackets in which something moves: every photograph, and the truth of it."""
+
+import numpy as np
+import pytest
+
+from hdrlab import scenes
+from hdrlab.capture import camera, movers
+
+WALL = np.full((40, 60, 3), 0.5, np.float32)
+BALL = movers.ball((40, 60), (20, 30), 8, [2.0, 1.0, 0.5])
+TIMES = [0.125, 0.5, 2.0]
+
+
+def test_a_moment_is_light_before_what_the_mask_leaves():
+    E, mask = movers.moment(WALL, BALL, (3, -10))
+    assert np.array_equal(E[mask == 0], WALL[mask == 0]) and np.allclose(
+        E[mask == 1], shifted(BALL.light)[mask == 1]
+    )
+    assert np.allclose(E, shifted(BALL.light) + (1 - shifted(BALL.mask)[..., None]) * WALL)
+
+
+def shifted(layer):
+    """Return a layer 3 down and 10 to the left, by np.roll: the ball is far from every edge."""
+    return np.roll(layer, (3, -10), axis=(0, 1))
+
+
+def test_a_ball_has_the_area_of_its_disc_and_its_radiance_at_the_brightest():
+    plain = movers.ball((80, 80), (40, 40), 20, 3.0, stripes=0)
+    assert plain.mask.sum() == pytest.approx(np.pi * 20**2, rel=0.01)
+    assert plain.light.max() == pytest.approx(3.0, rel=0.02)
+    assert np.all(plain.light <= 3 * plain.mask) and np.all(plain.light[plain.mask == 1] > 0)
+
+
+def test_a_figure_that_walks_out_of_the_frame_is_gone_and_does_not_come_back():
+    for at in [(0, 200), (-90, 0), (39, 59), (-40, -60)]:
+        E, mask = movers.moment(WALL, BALL, at)
+        assert np.array_equal(E[mask == 0], WALL[mask == 0]) and mask.sum() < BALL.mask.sum() / 4
+
+
+def test_each_photograph_is_that_of_its_moment_and_the_truth_is_sorted_with_it():
+    taken = movers.shoot(WALL, BALL, movers.path(3, (0, 12)), TIMES[::-1], response="linear")
+    assert taken.bracket.times.tolist() == TIMES and taken.bracket.linear
+    for image, seen, t in zip(taken.bracket.images, taken.moments, TIMES, strict=True):
+        assert np.array_equal(image, camera.shoot(seen, t, response="linear").images[0])
+    left = [np.flatnonzero(one.any(axis=0))[0] for one in taken.hidden]
+    assert np.diff(left).tolist() == [-12, -12]  # the longest exposure was given first
+
+
+def test_outside_the_region_every_moment_is_the_still_scene():
+    taken = movers.shoot(WALL, BALL, movers.path(3, (4, 9)), TIMES)
+    assert np.array_equal(taken.still, WALL)
+    assert np.all(taken.moments[:, ~taken.region] == WALL[~taken.region])
+    assert all(np.any(one != WALL) for one in taken.moments)
+
+
+def test_photographs_of_one_time_keep_their_own_truth():
+    taken = movers.shoot(WALL, BALL, movers.path(4, (0, 9)), [1.0] * 4, response="linear")
+    for image, seen in zip(taken.bracket.images, taken.moments, strict=True):
+        assert np.array_equal(image, camera.shoot(seen, 1.0, response="linear").images[0])
+
+
+def test_a_hand_that_shakes_moves_scene_and_figure_alike():
+    offsets = np.array([[2, 0], [0, 0], [-3, 5]])
+    wall = np.random.default_rng(1).random((40, 60, 3), np.float32)
+    taken = movers.shoot(wall, BALL, np.zeros((3, 2), int), TIMES, offsets=offsets)
+    E, _ = movers.moment(wall, BALL, (0, 0))
+    for seen, view in zip(taken.moments, camera.views(E, offsets), strict=True):
+        assert np.array_equal(seen, view)
+    assert np.array_equal(taken.still, camera.views(wall, offsets)[1])
+
+
+def test_the_visitor_of_an_embedded_place_is_a_figure():
+    place = scenes.layers("street", (64, 96))
+    E, _ = movers.moment(place.radiance, movers.Figure(place.mover, place.mask), (0, 7))
+    assert np.allclose(E, scenes.compose(place, (0, 7)))
+
+
+def test_a_path_is_straight_even_and_at_its_own_place_in_the_middle():
+    at = movers.path(5, (2, -10))
+    assert at[2].tolist() == [0, 0] and np.all(np.diff(at, axis=0) == [2, -10])
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({"figure": movers.Figure(BALL.light[:9], BALL.mask)}, "light"),
+        ({"figure": movers.Figure(BALL.light, 2 * BALL.mask)}, "mask from 0 to 1"),
+        ({"at": [(0, 0)]}, "places"),
+        ({"at": np.zeros((3, 2))}, "whole pixels"),
+        ({"offsets": [[1, 1], [2, 2], [3, 3]]}, r"at \(0, 0\)"),
+        ({"times": [0, 1, 2]}, "positive exposure times"),
+        ({"hot": 0.01}, "hot"),
+    ],
+)
+def test_what_is_no_bracket_with_a_figure_is_refused(wrong, said):
+    given = {"E": WALL, "figure": BALL, "at": movers.path(3, (0, 9)), "times": TIMES} | wrong
+    with pytest.raises(ValueError, match=said):
+        movers.shoot(**given)
+
+
+@pytest.mark.parametrize("wrong", [{"radius": 0}, {"radiance": [1, 2]}, {"radiance": -1}, {"centre": 3}])
+def test_what_is_no_ball_is_refused(wrong):
+    with pytest.raises(ValueError, match="expected"):
+        movers.ball(**({"shape": (20, 20), "centre": (9, 9), "radius": 4} | wrong))
