@@ -1,0 +1,112 @@
+"""Late days: ten in all, then a point a day, down to zero for each project; each member pays their own."""
+
+from datetime import datetime, timedelta
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.course.late import Handed, accounts, lateness, what_if
+
+ANNA, BEN, CY = "anna", "ben", "cy"
+days, points = st.integers(0, 40), st.floats(0, 100)
+terms = st.lists(
+    st.tuples(days, st.sampled_from([(ANNA,), (BEN,), (ANNA, BEN), (ANNA, CY)]), points), max_size=6
+).map(lambda rows: [Handed(f"hw{k}", *row) for k, row in enumerate(rows)])
+
+
+def costs(handed, **knobs):
+    return {(one.student, one.project): one for one in accounts(handed, **knobs)}
+
+
+def test_ten_days_in_all_are_free_and_the_eleventh_costs_a_point():
+    found = costs(
+        [Handed("hw1", 4, (ANNA,), 100), Handed("hw2", 6, (ANNA,), 100), Handed("hw3", 1, (ANNA,), 100)]
+    )
+    assert [found[ANNA, f"hw{k}"].penalty for k in (1, 2, 3)] == [0, 0, 1]
+    assert [found[ANNA, f"hw{k}"].left for k in (1, 2, 3)] == [6, 0, 0]
+
+
+def test_a_project_costs_no_more_than_it_is_worth():
+    one = costs([Handed("hw1", 500, (ANNA,), 87.5)])[ANNA, "hw1"]
+    assert (one.penalty, one.score) == (87.5, 0)
+
+
+def test_a_project_at_zero_does_not_eat_into_another():
+    found = costs([Handed("hw1", 500, (ANNA,), 80), Handed("hw2", 3, (ANNA,), 90)])
+    assert (found[ANNA, "hw1"].score, found[ANNA, "hw2"].score) == (0, 87)
+
+
+def test_in_a_team_each_pays_with_their_own_days():
+    found = costs([Handed("hw1", 9, (ANNA,), 100), Handed("project", 3, (ANNA, BEN), 100)])
+    assert (found[ANNA, "project"].penalty, found[BEN, "project"].penalty) == (2, 0)
+    assert (found[ANNA, "project"].left, found[BEN, "project"].left) == (0, 7)
+
+
+@given(terms)
+def test_what_a_partner_did_before_changes_nothing_for_the_other(term):
+    alone = [one._replace(students=(ANNA,)) for one in term if ANNA in one.students]
+    together = {key: one for key, one in costs(term).items() if key[0] == ANNA}
+    assert together == costs(alone)
+
+
+@given(terms, st.integers(0, 12))
+def test_nobody_spends_more_grace_than_there_is_and_every_late_day_is_accounted_for(term, grace):
+    found = costs(term, grace=grace)
+    for student in (ANNA, BEN, CY):
+        mine = [one for (who, _), one in found.items() if who == student]
+        assert sum(one.excused for one in mine) <= grace
+        assert all(one.score >= 0 and 0 <= one.excused <= one.late for one in mine)
+        assert all(one.penalty == min(one.penalty + one.score, one.late - one.excused) for one in mine)
+
+
+@given(terms, days, points)
+def test_a_later_project_does_not_change_an_earlier_one(term, late, worth):
+    before = costs(term)
+    after = costs([*term, Handed("last", late, (ANNA, BEN), worth)])
+    assert {key: after[key] for key in before} == before
+
+
+@given(terms, days)
+def test_another_day_late_never_raises_a_score(term, late):
+    if term:
+        term = [one._replace(project=f"hw{k}") for k, one in enumerate(term)]
+        rows = what_if(term, "hw0", (late, late + 1))
+        assert all(rows[1][1][student].score <= one.score for student, one in rows[0][1].items())
+
+
+def test_the_what_if_table_holds_what_would_come_of_it():
+    term = [Handed("hw1", 7, (ANNA,), 100), Handed("project", 0, (ANNA, BEN), 90)]
+    for late, rows in what_if(term, "project"):
+        assert rows == {
+            who: costs([term[0], term[1]._replace(late=late)])[who, "project"] for who in (ANNA, BEN)
+        }
+    assert [rows[ANNA].penalty for _, rows in what_if(term, "project", (3, 4, 99))] == [0, 1, 90]
+
+
+def test_a_day_begun_is_a_day_late_whatever_zone_it_began_in():
+    due = datetime.fromisoformat("2026-03-28T23:59:00+01:00")  # the clocks change in this night
+    received = datetime.fromisoformat("2026-03-29T23:59:00+02:00")  # 23 hours later
+    assert lateness(due, received) == 1
+    assert lateness(due, due - timedelta(days=3)) == 0
+    assert lateness(due, due + timedelta(days=2, seconds=1)) == 3
+
+
+def test_times_without_a_zone_are_refused():
+    with pytest.raises(ValueError, match="zone"):
+        lateness(datetime(2026, 3, 1), datetime(2026, 3, 2))
+
+
+@pytest.mark.parametrize(
+    "handed, said",
+    [
+        ([Handed("hw1", -1, (ANNA,), 9)], "late days"),
+        ([Handed("hw1", 0, (ANNA, ANNA), 9)], "twice"),
+        ([Handed("hw1", 0, (ANNA,), 9), Handed("hw1", 1, (ANNA,), 9)], "twice"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(handed, said):
+    with pytest.raises(ValueError, match=said):
+        list(accounts(handed))
+    with pytest.raises(ValueError, match="handed in"):
+        what_if([], "hw1")

@@ -1,0 +1,87 @@
+"""The class list, its teams, and tables that spreadsheets cannot run."""
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.course import roster, sheets
+from hdrlab.course.wording import plain
+
+
+@pytest.fixture
+def listed(tmp_path):
+    def read(text):
+        (tmp_path / "roster.csv").write_text(text, encoding="utf-8-sig")
+        return roster.read(tmp_path / "roster.csv")
+
+    return read
+
+
+def test_students_and_teams_are_recognised(listed):
+    found = listed("Student,Name,Team\nb1,Ada,7\nb2,Bo,7\n\nb3,Cy,\n")
+    assert {team: [one.id for one in members] for team, members in found.teams().items()} == {
+        "7": ["b1", "b2"],
+        "b3": ["b3"],
+    }
+    assert found.find(" B2 ").name == "Bo" and found.team_of(["b2", "b1"]) == "7"
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("name\nAda\n", "column student"),
+        ("student\nb1\nB1\n", "each student once"),
+        ("student,team\nb1,7\nb2,7\nb3,7\n", "teams of 2"),
+        ("student\n../b1\n", "line 2"),
+        ("student,name\nb1,Ada\n,Bo\n", "line 3"),
+        ("student\nb1,Ada\n", "1 cells a row"),
+        ("", "empty"),
+    ],
+)
+def test_a_roster_that_cannot_be_is_refused_and_the_place_is_named(listed, text, said):
+    with pytest.raises(ValueError, match=said):
+        listed(text)
+
+
+def test_a_stranger_and_a_mixed_team_are_told(listed):
+    found = listed("student,team\nb1,7\nb2,8\n")
+    with pytest.raises(ValueError, match="student of the roster"):
+        found.find("b9")
+    with pytest.raises(ValueError, match="one team"):
+        found.team_of(["b1", "b2"])
+
+
+@pytest.mark.parametrize(
+    "cell", ["=1+1", "+1+1", "-1+1", "@SUM(A1)", "\t=1", "\r\n=cmd|' /C calc'!A0", "|calc", "%x", "\uff1d1+1"]
+)
+def test_no_cell_is_a_formula(cell):
+    assert sheets.safe(cell).startswith("'")
+    assert "\n" not in sheets.safe(cell) and "\r" not in sheets.safe(cell)
+
+
+@given(st.text(max_size=40))
+def test_whatever_a_name_holds_a_table_has_one_cell_of_it(text):
+    import csv
+    import io
+
+    rows = list(csv.reader(io.StringIO(sheets.csv_text(["name", "points"], [[text, -3]]))))
+    assert len(rows) == 2 and len(rows[1]) == 2 and rows[1][1] == "-3"
+
+
+def test_a_private_table_is_for_its_owner_alone(tmp_path):
+    path = sheets.write_csv(tmp_path / "links.csv", ["a"], [["b"]], private=True)
+    assert path.stat().st_mode & 0o077 == 0
+    assert sheets.read_csv(path) == [{"a": "b"}]
+
+
+@given(st.text(max_size=200), st.integers(2, 40))
+def test_what_is_shown_is_one_line_without_marks_that_turn_text_around(text, most):
+    shown = plain(text, most)
+    assert len(shown) <= most and shown == shown.strip()
+    assert all(letter.isprintable() for letter in shown)
+    assert plain(shown, most) == shown
+
+
+def test_accents_do_not_pile_up():
+    assert len(plain("a" + "\u0301" * 100, 50)) <= 3
+    assert plain("Nguy\u1ec5n \u05d0\u05d1 \u5f35", 40) == "Nguy\u1ec5n \u05d0\u05d1 \u5f35"
