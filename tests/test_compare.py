@@ -54,6 +54,7 @@ def test_compare_brings_a_large_map_to_the_size_asked_for(map_file, tmp_path):
         (["--operators", "reinhard,magic"], "magic"),
         (["--operators", "reinhard,"], "expected a method"),
         (["--size", "1"], "--size"),
+        (["--way", "best"], "--way"),
         (["-o", "sheet.jpg"], ".png"),
         (["-o", "missing/sheet.png"], "missing"),
     ],

@@ -48,6 +48,15 @@ def test_the_pictures_are_those_of_the_pipeline_in_the_order_asked_for():
         assert np.array_equal(one.picture, pipeline.develop(SCENE, one.name))
 
 
+def test_colours_that_a_display_does_not_have_go_the_way_asked_for():
+    E = SCENE * np.float32([0.02, 0.2, 5.0])  # a blue that no display has
+    chroma, ratio = (
+        next(contact.entry_steps(E, ["reinhard"], way=way)).picture for way in ("chroma", "ratio")
+    )
+    assert np.array_equal(chroma, pipeline.develop(E, "reinhard", way="chroma"))
+    assert not np.array_equal(chroma, ratio)
+
+
 def test_the_time_is_that_of_the_operator_alone():
     ticks = iter([10.0, 10.5, 20.0, 22.0])
     entries = contact.entry_steps(SCENE, ["reinhard", "curves"], clock=lambda: next(ticks))

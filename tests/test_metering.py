@@ -62,6 +62,8 @@ def test_each_layout_divides_the_picture_into_its_zones(layout, number):
     labels = metering.zones((200, 300), layout)
     assert np.array_equal(np.unique(labels), np.arange(number))
     assert np.bincount(labels.ravel()).min() > 100
+    with pytest.raises(ValueError, match="read-only"):  # they are kept for the next shot
+        labels[0, 0] = 9
 
 
 def test_a_matrix_meter_hardly_listens_to_a_bare_sun():

@@ -11,6 +11,7 @@ locomotive too; the modes differ in which pixels they ask.
 """
 
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -115,13 +116,19 @@ def _honeycomb(down: Array, right: Array) -> Array:
 LAYOUTS: dict[str, Callable[[Array, Array], Array]] = {"five": _five, "grid": _grid, "honeycomb": _honeycomb}
 
 
+@lru_cache(16)
 def zones(shape: tuple[int, int], layout: str = "honeycomb") -> NDArray[np.int64]:
-    """Return which of a matrix meter's zones each pixel (H, W) lies in, from 0: there are 5, 35 or 28."""
+    """Return which of a matrix meter's zones each pixel (H, W) lies in, from 0: there are 5, 35 or 28.
+
+    A meter's zones stay as they are from shot to shot: they are kept, and must not be written to.
+    """
     if layout not in LAYOUTS:
         raise ValueError(f"expected a layout among {', '.join(LAYOUTS)}, got {layout!r}")
     down, right = _places(shape, (0.5, 0.5))
     labels = LAYOUTS[layout](*np.broadcast_arrays(down, right))
-    return np.unique(labels, return_inverse=True)[1].reshape(shape)
+    found = np.unique(labels, return_inverse=True)[1].reshape(shape)
+    found.flags.writeable = False
+    return found
 
 
 def matrix(

@@ -7,6 +7,10 @@ import click
 from hdrlab.cli import common
 from hdrlab.core import catalogue
 
+WAY = click.option(
+    "--way", type=click.Choice(["ratio", "chroma"]), default="ratio", help="Of colour, see below."
+)
+
 
 @click.command()
 @click.argument("source", type=common.FILE)
@@ -16,7 +20,7 @@ from hdrlab.core import catalogue
 @click.option(
     "--saturation", type=float, help="1 keeps the colours' ratios, 0 is gray.  [default: the operator's]"
 )
-@click.option("--way", type=click.Choice(["ratio", "chroma"]), default="ratio", help="Of colour, see below.")
+@WAY
 @common.CLEAN
 def tonemap(
     source: Path,
@@ -51,18 +55,20 @@ def tonemap(
 @click.option("-o", "--out", required=True, type=common.FILE, help="Contact sheet to write: .png.")
 @click.option("--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]")
 @click.option("--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see below.")
+@WAY
 @common.CLEAN
-def compare(source: Path, out: Path, operators: str | None, size: int, clean: bool) -> None:
+def compare(source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool) -> None:
     """Make a contact sheet of the radiance map SOURCE under every operator, with time and quality.
 
-    The operators see the map at up to --size pixels along a side: time and quality are of that size.
+    The operators see the map at up to --size pixels along a side: time and quality are of that size. For
+    --way see `hdrlab tonemap --help`.
     """
     from hdrlab.show import contact, figures, sheet
 
     sheet.check_suffix(out)
     names = operators.replace(" ", "").split(",") if operators else catalogue.names("tonemap")
     E = figures.fit(common.read_map(source, clean), size)
-    entries = common.one_by_one(contact.entry_steps(E, names), names)
+    entries = common.one_by_one(contact.entry_steps(E, names, way=way), names)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {common.size(E)}"))
     click.echo(f"{out}: {len(names)} operators, {common.size(E)}")
 

@@ -25,6 +25,7 @@ def entry_steps(
     E: ArrayLike,
     operators: Sequence[str] | Mapping[str, Method] | None = None,
     *,
+    way: str = "ratio",
     clock: Callable[[], float] = perf_counter,
 ) -> Iterator[Entry]:
     """Yield the Entry of each operator; the parameters are those of `contact_sheet`."""
@@ -34,7 +35,7 @@ def entry_steps(
         begun = clock()
         Ld = tonemap(L)
         seconds = clock() - begun
-        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap))
+        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap), way=way)
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
@@ -42,6 +43,7 @@ def contact_sheet(
     E: ArrayLike,
     operators: Sequence[str] | Mapping[str, Method] | None = None,
     *,
+    way: str = "ratio",
     title: str = "",
     columns: int | None = None,
     side: int = SIDE,
@@ -55,6 +57,8 @@ def contact_sheet(
     operators : names, or labels with an operator each; optional
         Which, and in which order: all, sorted, unless told. A label's operator is a name or your own function
         `tonemap(L) -> Ld` in [0, 1].
+    way : {"ratio", "chroma"}
+        What becomes of colours that a display does not have: see `core.colour.render`.
     title : str
         Above the sheet, and in its alt text.
     columns : int, optional
@@ -82,7 +86,7 @@ def contact_sheet(
     >>> sheet.get_label()[:68]
     'Contact sheet of the room: one scene through 1 tone-mapping operator'
     """
-    return draw(entry_steps(E, operators), title=title, columns=columns, side=side)
+    return draw(entry_steps(E, operators, way=way), title=title, columns=columns, side=side)
 
 
 def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str, Callable[..., NDArray]]:
