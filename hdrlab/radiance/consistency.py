@@ -69,11 +69,14 @@ def _medians(Z: NDArray[np.uint8], lE: NDArray[np.float32]) -> Float:
 
 
 def deviations(medians: Float) -> Float:
-    """Return by how many stops each frame departs from the mean of all (P,): median over levels, channels."""
+    """Return by how many stops each frame departs from the mean of all (P,): median over levels, channels.
+
+    NaN for a frame that shares no level with another: nothing is known of it.
+    """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a level that no frame shows has no mean
         apart = medians - np.nanmean(_shared(medians), axis=0)
-        return np.nan_to_num(np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1))
+        return np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1)
 
 
 def spread(medians: Float) -> float:

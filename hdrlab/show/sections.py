@@ -100,23 +100,21 @@ def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
     """Return how far each frame departs from what all say, as numbers and as bars."""
     shared = np.isfinite(medians[..., consistency.LEVELS])
     shared &= shared.sum(axis=0) >= 2
-    spread, departs = consistency.spread(medians), consistency.deviations(medians)
-    widest = max(np.abs(departs).max(), CLOSE)
+    spread, found = consistency.spread(medians), consistency.deviations(medians)
+    counts = shared.any(axis=1).sum(axis=1).tolist()
+    bars = np.nan_to_num(found)  # none, for a frame of which nothing is known
+    widest = max(np.abs(bars).max(), CLOSE)
     rows = [
         {
             "name": name,
             "time": plots.seconds(time),
             "levels": levels,
-            "stops": signed(by, 3) if levels else "–",
+            "stops": signed(by, 3) if np.isfinite(departs) else "–",
             "start": f"{50 + 50 * min(by, 0) / widest:.2f}",
             "width": f"{50 * abs(by) / widest:.2f}",
         }
-        for name, time, by, levels in zip(
-            photographs.names,
-            photographs.times,
-            departs,
-            shared.any(axis=1).sum(axis=1).tolist(),
-            strict=True,
+        for name, time, departs, by, levels in zip(
+            photographs.names, photographs.times, found, bars, counts, strict=True
         )
     ]
     return {"spread": in_stops(spread), "verdict": verdict(spread), "rows": rows}
