@@ -1,0 +1,102 @@
+"""Photographs as values that one can compare: what each of them would have been in another's exposure.
+
+Z      photographs         (P, H, W[, 3]) levels;  t  (P,) times, s;  g  (n[, 3]) ln exposure of each level
+X      exposure            share of a full pixel, exp g(Z) / exp g(n - 1), 0 to 1
+v      value               X^(1 / 2.2), (H, W, C) float32: equal differences look about equal
+H      radiance            (H, W, C), in the unit of g per second
+full   exp g(n - 1)        (C,), exposure of a full pixel
+noise  (H, W, C)           what one level more would add to the value
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from skimage.transform import resize
+
+from hdrlab.core.arrays import Array, as_stack, as_table, as_times, levels
+
+Float = NDArray[np.float32]
+Mask = NDArray[np.bool_]
+
+GAMMA = 2.2
+WITHIN = 3  # levels
+FULL = 0.98  # of the top level: above it a pixel may have been full, as in `radiance.merge`
+
+
+class Values(NamedTuple):
+    """Photographs as values.
+
+    Attributes
+    ----------
+    v : (P, H, W, C)
+    z : (P, H, W, C), levels from 0 to 1
+    noise : (P, H, W, C)
+    clipped : (P, H, W, C) bool
+    t : (P,), seconds
+    full : (C,)
+    """
+
+    v: Float
+    z: Float
+    noise: Float
+    clipped: Mask
+    t: NDArray[np.float64]
+    full: Float
+
+
+def radiance(v: Float, t: float, full: Float) -> Float:
+    """Return h(v) = v^2.2 full / t."""
+    return v ** np.float32(GAMMA) * full / np.float32(t)
+
+
+def exposed(H: Float, t: float, full: Float) -> Float:
+    """Return l(H) = min(H t / full, 1)^(1 / 2.2)."""
+    return np.minimum(H * (np.float32(t) / full), 1) ** np.float32(1 / GAMMA)
+
+
+def boosted(v: Float, ratio: float) -> Float:
+    """Return l(h(v)) for an exposure `ratio` times as long, min(ratio^(1 / 2.2) v, 1) [Kang03 sec. 4].
+
+    Examples
+    --------
+    >>> boosted(np.float32([0.25, 0.8]), 4).round(3)
+    array([0.469, 1.   ], dtype=float32)
+    """
+    return np.minimum(v * np.float32(ratio ** (1 / GAMMA)), 1)
+
+
+def allowed(v: Float, noise: Float, clipped: Mask, t: float, full: Float) -> tuple[Float, Float]:
+    """Return the least and the most radiance that fits a photograph: within WITHIN levels of what it shows.
+
+    Where it is clipped it says "at least", and nothing of the most.
+    """
+    few = np.float32(WITHIN) * noise
+    least = radiance(np.where(clipped, v, np.maximum(v - few, 0)), t, full)
+    return least, np.where(clipped, np.float32(np.inf), radiance(v + few, t, full))
+
+
+def resized(picture: Array, shape: tuple[int, int]) -> Float:
+    """Return a picture (h, w, C) at another size: blurred first, where it is made smaller."""
+    if picture.shape[:2] == shape:
+        return picture.astype(np.float32)
+    return resize(picture.astype(np.float32), shape, order=1, anti_aliasing=shape[0] < picture.shape[0])
+
+
+def as_read(table: Float, Z: Array) -> Float:
+    """Return table[Z] (P, H, W, C), each channel by its own column where there are several."""
+    return np.stack([table[Z[..., c], c % table.shape[1]] for c in range(Z.shape[-1])], axis=-1)
+
+
+def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
+    """Return photographs as Values, checked, in their order."""
+    stack = as_stack(images)
+    t, n = as_times(times, len(stack)), levels(stack)
+    table = as_table(g, n).reshape(n, -1)
+    Z = stack.reshape(*stack.shape[:3], -1)
+    if table.shape[1] not in (1, Z.shape[-1]):
+        raise ValueError(f"expected a response of one channel or {Z.shape[-1]}, got {table.shape[1]}")
+    v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
+    z = (Z / (n - 1)).astype(np.float32)
+    full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])
+    return Values(as_read(v, Z), z, as_read(np.gradient(v, axis=0), Z), z > FULL, t, full)

@@ -1,0 +1,200 @@
+"""Patch-based HDR: photographs of a moving scene, as one of them saw it (Sen et al., SIGGRAPH Asia 2012).
+
+Z_k    photograph k        (P, H, W[, 3]) levels;  t  (P,) times, s;  g  (n[, 3]) ln exposure of each level
+L_k    the same in values  (H, W, C), see `exposures`: patches differ in values about as they look
+h      value -> radiance;  l_k  radiance -> value that exposure k makes of it
+g_k    l_k(h(L_q))         photograph q as exposure k would have had it
+alpha  (H, W, 1), 0 to 1   how well the reference is exposed
+H      radiance            (H, W, C), what is wanted
+I_k    (P, H, W, C)        photographs that never were: the reference's moment in every exposure
+
+    E(H) = sum of  alpha (h(L_ref) - H)^2 + (1 - alpha) MBDS(H | L_1, ..., L_P)        [Sen12 sec. 3]
+
+Where the reference is well exposed, H is the reference. Elsewhere H should look, in every exposure, as if it
+were made of patches of the photographs, and leave none of theirs out: `similarity` has that measure.
+
+It takes long: the time goes with pixels x side^2 x P^2. Three photographs of 96 x 144 pixels take about 5 s
+here, where a compiled program for whole photographs takes minutes. So it is for small pictures.
+"""
+
+from collections.abc import Iterator
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.beyond.exposures import Float, as_values, resized
+from hdrlab.beyond.patchmatch import Index, identity
+from hdrlab.beyond.similarity import Search, searched, similarity, voted
+from hdrlab.beyond.synthesis import (
+    Ramp,
+    Scene,
+    at_scale,
+    blended,
+    extracted,
+    guessed,
+    merged,
+    sources,
+    trapezoid,
+    worth,
+)
+from hdrlab.core.arrays import Array
+from hdrlab.core.bracket import short_to_long
+from hdrlab.core.steps import last
+
+Begun = tuple[Index, tuple[Index, ...]]  # where the search of both ways begins
+
+RATIO = 2**0.5  # of the sides of a scale to those of the next coarser one
+
+
+class State(NamedTuple):
+    """Where the synthesis stands after a round of a scale.
+
+    Attributes
+    ----------
+    scale, round : from 0, the coarsest scale and what is before its first round
+    H : (h, w, C), radiance
+    I : (P, h, w, C), what each exposure makes of it, in values
+    mbds : (P,), by how much the exposures were unlike the photographs in this round; NaN before the first
+    """
+
+    scale: int
+    round: int
+    H: Float
+    I: Float  # noqa: E741  the paper's letter
+    mbds: NDArray[np.float64]
+
+
+def improved(
+    state: State, scene: Scene, begun: list[Begun], knobs: Search, rng: np.random.Generator
+) -> tuple[State, list[Begun]]:
+    """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
+    pictures, found, unlike = [], [], []
+    for k, (T, at) in enumerate(zip(state.I, begun, strict=True)):
+        S, price = sources(k, scene)
+        w, both = worth(k, scene, price, knobs.side), searched(T, S, price, at, knobs, rng)
+        pictures.append(voted(S, w, both, knobs.side))
+        found.append((both.coherence.at, tuple(field.at for field in both.completeness)))
+        unlike.append(similarity(w, both))
+    H = blended(merged(np.stack(pictures), scene), scene)
+    return State(state.scale, state.round + 1, H, extracted(H, scene), np.array(unlike)), found
+
+
+def scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
+    """Return the sides of every scale, coarse to fine; the shorter is about `coarsest` pixels at first."""
+    count = max(0, round(np.log(min(shape) / coarsest) / np.log(RATIO)))
+    return [(round(shape[0] / RATIO**j), round(shape[1] / RATIO**j)) for j in range(count, -1, -1)]
+
+
+def as_scene(
+    images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None, low: Ramp, high: Ramp
+) -> Scene:
+    """Return the Scene of photographs in any order, checked."""
+    seen = as_values(images, times, g)
+    order = short_to_long(np.asarray(images), seen.t)
+    place = len(order) // 2
+    if reference is not None:
+        if not 0 <= reference < len(order):
+            raise ValueError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
+        place = int(np.flatnonzero(order == reference)[0])
+    alpha = trapezoid(seen.z[order[place]], low, high)
+    v, noise, clipped, t = seen.v[order], seen.noise[order], seen.clipped[order], seen.t[order]
+    return Scene(v, noise, clipped, t, seen.full, place, alpha)
+
+
+def synthesise_steps(
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    *,
+    reference: int | None = None,
+    side: int = 5,
+    coarsest: int = 24,
+    rounds: tuple[int, int] = (8, 2),
+    low: Ramp = (0.05, 0.2),
+    high: Ramp = (0.85, 0.95),
+    rng: int | np.random.Generator = 0,
+) -> Iterator[State]:
+    """Yield the State of every scale before its first round and after each; parameters as of `synthesise`."""
+    finest = as_scene(images, times, g, reference, low, high)
+    sizes = scales(finest.L.shape[1:3], coarsest)
+    if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
+        raise ValueError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
+    generator, state, begun = np.random.default_rng(rng), None, None
+    for scale, (shape, count) in enumerate(zip(sizes, schedule(rounds, len(sizes)), strict=True)):
+        scene = at_scale(finest, shape)
+        H = guessed(scene) if state is None else blended(resized(state.H, shape), scene)
+        state = State(scale, 0, H, extracted(H, scene), np.full(len(scene.t), np.nan))
+        yield state
+        begun = standing(shape, len(scene.t), side) if begun is None else begun
+        knobs = Search(side, 2, max(shape) if scale == 0 else 4)
+        for _ in range(count):
+            state, begun = improved(state, scene, begun, knobs, generator)
+            yield state
+
+
+def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) -> Array:
+    """Return the radiance of the moment at which one of the photographs was taken.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Photographs in any order, roughly aligned; what moves may be anywhere. Small ones: see above.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each level.
+    reference : int, optional
+        Which photograph's moment it is; the middle exposure's by default.
+    side : int
+        Of a patch, pixels, odd.
+    coarsest : int
+        Shorter side of the coarsest scale, pixels.
+    rounds : (int, int)
+        Of search and vote at the coarsest scale and at the finest; those between lie between.
+    low, high : (float, float)
+        Levels, 1 the top, between which the reference begins to be trusted, and ceases to be.
+    rng : int or Generator
+        Where PatchMatch looks by chance.
+
+    Returns
+    -------
+    H : (H, W) or (H, W, 3) float32
+        In the unit of `radiance.merge`.
+
+    Raises
+    ------
+    ValueError
+        For arrays that do not fit together, a reference that is not there, and patches larger than the
+        coarsest scale.
+
+    References
+    ----------
+    Sen, Kalantari, Yaesoubi, Darabi, Goldman and Shechtman, Robust patch-based HDR reconstruction of dynamic
+    scenes, SIGGRAPH Asia 2012.
+    Barnes, Shechtman, Finkelstein and Goldman, PatchMatch: a randomized correspondence algorithm for
+    structural image editing, SIGGRAPH 2009.
+
+    Examples
+    --------
+    >>> t, g = np.array([1.0, 2.0, 4.0]), np.log(np.maximum(np.arange(256), 0.5) / 128)
+    >>> images = np.array([np.full((16, 16), level, np.uint8) for level in (32, 64, 128)])
+    >>> H = synthesise(images, t, g, coarsest=16)
+    >>> bool(np.allclose(H, 32 / 128, rtol=1e-3))
+    True
+    """
+    H = last(synthesise_steps(images, times, g, **knobs)).H
+    return H[..., 0] if np.ndim(images) == 3 else H
+
+
+def schedule(rounds: tuple[int, int], count: int) -> list[int]:
+    """Return how many rounds each of `count` scales has: as many less from scale to scale."""
+    if not min(rounds) >= 0:
+        raise ValueError(f"expected numbers of rounds at the coarsest and the finest scale, got {rounds}")
+    return np.rint(np.linspace(*rounds, count)).astype(int).tolist()
+
+
+def standing(shape: tuple[int, int], count: int, side: int) -> list[Begun]:
+    """Return where each search begins: where the patch stands, in the photograph of the same exposure."""
+    h, w = (n - side + 1 for n in shape)
+    return [(identity(h, w, k), (identity(h, w),) * count) for k in range(count)]

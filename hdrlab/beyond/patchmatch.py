@@ -1,0 +1,175 @@
+"""PatchMatch: for each patch of one picture, a patch like it in others (Barnes et al., SIGGRAPH 2009).
+
+T      target            (H, W, C) float32
+S      sources           (N, H, W, C) float32, of one size
+side   of a patch, pixels, odd;  h = H - side + 1 patches stand below each other, w likewise
+P, Q   patches           rows of side^2 C numbers, of each place (y, x) of its upper left corner
+at     the field         (h, w, 3) int: which source, y and x: where the patch like that at (y, x) is
+d      distance          (h, w), ||P - Q||^2 + the price of Q, which is inf where a patch is barred
+
+A random field has a few good matches by chance. What is good spreads: the neighbour of a patch is probably
+like the neighbour of its match. The paper goes through the picture pixel by pixel; here all pixels ask the
+same neighbour at once, so that numpy can do it.
+"""
+
+from collections.abc import Iterator
+from typing import NamedTuple
+
+import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from numpy.typing import NDArray
+
+Float = NDArray[np.float32]
+Index = NDArray[np.intp]
+
+NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
+LARGE = (1 << 30, 1 << 30)
+CHUNK = 2048  # patches at a time, which stay in the processor's cache
+
+
+class Field(NamedTuple):
+    """Where the match of each patch is, `at` (h, w, 3), and how far from it, `d` (h, w)."""
+
+    at: Index
+    d: Float
+
+
+class Sources(NamedTuple):
+    """Patches to choose among: `rows` (N h w, side^2 C), their `price` (N h w), and (N, h, w)."""
+
+    rows: Float
+    price: Float
+    shape: tuple[int, int, int]
+
+
+def cut(picture: Float, side: int) -> Float:
+    """Return the patches of a picture (H, W, C) or of several, (..., h, w, side^2 C).
+
+    Examples
+    --------
+    >>> cut(np.arange(12, dtype=np.float32).reshape(3, 4, 1), 3)[0, 1].tolist()
+    [1.0, 2.0, 3.0, 5.0, 6.0, 7.0, 9.0, 10.0, 11.0]
+    """
+    windows = sliding_window_view(picture, (side, side), axis=(-3, -2))
+    return np.ascontiguousarray(windows.reshape(*windows.shape[:-3], -1))
+
+
+def sources(S: Float, side: int, price: Float | None = None) -> Sources:
+    """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
+    rows = cut(S, side)
+    each = (
+        np.zeros(rows.shape[:-1], np.float32) if price is None else cut(price[..., None], side).sum(axis=-1)
+    )
+    return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
+
+
+def distance(P: Float, Q: Sources, at: Index) -> Float:
+    """Return d = ||P - Q(at)||^2 + price of Q(at), (h, w)."""
+    _, h, w = Q.shape
+    index = ((at[..., 0] * h + at[..., 1]) * w + at[..., 2]).ravel()
+    rows, d = P.reshape(-1, P.shape[-1]), np.empty(index.size, np.float32)
+    for start in range(0, index.size, CHUNK):
+        part = slice(start, start + CHUNK)
+        apart = rows[part] - Q.rows[index[part]]
+        d[part] = np.einsum("ij,ij->i", apart, apart)
+    return (d + Q.price[index]).reshape(at.shape[:2])
+
+
+def started(P: Float, Q: Sources, at: Index) -> Field:
+    """Return the Field that begins with these places."""
+    at = inside(at, Q.shape)
+    return Field(at, distance(P, Q, at))
+
+
+def inside(at: Index, shape: tuple[int, int, int]) -> Index:
+    """Return places brought into the sources."""
+    return np.clip(at, 0, np.array(shape) - 1)
+
+
+def better(field: Field, P: Float, Q: Sources, at: Index) -> Field:
+    """Return the field with these places instead, where they are nearer."""
+    at = inside(at, Q.shape)
+    d = distance(P, Q, at)
+    nearer = d < field.d
+    return Field(np.where(nearer[..., None], at, field.at), np.where(nearer, d, field.d))
+
+
+def neighbours(at: Index, step: tuple[int, int]) -> Index:
+    """Return at(p - step) + step: the places beside the neighbours' matches [Barnes09 sec. 3.2, propagation].
+
+    At the edge, where there is no neighbour, it is the nearest one's.
+    """
+    h, w = at.shape[:2]
+    y, x = np.clip(np.arange(h) - step[0], 0, h - 1), np.clip(np.arange(w) - step[1], 0, w - 1)
+    return at[np.ix_(y, x)] + np.array([0, *step])
+
+
+def near(at: Index, radius: int, count: int, rng: np.random.Generator) -> Index:
+    """Return places at random within `radius` of the field's, in any source [Barnes09 sec. 3.2, search]."""
+    moves = rng.integers(-radius, radius, (*at.shape[:2], 2), endpoint=True)
+    source = at[..., :1] if count == 1 else rng.integers(0, count, (*at.shape[:2], 1))
+    return np.concatenate([source, at[..., 1:] + moves], axis=-1)
+
+
+def search_steps(
+    P: Float, Q: Sources, field: Field, *, radius: int, rng: np.random.Generator
+) -> Iterator[Field]:
+    """Yield the field after each round: every neighbour's match, then chance, from `radius` down to 1."""
+    while True:
+        for step in NEIGHBOURS:
+            field = better(field, P, Q, neighbours(field.at, step))
+        for source in range(1, Q.shape[0]):  # the same place in another picture
+            field = better(field, P, Q, (field.at + (source, 0, 0)) % (Q.shape[0], *LARGE))
+        reach = radius
+        while reach:
+            field = better(field, P, Q, near(field.at, reach, Q.shape[0], rng))
+            reach //= 2
+        yield field
+
+
+def identity(h: int, w: int, source: int = 0) -> Index:
+    """Return the field that looks for each patch where it stands, in one source."""
+    y, x = np.indices((h, w))
+    return np.stack([np.full((h, w), source), y, x], axis=-1)
+
+
+def scaled(at: Index, shape: tuple[int, int]) -> Index:
+    """Return a field for (h, w) patches of a finer scale, from that of a coarser one."""
+    ratios = [fine / coarse for fine, coarse in zip(shape, at.shape[:2], strict=True)]
+    own = [
+        np.minimum((np.arange(n) / r).astype(int), m - 1)
+        for n, r, m in zip(shape, ratios, at.shape[:2], strict=True)
+    ]
+    coarse = np.stack([np.zeros(shape, int), *np.meshgrid(*own, indexing="ij")], axis=-1)
+    apart = at[np.ix_(*own)] - coarse  # which source, and how far away in pixels of the coarser scale
+    return identity(*shape) + np.rint(apart * np.array([1, *ratios])).astype(int)
+
+
+def voted(S: Float, at: Index, shape: tuple[int, int], side: int) -> tuple[Float, Float]:
+    """Return the sums (H, W, C) of what the matches in S say of each pixel, and how many say it (H, W).
+
+    Each patch of the target has a match; all its pixels vote, so that a pixel has side^2 votes inside.
+    """
+    h, w = at.shape[:2]
+    total, count = np.zeros((*shape, S.shape[-1]), np.float32), np.zeros(shape, np.float32)
+    for dy in range(side):
+        for dx in range(side):
+            total[dy : dy + h, dx : dx + w] += S[at[..., 0], at[..., 1] + dy, at[..., 2] + dx]
+            count[dy : dy + h, dx : dx + w] += 1
+    return total, count
+
+
+def given(S: Float, at: Index, weight: Float, shape: tuple[int, int], side: int) -> tuple[Float, Float]:
+    """Return the same sums, of the votes that patches of one source S (H, W, C) give to their matches.
+
+    `at` leads from the source to the target, and `weight` (h, w) says what each patch is worth.
+    """
+    h, w = weight.shape
+    sums = np.zeros((S.shape[-1] + 1, shape[0] * shape[1]))
+    for dy in range(side):
+        for dx in range(side):
+            pixel = ((at[..., 1] + dy) * shape[1] + at[..., 2] + dx).ravel()
+            for c, plane in enumerate([*np.moveaxis(S[dy : dy + h, dx : dx + w], -1, 0), np.ones((h, w))]):
+                sums[c] += np.bincount(pixel, (weight * plane).ravel(), sums.shape[1])
+    total = sums.reshape(-1, *shape).astype(np.float32)
+    return np.moveaxis(total[:-1], 0, -1), total[-1]

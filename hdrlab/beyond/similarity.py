@@ -1,0 +1,95 @@
+"""Bidirectional similarity of a picture to several others (Simakov et al., CVPR 2008; Sen et al. 2012).
+
+T      target       (H, W, C) float32: the picture that is to become like the sources
+S      sources      (N, H, W, C)
+w      weights      (N, h, w), how much each patch of the sources has to be found again in T
+P, Q   patches of the sources and of the target
+
+    MBDS(T | S) = 1/N sum over P of  w(P) min_Q ||P - Q||^2 / |S|   +   sum over Q of  min_P ||Q - P||^2 / |T|
+
+The first sum, completeness, is small where nothing of the sources is missing in T; the second, coherence,
+where T has nothing that the sources have not.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hdrlab.beyond import patchmatch
+from hdrlab.beyond.patchmatch import Field, Index, Sources
+from hdrlab.core.steps import last
+
+Float = NDArray[np.float32]
+
+
+class Matches(NamedTuple):
+    """Both ways: of each patch of T in S, and of each patch of each S in T."""
+
+    coherence: Field
+    completeness: tuple[Field, ...]
+
+
+class Search(NamedTuple):
+    """How long to look: side of a patch, rounds, and how far chance reaches at first, pixels."""
+
+    side: int
+    rounds: int
+    radius: int
+
+
+def similarity(w: Float, matches: Matches) -> float:
+    """Return MBDS(T | S) [Sen12 sec. 3]."""
+    completeness = sum(
+        float((each * field.d).mean()) for each, field in zip(w, matches.completeness, strict=True)
+    )
+    return completeness / len(w) + float(matches.coherence.d.mean())
+
+
+def searched(
+    T: Float,
+    S: Float,
+    price: Float,
+    begun: tuple[Index, tuple[Index, ...]],
+    knobs: Search,
+    rng: np.random.Generator,
+) -> Matches:
+    """Return the matches of both ways, looked for from where they begin."""
+    P, Q = patchmatch.cut(T, knobs.side), patchmatch.sources(S, knobs.side, price)
+    back = patchmatch.sources(T[None], knobs.side)
+    rows = Q.rows.reshape(*Q.shape, -1)
+    coherence = look(P, Q, begun[0], knobs, rng)
+    return Matches(coherence, tuple(look(rows[q], back, at, knobs, rng) for q, at in enumerate(begun[1])))
+
+
+def look(P: Float, Q: Sources, at: Index, knobs: Search, rng: np.random.Generator) -> Field:
+    """Return the field after some rounds of PatchMatch from `at`, of this scale or of a coarser one."""
+    at = at if at.shape[:2] == P.shape[:2] else patchmatch.scaled(at, (P.shape[0], P.shape[1]))
+    begun = patchmatch.started(P, Q, at)
+    steps = patchmatch.search_steps(P, Q, begun, radius=knobs.radius, rng=rng)
+    return last(field for _, field in zip(range(knobs.rounds), steps, strict=False))
+
+
+def voted(S: Float, w: Float, matches: Matches, side: int) -> Float:
+    """Return the T that is best for these matches: the mean of all that they say [Simakov08 eq. 4].
+
+    Every patch of T brings the pixels of its match; every patch of S its own pixels to its match, with the
+    weight w / N.
+
+    Examples
+    --------
+    Of a picture that is the source moved by a pixel, all is found in the source:
+
+    >>> S = np.random.default_rng(0).random((1, 12, 14, 1), np.float32)
+    >>> T, at, free = S[0, :, 1:-1], patchmatch.identity(10, 10), np.zeros((1, 12, 12), np.float32)
+    >>> both = searched(T, S[:, :, 2:], free, (at, (at,)), Search(3, 9, 4), np.random.default_rng(0))
+    >>> bool(both.coherence.d[:, 1:].max() == 0)
+    True
+    """
+    shape = S.shape[1:3]
+    total, count = patchmatch.voted(S, matches.coherence.at, shape, side)
+    for picture, each, field in zip(S, w / len(S), matches.completeness, strict=True):
+        if each.any():
+            more, votes = patchmatch.given(picture, field.at, each, shape, side)
+            total, count = total + more, count + votes
+    return total / count[..., None]

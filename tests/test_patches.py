@@ -1,0 +1,209 @@
+"""Patch-based HDR: closed forms, PatchMatch against an exhaustive search, scenes with truth."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from hdrlab.beyond import exposures, patches, patchmatch, similarity, synthesis
+from hdrlab.capture import camera, movers
+from hdrlab.capture.responses import true_g
+from hdrlab.radiance.merge import merge
+from hdrlab.scenes.places import layers
+
+G = true_g("film")
+
+
+def noise(shape, seed=0):
+    return np.random.default_rng(seed).random(shape, np.float32)
+
+
+def psnr(E, truth):
+    """Return the PSNR of log2 radiance, dB, over the truth's range; its darkest per cent counts as black."""
+    floor = np.quantile(truth, 0.01)
+    a, b = (np.log2(np.maximum(one, floor)) for one in (E, truth))
+    return 20 * np.log10(np.ptp(b) / np.sqrt(np.mean((a - b - np.median(a - b)) ** 2)))
+
+
+@pytest.fixture(scope="module")
+def walk():
+    """A street, three photographs three stops apart, and a visitor who has gone eight pixels between them."""
+    place = layers("street", (48, 72))
+    times = camera.times_around(place.radiance, 3, stops=3)
+    figure = movers.Figure(place.mover, place.mask)
+    return movers.shoot(place.radiance, figure, movers.path(3, (0, 8)), times, full_well=20000, read_noise=5)
+
+
+def test_patches_are_the_windows_of_a_picture():
+    T = noise((7, 9, 3))
+    P = patchmatch.cut(T, 3)
+    assert P.shape == (5, 7, 27)
+    assert np.array_equal(np.sort(P[2, 4]), np.sort(T[2:5, 4:7].ravel()))
+
+
+def test_the_distance_is_that_of_all_pixels_and_the_price_is_added():
+    S, price = noise((2, 8, 9, 3)), noise((2, 8, 9), 1)
+    Q, P = patchmatch.sources(S, 3, price), patchmatch.cut(noise((8, 9, 3), 2), 3)
+    at = np.zeros((6, 7, 3), int)
+    at[..., 0], at[..., 1], at[..., 2] = 1, 3, 2
+    expected = ((P[4, 5] - patchmatch.cut(S[1], 3)[3, 2]) ** 2).sum() + price[1, 3:6, 2:5].sum()
+    assert patchmatch.distance(P, Q, at)[4, 5] == pytest.approx(expected, rel=1e-5)
+
+
+def test_patchmatch_comes_to_what_an_exhaustive_search_finds():
+    T, S = noise((14, 15, 1)), noise((2, 16, 17, 1), 3)
+    S[1, 3:13, 4:14] = T[2:12, 1:11]  # a part of T is to be found again
+    P, Q = patchmatch.cut(T, 5), patchmatch.sources(S, 5)
+    best = ((P[:, :, None] - Q.rows) ** 2).sum(axis=-1).min(axis=-1)
+    steps = patchmatch.search_steps(
+        P, Q, patchmatch.started(P, Q, patchmatch.identity(10, 11)), radius=16, rng=np.random.default_rng(0)
+    )
+    found = [next(steps) for _ in range(12)]
+    ratios = [float((field.d.mean()) / best.mean()) for field in found]
+    assert np.all(np.diff(ratios) <= 1e-6) and ratios[-1] < 1.06
+    assert np.array_equal(found[-1].at[3, 4], [1, 4, 7]) and found[-1].d[3, 4] < 1e-9
+
+
+def test_a_field_of_a_finer_scale_leads_as_far_in_the_same_direction():
+    at = patchmatch.identity(6, 8, 1) + np.array([0, 1, -2])
+    fine = patchmatch.scaled(at, (12, 16))
+    assert np.all(fine[..., 0] == 1)
+    assert np.array_equal(fine[..., 1:], patchmatch.identity(12, 16)[..., 1:] + np.array([2, -4]))
+
+
+def test_votes_of_a_picture_that_matches_itself_are_that_picture_both_ways():
+    S = noise((1, 10, 11, 3))
+    P, Q = patchmatch.cut(S[0], 3), patchmatch.sources(S, 3)
+    field = patchmatch.started(P, Q, patchmatch.identity(8, 9))
+    both = similarity.Matches(field, (field,))
+    w = noise((1, 8, 9), 4)
+    assert similarity.similarity(w, both) == 0
+    assert np.allclose(similarity.voted(S, w, both, 3), S[0], atol=1e-6)
+
+
+def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_coherence():
+    S = np.zeros((1, 16, 16, 1), np.float32)
+    S[0, 5:9, 5:9] = 1
+    T = np.zeros((16, 16, 1), np.float32)
+    knobs, at, rng = similarity.Search(5, 4, 16), patchmatch.identity(12, 12), np.random.default_rng(0)
+    free, w = np.zeros((1, 16, 16), np.float32), np.ones((1, 12, 12), np.float32)
+    lacking = similarity.searched(T, S, free, (at, (at,)), knobs, rng)
+    assert lacking.coherence.d.max() == 0 and lacking.completeness[0].d.max() > 1
+    alien = similarity.searched(S[0], T[None], free, (at, (at,)), knobs, rng)
+    assert alien.coherence.d.max() > 1 and alien.completeness[0].d.max() == 0
+    assert similarity.similarity(w, lacking) > 0 and similarity.similarity(0 * w, lacking) == 0
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(1e-3, 1e3), st.floats(1e-3, 10))
+def test_a_value_becomes_radiance_and_a_value_again(t, full):
+    v = np.linspace(0, 1, 11, dtype=np.float32)
+    wells = np.float32([full])
+    assert np.allclose(exposures.exposed(exposures.radiance(v, t, wells), t, wells), v, atol=1e-5)
+    boosted = exposures.exposed(exposures.radiance(v, t, wells), 4 * t, wells)
+    assert np.allclose(exposures.boosted(v, 4), boosted, atol=1e-5)
+
+
+def test_values_of_photographs_agree_with_merging_one_alone(walk):
+    Z, t = walk.bracket.images, walk.bracket.times
+    seen = exposures.as_values(Z, t, G)
+    for k in range(3):
+        E = merge(Z[k : k + 1], t[k : k + 1], G, mend=False)
+        inside = (Z[k] > 10) & (Z[k] < 240)
+        assert np.allclose(exposures.radiance(seen.v[k], t[k], seen.full)[inside], E[inside], rtol=1e-3)
+
+
+def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
+    """The true radiance lies within what each photograph allows, but for noise beyond a few levels."""
+    seen = exposures.as_values(walk.bracket.images, walk.bracket.times, G)
+    unit = np.exp(G[-1])  # of g over the truth's, in which exposure 1 fills a pixel
+    for k in range(3):
+        least, most = exposures.allowed(seen.v[k], seen.noise[k], seen.clipped[k], seen.t[k], seen.full)
+        truth = unit * walk.moments[k]
+        assert np.mean((truth >= 0.98 * least) & (truth <= 1.02 * most)) > 0.99
+
+
+def test_a_pixel_clipped_in_a_longer_exposure_cannot_be_a_source_for_a_shorter_one(walk):
+    scene = patches.as_scene(walk.bracket.images, walk.bracket.times, G, None, (0.05, 0.2), (0.85, 0.95))
+    for k in range(3):
+        _, price = synthesis.sources(k, scene)
+        barred = np.isinf(price)
+        assert not barred[: k + 1].any()
+        assert np.array_equal(barred[k + 1 :], scene.clipped[k + 1 :].any(axis=-1))
+
+
+def test_a_still_scene_is_the_scene():
+    place = layers("workshop", (48, 72)).radiance
+    shots = camera.shoot(place, camera.times_around(place, 3, stops=3), full_well=20000, read_noise=5)
+    H = patches.synthesise(shots.images, shots.times, G)
+    E = merge(shots.images, shots.times, G)
+    assert psnr(H, place) > psnr(E, place) - 0.5
+
+
+def test_where_the_reference_is_well_exposed_the_result_is_the_reference(walk):
+    Z, t = walk.bracket.images, walk.bracket.times
+    H = patches.synthesise(Z, t, G, rounds=(2, 1))
+    well = ((Z[1] > 0.25 * 255) & (Z[1] < 0.84 * 255)).all(axis=-1)
+    assert np.allclose(H[well], (np.exp(G[Z[1]]) / t[1])[well], rtol=1e-4) and well.mean() > 0.1
+
+
+def test_a_moving_visitor_is_where_the_reference_saw_her_and_without_a_ghost(walk):
+    Z, t = walk.bracket.images, walk.bracket.times
+    H, E = patches.synthesise(Z, t, G), merge(Z, t, G)
+    truth = walk.moments[1]
+    assert psnr(H, truth) > psnr(E, truth) + 2
+    for reference in (0, 2):
+        H = patches.synthesise(Z, t, G, reference=reference)
+        assert psnr(H, walk.moments[reference]) > psnr(E, walk.moments[reference])
+
+
+def test_the_steps_go_from_coarse_to_fine_and_become_more_alike(walk):
+    steps = list(patches.synthesise_steps(walk.bracket.images, walk.bracket.times, G))
+    sides = [state.H.shape[0] for state in steps]
+    assert sides == sorted(sides) and sides[0] < 30 and steps[-1].H.shape == (48, 72, 3)
+    first = [state for state in steps if state.scale == 0]
+    assert np.isnan(first[0].mbds).all() and first[-1].mbds.sum() < first[1].mbds.sum()
+    assert np.array_equal(steps[-1].H, patches.synthesise(walk.bracket.images, walk.bracket.times, G))
+
+
+def test_the_order_of_the_photographs_makes_no_difference(walk):
+    Z, t = walk.bracket.images[:, :32, :48], walk.bracket.times
+    knobs = {"rounds": (2, 1), "coarsest": 16}
+    order = [2, 0, 1]
+    assert np.array_equal(
+        patches.synthesise(Z, t, G, **knobs), patches.synthesise(Z[order], t[order], G, **knobs)
+    )
+    assert np.array_equal(
+        patches.synthesise(Z, t, G, reference=0, **knobs),
+        patches.synthesise(Z[order], t[order], G, reference=1, **knobs),
+    )
+
+
+@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("channels", [(), (3,)])
+def test_few_photographs_gray_or_black_or_full_give_finite_radiance(count, channels):
+    for level in (0, 255):
+        images = np.full((count, 20, 24, *channels), level, np.uint8)
+        H = patches.synthesise(images, 2.0 ** np.arange(count), G, rounds=(2, 1))
+        assert H.shape == images.shape[1:] and H.dtype == np.float32
+        assert np.isfinite(H).all() and H.min() >= 0
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"times": [1.0, 2.0]},
+        {"times": [1.0, -2.0, 3.0]},
+        {"images": np.zeros((3, 20, 24))},
+        {"g": np.zeros((256, 2))},
+        {"reference": 3},
+        {"reference": -1},
+        {"side": 4},
+        {"side": 99},
+        {"rounds": (-1, 2)},
+    ],
+)
+def test_what_means_nothing_is_refused(change):
+    given = {"images": np.zeros((3, 20, 24, 3), np.uint8), "times": [1.0, 2.0, 4.0], "g": G} | change
+    with pytest.raises(ValueError, match="expected"):
+        patches.synthesise(**given)
