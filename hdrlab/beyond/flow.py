@@ -1,0 +1,61 @@
+"""Optical flow between frames, and pictures brought along it (Kang et al., SIGGRAPH 2003, sec. 4).
+
+a, b   pictures   (H, W) float32, brought to one exposure, values of `exposures`
+u      flow       (2, H, W), pixels down and right: a(p) is b(p + u(p))
+f      any map    (H, W[, C])
+
+The flow is found coarse to fine, by scikit-image's TV-L1: a pan of many pixels is a small one at the coarsest
+level. The paper fits a global motion first and lets each region deviate from it; the pyramid does the same.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates
+from skimage.registration import optical_flow_tvl1
+
+Float = NDArray[np.float32]
+Flow = Callable[[Float, Float], Float]
+
+
+def tvl1(a: Float, b: Float) -> Float:
+    """Return u for which a(p) is b(p + u(p)); 0 where a picture is too small to tell.
+
+    Examples
+    --------
+    >>> ramp = np.float32(np.hypot(*np.mgrid[-16:16, -16:16]) / 24)
+    >>> tvl1(ramp, np.roll(ramp, 2, axis=1))[:, 8:-8, 8:-8].mean(axis=(1, 2)).round(1) + 0.0
+    array([0., 2.], dtype=float32)
+    """
+    if min(a.shape) < 16:
+        return np.zeros((2, *a.shape), np.float32)
+    return optical_flow_tvl1(a, b).astype(np.float32)
+
+
+def warped(f: Float, u: Float) -> Float:
+    """Return f(p + u(p)), linear between pixels; beyond the edge it is the edge's."""
+    places = np.indices(u.shape[1:]) + u
+    planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
+    found = [
+        map_coordinates(planes[..., c], places, order=1, mode="nearest") for c in range(planes.shape[-1])
+    ]
+    return np.stack(found, axis=-1).reshape(f.shape)
+
+
+def inside(u: Float) -> NDArray[np.bool_]:
+    """Return where p + u(p) lies in the picture, (H, W)."""
+    places = np.indices(u.shape[1:]) + u
+    ends = np.array(u.shape[1:]).reshape(2, 1, 1) - 1
+    return np.all((places >= 0) & (places <= ends), axis=0)
+
+
+def halves(u: Float) -> tuple[Float, Float]:
+    """Return the flows from the moment between a and b to either: half the way, back and forth.
+
+    u belongs to the pixels of a; the pixel that is half-way is reached by two rounds of u(p - u / 2).
+    """
+    half = (u / 2).astype(np.float32)
+    for _ in range(2):
+        half = (np.stack([warped(one, -half) for one in u]) / 2).astype(np.float32)
+    return -half, half

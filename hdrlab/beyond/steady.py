@@ -1,0 +1,135 @@
+"""Tone mapping that does not flicker: what a frame is adapted to is taken from its neighbours as well.
+
+E_i    radiance of frame i     (H, W[, 3]) >= 0, any linear unit, the same for all frames
+L_i    its luminance           (H, W)
+span   frames before and after that count
+Lav_i  log average             of all pixels of the frames i - span ... i + span: what frame i is adapted to
+a      key                     what Lav becomes, 0.18
+white  the brightest scaled luminance, a L / Lav, of these frames: what becomes white
+Ld_i   display luminance       (H, W) in [0, 1]
+y_i    mean of a frame as it is shown, in display levels, 0 to 255
+
+An operator that adapts to each frame by itself follows its noise, and whatever bright thing comes and goes:
+the room gets darker when a lamp enters. [Kang03 sec. 5] lets the photographic operator adapt to a few frames
+at once. Any operator with the knobs `key` and `white` of `tonemap.reinhard` serves.
+"""
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.beyond.neighbours import windows
+from hdrlab.core.arrays import as_radiance
+from hdrlab.core.colour import encode_srgb, luminance
+from hdrlab.core.extremes import brightest
+
+Float = NDArray[np.float32]
+TINY = float(np.finfo(np.float32).tiny)
+
+
+class State(NamedTuple):
+    """A frame that is done: its display luminance, and what it was adapted to.
+
+    Attributes
+    ----------
+    E : the frame itself, float32
+    Ld : (H, W) float32, 0 to 1
+    own : log average of the frame by itself
+    average : Lav, of the frames around too
+    white : scaled luminance that became white
+    """
+
+    E: Float
+    Ld: Float
+    own: float
+    average: float
+    white: float
+
+
+class Measured(NamedTuple):
+    """A frame, its luminance, the mean of ln(delta + L), and its brightest luminance."""
+
+    E: Float
+    L: Float
+    log: float
+    high: float
+
+
+def measured(E: ArrayLike, *, delta: float = 1e-6) -> Measured:
+    """Return mean(ln(delta + L)), delta in medians of L as in `tonemap.reinhard`, and the brightest L."""
+    E = as_radiance(E)
+    L = luminance(E)
+    floor = max(delta * brightest(L, cut=0.5), TINY)
+    return Measured(E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), brightest(L))
+
+
+def adapted(around: Sequence[Measured], *, key: float) -> tuple[float, float]:
+    """Return Lav = exp(mean of the frames' logarithms), and white, at least 1  [Kang03 sec. 5]."""
+    average = float(np.exp(np.mean([one.log for one in around])))
+    high = float(np.exp(np.mean(np.log([max(one.high, TINY) for one in around]))))
+    return average, max(1.0, key * high / average)
+
+
+def tonemap_steps(
+    frames: Iterable[ArrayLike],
+    operator: Callable[..., Float],
+    *,
+    key: float = 0.18,
+    span: int = 1,
+    **knobs: Any,
+) -> Iterator[State]:
+    """Yield the State of each frame as soon as `span` more have been seen.
+
+    Parameters
+    ----------
+    frames : radiance (H, W) or (H, W, 3), all in one unit
+    operator : of `tonemap.reinhard`'s kind: operator(L, key=, white=, **knobs) -> Ld
+    key : what the log average becomes
+    span : how many frames before and after count; 0 is each frame by itself
+    **knobs : more of the operator's
+
+    Raises
+    ------
+    ValueError
+        For frames that are not radiance, a key that is not positive and a negative span.
+
+    References
+    ----------
+    Kang, Uyttendaele, Winder and Szeliski, High dynamic range video, SIGGRAPH 2003, sec. 5.
+
+    Examples
+    --------
+    >>> def photographic(L, key, white):
+    ...     Lm = key * L / np.exp(np.log(L).mean())
+    ...     return Lm / (1 + Lm)
+    >>> frames = [np.full((2, 2), level) for level in (1.0, 2.0, 1.0)]
+    >>> [round(float(state.Ld.mean()), 3) for state in tonemap_steps(frames, photographic)]
+    [0.113, 0.222, 0.113]
+    """
+    if not 0 < key < np.inf or span < 0:
+        raise ValueError(f"expected a positive key and a span of at least 0, got {key} and {span}")
+    for place, around in windows((measured(E) for E in frames), span):
+        frame = around[place]
+        average, white = adapted(around, key=key)
+        own = float(np.exp(frame.log))
+        Ld = operator(frame.L, key=key * own / average, white=white, **knobs)
+        yield State(frame.E, Ld, own, average, white)
+
+
+def flicker(Ld: Iterable[ArrayLike]) -> float:
+    """Return the root mean square of (y_(i-1) - 2 y_i + y_(i+1)) / 4, y in levels of 0 to 255.
+
+    A steady change has no second difference. A mean that goes up and down by a level from frame to frame
+    counts one.
+
+    Examples
+    --------
+    >>> round(flicker(np.full((2, 2), y) for y in (0.1, 0.2, 0.1, 0.2)), 1)
+    17.3
+    """
+    y = np.array([255 * float(np.mean(encode_srgb(np.asarray(one, np.float64)))) for one in Ld])
+    if len(y) < 3:
+        raise ValueError(f"expected at least three frames, got {len(y)}")
+    return float(np.sqrt(np.mean((np.diff(y, 2) / 4) ** 2)))

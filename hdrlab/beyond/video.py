@@ -1,0 +1,217 @@
+"""High dynamic range video from exposures that take turns (Kang et al., SIGGRAPH 2003).
+
+Z_i    frame i        (H, W[, 3]) levels, of exposure time t_i, s: short, long, short, ...
+g      response       (n[, 3]), ln exposure of each level
+v_i    frame i        (H, W, C), in values, see `exposures`
+R_i    radiance       (H, W, C), what frame i says, exp g(Z_i) / t_i
+f_W    weight         w(Z_i), of each pixel and channel, 0 where it is clipped or black
+f_MW   consistency    (H, W, 1), 0 to 1: 0 where a neighbour, brought to frame i, contradicts it
+alpha  exposure       (H, W, 1), 1 where frame i is well exposed, 0 where it is clipped or black
+U      along          neighbours i - 1 and i + 1 brought to frame i, along the flow from i (unidirectional)
+B      between        the same, brought half-way to each other (bidirectional)
+
+Each frame has one exposure, and what it lacks its neighbours have, a moment earlier and later. Where frame i
+is well exposed, its neighbours are boosted to its exposure and followed. Where it is not there is nothing to
+follow; but the neighbours are exposed alike, and half-way between their moments lies that of frame i.
+"""
+
+from collections.abc import Iterable, Iterator
+from itertools import cycle
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.beyond.exposures import Float, Mask, allowed, as_read, as_values, boosted, exposed, radiance
+from hdrlab.beyond.flow import Flow, halves, inside, tvl1, warped
+from hdrlab.beyond.neighbours import windows
+from hdrlab.beyond.synthesis import Ramp, trapezoid
+from hdrlab.core import weights
+from hdrlab.core.arrays import Array, as_table, as_times, levels
+
+APART = np.float32(16 / 255)  # of values: a neighbour that is farther off counts for nothing
+LEAST = np.float32(1e-4)  # weight of B at least: where all are clipped, the shorter one knows more
+
+
+class Frame(NamedTuple):
+    """One frame: v, its noise, where it is clipped, R, f_W, all (H, W, C), alpha, t, and full (C,)."""
+
+    v: Float
+    noise: Float
+    clipped: Mask
+    R: Float
+    w: Float
+    alpha: Float
+    t: float
+    full: Float
+
+
+class Term(NamedTuple):
+    """What a neighbour brings to frame i: radiance R and weight w, (H, W, C)."""
+
+    R: Float
+    w: Float
+
+
+class State(NamedTuple):
+    """A frame that is done.
+
+    Attributes
+    ----------
+    frame : which, from 0
+    E : (H, W[, 3]), radiance
+    alone : (H, W, C), radiance of the frame by itself
+    along : U, its neighbours brought to it, one where there is one
+    between : B, two; at either end the one neighbour, brought to the frame for want of another
+    alpha : (H, W, 1)
+    """
+
+    frame: int
+    E: Float
+    alone: Float
+    along: tuple[Term, ...]
+    between: tuple[Term, ...]
+    alpha: Float
+
+
+def motion(a: Frame, b: Frame, flow: Flow) -> Float:
+    """Return the flow from a to b, the shorter exposure boosted to the longer one [Kang03 sec. 4]."""
+    longer = max(a.t, b.t)
+    return flow(*(boosted(one.v, longer / one.t).mean(axis=-1) for one in (a, b)))
+
+
+def brought(frame: Frame, u: Float) -> Term:
+    """Return a frame brought along a flow; it has no weight where that leads out of the picture."""
+    return Term(warped(frame.R, u), warped(frame.w, u) * inside(u)[..., None])
+
+
+def consistency(v: Float, v_: Float) -> Float:
+    """Return f_MW = 2 d^3 - 3 d^2 + 1, d the channels' greatest difference over APART, at most 1 [Kang03]."""
+    d = np.minimum(np.abs(v - v_).max(axis=-1, keepdims=True) / APART, 1)
+    return (2 * d - 3) * d * d + 1
+
+
+def trusted(i: Frame, term: Term) -> Term:
+    """Return a neighbour weighted by f_W f_MW alpha: as far as frame i can tell, and agrees."""
+    return term._replace(w=term.w * consistency(i.v, exposed(term.R, i.t, i.full)) * i.alpha)
+
+
+def half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
+    """Return both frames brought to the moment half-way between them, and trusted where they agree there."""
+    terms = [brought(*each) for each in zip((a, b), halves(motion(a, b, flow)), strict=True)]
+    longer = max(a.t, b.t)
+    agree = consistency(*(exposed(term.R, longer, a.full) for term in terms))
+    return tuple(term._replace(w=term.w * np.maximum(agree, 0.01)) for term in terms)
+
+
+def mixed(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> Float:
+    """Return (f_W R_i + sum U + (1 - alpha) sum B) / (f_W + ...), each R times its weight [Kang03 sec. 4].
+
+    It is kept within what frame i allows: at least R_i where that is clipped, within a few levels elsewhere.
+    """
+    half = [(R, (1 - i.alpha) * np.maximum(w, LEAST)) for R, w in between]
+    terms = [(i.R, i.w), *along, *half]
+    total = np.sum([w for _, w in terms], axis=0)
+    mean = np.sum([w * R for R, w in terms], axis=0) / np.where(total > 0, total, 1)
+    return np.clip(np.where(total > 0, mean, i.R), *allowed(i.v, i.noise, i.clipped, i.t, i.full))
+
+
+def merge_steps(
+    frames: Iterable[ArrayLike],
+    times: ArrayLike,
+    g: ArrayLike,
+    w: ArrayLike | None = None,
+    *,
+    low: Ramp = (0.02, 0.1),
+    high: Ramp = (0.85, 0.95),
+    flow: Flow = tvl1,
+) -> Iterator[State]:
+    """Yield the State of each frame as soon as the next one is there; the parameters are those of `merge`.
+
+    Frames may come from a generator: three at a time are held.
+    """
+    turn = np.atleast_1d(np.asarray(times, np.float64))
+    turn = as_times(turn, max(turn.size, 1))
+    seen = alike(as_frame(Z, float(t), g, w, low, high) for Z, t in zip(frames, cycle(turn), strict=False))
+    for number, (place, around) in enumerate(windows(seen, 1)):
+        i, beside = around[place], [*around[:place], *around[place + 1 :]]
+        there = [brought(j, motion(i, j, flow)) for j in beside]
+        between = half_way(beside[0], beside[1], flow) if len(beside) == 2 else tuple(there)
+        along = tuple(trusted(i, term) for term in there)
+        E = mixed(i, along, between)
+        yield State(number, E if E.shape[-1] > 1 else E[..., 0], i.R, along, between, i.alpha)
+
+
+def merge(
+    frames: Iterable[ArrayLike],
+    times: ArrayLike,
+    g: ArrayLike,
+    w: ArrayLike | None = None,
+    **knobs: Any,
+) -> Array:
+    """Return the radiance of every frame of a video whose exposures take turns.
+
+    Parameters
+    ----------
+    frames : T frames (H, W) or (H, W, 3), uint8 or uint16
+        In the order of time; each is best between two of one other exposure.
+    times : numbers
+        Exposure times, seconds, of one turn: they are repeated for as long as there are frames.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each level.
+    w : (n,) float, optional
+        Weights f_W; signal over noise by default, 0 above the cut.
+    low, high : (float, float)
+        Levels, 1 the top, between which a frame begins to be well exposed, and ceases to be.
+    flow : function
+        (a, b) -> (2, H, W), for which a(p) is b(p + flow); another one may be put in its place.
+
+    Returns
+    -------
+    E : (T, H, W) or (T, H, W, 3) float32
+        In the unit of `radiance.merge`.
+
+    Raises
+    ------
+    ValueError
+        For frames that are not photographs of one size, times that are not positive, and none of either.
+
+    References
+    ----------
+    Kang, Uyttendaele, Winder and Szeliski, High dynamic range video, SIGGRAPH 2003.
+
+    Examples
+    --------
+    >>> g = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    >>> frames = [np.full((16, 16), level, np.uint8) for level in (32, 128, 32)]
+    >>> bool(np.allclose(merge(frames, [1, 4], g), 32 / 128, rtol=1e-3))
+    True
+    """
+    found = [state.E for state in merge_steps(frames, times, g, w, **knobs)]
+    if not found:
+        raise ValueError("expected at least one frame, got none")
+    return np.stack(found)
+
+
+def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None, low: Ramp, high: Ramp) -> Frame:
+    """Return one photograph as a Frame, checked."""
+    stack = np.asarray(Z)[None]
+    seen = as_values(stack, [t], g)
+    n = levels(stack)
+    chosen = weights.cut(weights.snr(as_table(g, n))) if w is None else w
+    f_W = as_read(as_table(chosen, n).reshape(n, -1).astype(np.float32), stack.reshape(seen.v.shape))[0]
+    R = radiance(seen.v[0], t, seen.full)
+    alpha = trapezoid(seen.z[0], low, high)
+    return Frame(seen.v[0], seen.noise[0], seen.clipped[0], R, f_W, alpha, t, seen.full)
+
+
+def alike(frames: Iterable[Frame]) -> Iterator[Frame]:
+    """Yield the frames; raise a ValueError at one that is not of the first one's size."""
+    first = None
+    for number, frame in enumerate(frames):
+        first = frame if first is None else first
+        if frame.v.shape != first.v.shape:
+            raise ValueError(
+                f"expected frames of one size, got {first.v.shape} and, number {number + 1}, {frame.v.shape}"
+            )
+        yield frame
