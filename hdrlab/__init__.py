@@ -29,6 +29,9 @@ Which picture is better?               tonemap.quality.tmqi, show.contact.contac
 A picture without a radiance map       enhance.mertens.fuse
 A badly exposed photograph, and skin   enhance.battiato.correct, enhance.relight, enhance.skin
 Other cameras: pixels, shutters        beyond.assorted, beyond.flutter
+Patch-based HDR                        beyond.patches.synthesise, beyond.patchmatch
+HDR video                              beyond.video.merge, beyond.steady.tonemap_steps, io.sequence
+One lens, three sensors                beyond.splitter.merge
 All of it in a row                     pipeline.assemble, pipeline.develop
 Steps, sliders, plots                  show.widgets.play, show.widgets.tune, show.plots
 

@@ -24,18 +24,22 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(
         ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "exifread"], {"io"}
     ),
-    **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets", "IPython"], {"show"}),
+    **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets"], {"show"}),
+    "IPython": {"show", "course"},
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
     **dict.fromkeys(["mitsuba", "drjit"], {"scenes"}),
     **dict.fromkeys(
         ["nbformat", "nbclient", "sphinx", "docutils", "ziamath", "latex2mathml"], {"course"}
     ),  # the site
+    "pyseccomp": {"course"},  # the sandbox
+    **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
     "jinja2": {"show", "course"},
+    **dict.fromkeys(["starlette", "uvicorn", "markupsafe"], {"course"}),  # the gallery
     "lazy_loader": {"__init__"},
     "threadpoolctl": {"show"},
 }
 EVERYWHERE = {"numpy", "scipy", "skimage"}
-NOWHERE = {"cv2", "colour_hdri", "pytest", "hypothesis"}  # oracles and tools of the tests
+NOWHERE = {"cv2", "colour_hdri", "hypothesis"}  # oracles and tools of the tests
 
 FILES = sorted(HOME.rglob("*.py"))
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import click
 
 from hdrlab import __version__
-from hdrlab.cli import curves, exposures, lessons, maps, photographs, site
+from hdrlab.cli import curves, exposures, gallery, lessons, maps, photographs, site, video
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
@@ -47,6 +47,7 @@ for command in (
     lessons.demo,
     lessons.lab,
     photographs.assemble,
+    video.video,
     curves.calibrate,
     exposures.plan,
     exposures.meter,
@@ -55,6 +56,7 @@ for command in (
     maps.compare,
     maps.convert,
     maps.info,
+    gallery.gallery,
     site.site,
 ):
     main.add_command(command)

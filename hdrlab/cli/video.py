@@ -1,0 +1,92 @@
+"""The command that begins with a film."""
+
+from collections.abc import Iterator
+from fractions import Fraction
+from itertools import chain, islice
+from pathlib import Path
+from typing import Any
+
+import click
+
+from hdrlab.cli import common, curves
+
+
+@click.command()
+@click.argument("frames", type=common.FILE)
+@click.option("-o", "--out", required=True, type=common.FILE, help="Film to write, .gif or .mp4; see below.")
+@click.option("--times", required=True, metavar="SECONDS,...", help="Exposure times of a turn: 1/1000,1/60.")
+@click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
+@click.option("--rate", type=float, default=25.0, help="Frames a second of the film that is written.")
+@click.option("--key", type=float, default=0.18, help="What the log average of the frames becomes.")
+@click.option("--span", type=click.IntRange(0), default=1, help="Frames before and after to adapt to, too.")
+def video(
+    frames: Path, out: Path, times: str, response: str | Path, rate: float, key: float, span: int
+) -> None:
+    """Make a film of high dynamic range out of FRAMES whose exposures take turns.
+
+    FRAMES is a folder of photographs, sorted by name, or a film; films but .gif want the extra `video`. The
+    first frame has the first of --times, the next one the second, and so on in turns.
+
+    Each frame gets from its neighbours what its own exposure lacks, brought along the motion between them.
+    An --out of .gif or .mp4 is tone-mapped; a name without a suffix becomes a folder of radiance maps,
+    0001.exr and so on.
+
+    The response is found in the frames of the first turn (auto: in the space of measured curves), which
+    should show nearly the same. Better is a curve that `hdrlab calibrate` has saved.
+    """
+    from hdrlab.beyond import video as merging
+    from hdrlab.io import sequence
+
+    turn = seconds(times)
+    sequence.require_writable(out) if out.suffix else sequence.require_new(
+        out
+    )  # better known before the work
+    count = sequence.count(frames)
+    film = sequence.read(frames)
+    begun = list(islice(film, len(turn)))
+    g = recovered(response, begun, turn)
+    steps = merging.merge_steps(chain(begun, film), turn, g)
+    maps = (state.E for state in common.progress(steps, "merging", count))
+    if out.suffix:
+        written = sequence.write(out, pictures(maps, key=key, span=span), rate=rate)
+    else:
+        written = sequence.write_maps(out, maps)
+    click.echo(f"{out}: {written} frames, {begun[0].shape[1]} x {begun[0].shape[0]}")
+
+
+def seconds(text: str) -> list[float]:
+    """Return times, separated by commas, as seconds; each may be a fraction."""
+    try:
+        found = [float(Fraction(one.strip())) for one in text.split(",")]
+    except (ValueError, ZeroDivisionError):
+        raise ValueError(f"--times: expected seconds such as 1/1000,1/60, got {text!r}") from None
+    if len(set(found)) < 2 or min(found) <= 0:
+        raise ValueError(f"--times: expected at least two exposures of a turn, got {text!r}")
+    return found
+
+
+def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any:
+    """Return the response: of a file, or found in the frames of a turn."""
+    import numpy as np
+
+    from hdrlab.core import catalogue
+    from hdrlab.core.bracket import bracket
+
+    if isinstance(response, Path):
+        return curves.given(response)()  # type: ignore[operator]  # of a file it is a function
+    if len(frames) < len(turn):
+        raise ValueError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
+    taken = bracket(np.stack(frames), turn)
+    return catalogue.method("response", "space" if response == "auto" else response)(
+        taken.images, taken.times
+    )
+
+
+def pictures(maps: Iterator[Any], *, key: float, span: int) -> Iterator[Any]:
+    """Yield the frames as a display shows them, tone-mapped steadily."""
+    from hdrlab.beyond import steady
+    from hdrlab.core import colour
+    from hdrlab.tonemap import reinhard
+
+    for state in steady.tonemap_steps(maps, reinhard.tonemap, key=key, span=span):
+        yield colour.render(state.E, colour.luminance(state.E), state.Ld)

@@ -1,0 +1,52 @@
+"""The class votes on its artifacts: a small web application over one folder.
+
+store, ballots, bearers   the database: what hangs, who marked what, who may
+writer                    ballots that arrive together are written together, and then acknowledged
+counting                  from ballots to places
+collect, pictures         what students hand in, decoded and encoded again
+guard, app, serve         the pages, and what stands before them
+export                    links for the class, columns for the gradebook
+
+What somebody may try, what stops it, and the promise in tests/test_gallery_attacks.py that it does:
+
+=====================  ==========================================================  ======================
+attack                 what stops it                                               test_...
+=====================  ==========================================================  ======================
+forged link            256 random bits, compared in constant time                  a_forged_link
+guessed links          the same, and few tries a minute from an address            guessed_links
+replayed link          a link is spent once, in one transaction                    a_replayed_link
+link read ahead        a link is spent by a button, not by being fetched           a_link_read_ahead
+link that leaks        no log of requests, no referrer to other sites              a_link_that_leaks
+stolen database        digests of tokens, and no tokens, in a file for its owner   a_stolen_database
+forged session         as links; renewing a link ends its session                  a_forged_session
+own team's artifact    refused by a trigger of the database                        a_vote_for_the_own_team
+second ballot          the voter is the ballot's key                               a_second_ballot
+too many votes         refused by a trigger of the database                        too_many_votes
+votes for nothing      a foreign key                                               a_vote_for_nothing
+late ballot            the server's clock, read within the transaction             a_late_ballot
+others' ballots        no page shows a ballot but one's own; results count them    the_ballots_of_others
+results before time    refused until the end                                       results_before_the_end
+script in a name       escaping, a policy without inline script                    script_in_a_name
+script in a title      the same, and one plain line                                script_in_a_title
+SVG as artifact        JPEG, PNG and TIFF alone, told by content                   svg_as_an_artifact
+EXIF of an artifact    pictures are encoded anew from pixels                       exif_of_an_artifact
+polyglot artifact      the same                                                    a_polyglot
+decompression bomb     sizes judged by the header, before anything is allocated    a_decompression_bomb
+link as an artifact    plain files alone                                           a_link_as_an_artifact
+path traversal         names are looked up, and never joined to a path             path_traversal
+oversize form          bytes counted as they come                                  an_oversize_form
+slow form              ten seconds for all of it                                   a_slow_form
+CSRF                   origin, key of the session, kind of content, SameSite       csrf
+SQL injection          parameters alone                                            sql_injection
+clickjacking           frame-ancestors 'none'                                      clickjacking
+enumeration            addresses keyed by a secret; the same answer to all         enumeration
+header injection       one host's name, redirects to constants, strict parsing     header_injection
+forged client address  a proxy is believed where one is stated                     a_forged_client_address
+flood by a voter       so many requests and ballots of each session                a_flood
+formulas in a table    cells are text                                              formulas_in_a_table
+archive with traps     see hdrlab.course.unpack                                    an_archive_with_traps
+=====================  ==========================================================  ======================
+
+What it does not stop: somebody who is given another's link votes with it, and who can read the network votes
+too unless a proxy adds TLS. A flood of connections is a proxy's to stop.
+"""

@@ -1,0 +1,266 @@
+"""The gallery as a web application: a wall, a closer look, two beside each other, a ballot, and results.
+
+Every answer is a page, a picture or a line of JSON. Nothing is uploaded here and nobody signs up: artifacts
+and voters come by the command line. Addresses hold no state, pages no inline script or style.
+"""
+
+import sqlite3
+import time
+from collections.abc import Callable, Mapping
+from contextlib import asynccontextmanager
+from datetime import datetime
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+from urllib.parse import urlsplit
+
+import jinja2
+from markupsafe import Markup
+from starlette.applications import Starlette
+from starlette.exceptions import HTTPException
+from starlette.requests import Request
+from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
+from starlette.routing import Route
+from starlette.types import ASGIApp
+
+from hdrlab.course.gallery import ballots, bearers, counting, pictures, store, tokens
+from hdrlab.course.gallery.guard import Guard, Rate, Rates, Refusal, form, same_origin
+from hdrlab.course.gallery.writer import Writer
+
+HERE = Path(__file__).parent
+STATIC = {
+    "icon.svg": "image/svg+xml",
+    "gallery.css": "text/css",
+    "wall.js": "text/javascript",
+    "look.js": "text/javascript",
+}
+KEPT_FILES, KEPT_CARDS = 400, 4000  # in memory: what a class looks at again and again
+KEPT = 60 * 60 * 24 * 180  # seconds for which a browser stays signed in
+FOREVER = "private, max-age=31536000, immutable"
+REQUESTS = Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
+BALLOTS = Rate(30, 1)  # of a voter
+FAILURES = Rate(30, 0.5)  # of an address, with links or sessions that are none
+SPENT = "This link has been used. It works once; ask your course for a new one if you lost your way in."
+HINTS = {404: "There is nothing here.", 405: "This page does not take that."}
+
+
+class Gallery:
+    """The pages, over one folder's gallery at one address."""
+
+    def __init__(self, folder: str | Path, address: str, clock: Callable[[], float] = time.time) -> None:
+        parts = urlsplit(address)
+        if parts.scheme not in ("http", "https") or not parts.netloc or parts.path not in ("", "/"):
+            raise ValueError(f"expected an address such as https://vote.example.edu, got {address!r}")
+        self.host, self.secure = parts.netloc, parts.scheme == "https"
+        self.origin = f"{parts.scheme}://{parts.netloc}"
+        self.cookie = "__Host-gallery" if self.secure else "gallery"
+        self.folder, self.clock, self.rates = Path(folder), clock, Rates()
+        self.db, self.writer = store.connect(folder), Writer(folder)
+        loader = jinja2.FileSystemLoader(HERE / "templates")
+        self.pages = jinja2.Environment(
+            loader=loader,
+            autoescape=True,
+            undefined=jinja2.StrictUndefined,
+            trim_blocks=True,
+            lstrip_blocks=True,
+        )
+
+        self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
+        self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
+
+    def close(self) -> None:
+        """Write what waits, and let go of the database."""
+        self.writer.close()
+        self.db.close()
+
+    def page(self, name: str, status: int = 200, **words: Any) -> HTMLResponse:
+        """Return a page."""
+        set_up = store.settings(self.db)
+        known = {"title": set_up.title, "open": set_up.is_open(self.clock()), "closes": said(set_up.closes)}
+        return HTMLResponse(self.pages.get_template(name).render(known | words), status)
+
+    def voter(self, request: Request) -> tuple[store.Voter, tokens.Shown]:
+        """Return who asks, or raise a Refusal."""
+        text = request.cookies.get(self.cookie, "")
+        shown, voter = tokens.read(text), bearers.whose(self.db, text)
+        if voter is None or shown is None:
+            if text:
+                self.failed(request)
+            raise Refusal(401, "To see the gallery, open the personal link that your course sent you.")
+        if not self.rates.take("requests", voter.id, REQUESTS):
+            raise Refusal(429, "That was a lot at once. Wait a moment, and try again.")
+        return voter, shown
+
+    def failed(self, request: Request) -> None:
+        """Count a link or session that is none; after many of them raise another Refusal.
+
+        What is good passes always: a class behind one address is not locked out by one of it.
+        """
+        if not self.rates.take("failures", request.client.host if request.client else "", FAILURES):
+            raise Refusal(429, "Too many tries from this address. Wait a minute, and try again.")
+
+    async def wall(self, request: Request) -> Response:
+        """Show all artifacts, in the voter's own order, with the voter's ballot."""
+        voter, shown = self.voter(request)
+        set_up, hung = store.settings(self.db), store.artifacts(self.db)
+        when, chosen = ballots.chosen(self.db, voter.id)
+        order = tokens.shuffled(list(hung), set_up.secret, voter.id)
+        may = set_up.is_open(self.clock())
+        return self.page(
+            "wall.html",
+            cards=[
+                Markup(
+                    self.card(one=hung[id], own=hung[id].team == voter.team, chosen=id in chosen, open=may)
+                )
+                for id in order
+            ],
+            marks=set_up.marks,
+            chosen=len(chosen),
+            when=None if when is None else said(datetime.fromtimestamp(when, set_up.closes.tzinfo)),
+            key=tokens.form_key(shown),
+        )
+
+    async def ballot(self, request: Request) -> Response:
+        """Take a ballot, which replaces the one before, and answer when it is on the disk."""
+        same_origin(request, self.origin)
+        voter, shown = self.voter(request)
+        if not self.rates.take("ballots", voter.id, BALLOTS):
+            raise Refusal(
+                429, "Too many changes at once. Your ballot of before counts; try again in a moment."
+            )
+        fields = await form(request)
+        keys = [value for name, value in fields if name == "key"]
+        if keys != [tokens.form_key(shown)]:
+            raise Refusal(403, "This form is too old, or not yours. Open the gallery again.")
+        marked = [value for name, value in fields if name == "mark"]
+        try:
+            count = await self.writer.do(lambda db: ballots.cast(db, voter.id, marked, now=self.clock()))
+        except ballots.NotAccepted as reason:
+            raise Refusal(409, str(reason)) from None
+        if "application/json" in request.headers.get("accept", ""):
+            when = datetime.fromtimestamp(self.clock(), store.settings(self.db).closes.tzinfo)
+            return JSONResponse({"votes": count, "when": f"{when:%H:%M:%S}"})
+        return RedirectResponse("/", 303)
+
+    async def link(self, request: Request) -> Response:
+        """Show a button for a personal link: a mail's preview, which fetches links ahead, spends none."""
+        token = request.path_params["token"]
+        if bearers.whose(self.db, token, "link"):
+            return self.page("enter.html", token=token)
+        voter = bearers.whose(self.db, request.cookies.get(self.cookie, ""))
+        if voter and voter.id == bearers.spent_by(self.db, token):
+            return RedirectResponse("/", 303)
+        self.failed(request)
+        raise Refusal(404, SPENT)
+
+    async def enter(self, request: Request) -> Response:
+        """Take a personal link, once, and begin a session."""
+        same_origin(request, self.origin)
+        token = request.path_params["token"]
+        entered = await self.writer.do(lambda db: bearers.spend(db, token))
+        if entered is None:
+            self.failed(request)
+            raise Refusal(404, SPENT)
+        response = RedirectResponse("/", 303)
+        response.set_cookie(
+            self.cookie, entered[1], max_age=KEPT, path="/", secure=self.secure, httponly=True, samesite="lax"
+        )
+        return response
+
+    async def look(self, request: Request) -> Response:
+        """Show one artifact closely, between its neighbours in the voter's order."""
+        voter, _ = self.voter(request)
+        hung = store.artifacts(self.db)
+        order = tokens.shuffled(list(hung), store.settings(self.db).secret, voter.id)
+        id = request.path_params["id"]
+        if id not in hung:
+            raise Refusal(404, HINTS[404])
+        at = order.index(id)
+        before, after = order[at - 1], order[(at + 1) % len(order)]
+        return self.page(
+            "look.html", shown=[hung[id]], place=at + 1, count=len(order), before=before, after=after
+        )
+
+    async def compare(self, request: Request) -> Response:
+        """Show two artifacts beside each other."""
+        self.voter(request)
+        hung, wanted = store.artifacts(self.db), request.query_params.getlist("with")
+        if len(set(wanted)) != 2 or not set(wanted) <= hung.keys():
+            raise Refusal(400, "Choose two artifacts on the wall, and compare again.")
+        return self.page("look.html", shown=[hung[id] for id in wanted], place=0, count=len(hung))
+
+    async def picture(self, request: Request) -> Response:
+        """Send a picture that this program has encoded."""
+        self.voter(request)
+        id, size = request.path_params["id"], request.path_params["size"]
+        if size not in pictures.SIZES or not store.hangs(self.db, id):
+            raise Refusal(404, HINTS[404])
+        data = self.bytes_of(pictures.place(self.folder / store.PICTURES, id, size))
+        return Response(data, media_type="image/webp", headers={"Cache-Control": FOREVER})
+
+    async def results(self, request: Request) -> Response:
+        """Show the places, after the end and not before."""
+        self.voter(request)
+        set_up, hung = store.settings(self.db), store.artifacts(self.db)
+        if set_up.is_open(self.clock()):
+            raise Refusal(403, f"The results are shown when the vote has closed: {said(set_up.closes)}.")
+        cast = [one for one in ballots.every(self.db).values() if one]
+        authors: dict[str, list[str]] = {}
+        for voter in store.voters(self.db):
+            authors.setdefault(voter.team, []).append(voter.name)
+        return self.page(
+            "results.html",
+            rows=[(row, hung[row.artifact]) for row in counting.standings(hung, cast)],
+            authors=authors,
+            cast=len(cast),
+            voters=sum(map(len, authors.values())),
+            method=counting.METHOD.format(marks=set_up.marks),
+        )
+
+    async def static(self, request: Request) -> Response:
+        """Send a style sheet or a script; anybody may have them."""
+        name = request.path_params["name"]
+        if name not in STATIC:
+            raise Refusal(404, HINTS[404])
+        data = self.bytes_of(HERE / "static" / name)
+        return Response(data, media_type=STATIC[name], headers={"Cache-Control": "max-age=300"})
+
+    async def refused(self, request: Request, error: Exception) -> Response:
+        """Say why, in a page or in JSON."""
+        if isinstance(error, Refusal):
+            status, why = error.status, error.said
+        else:
+            status = error.status_code if isinstance(error, HTTPException) else 500
+            why = HINTS.get(status, "Something went wrong here. Your ballot of before counts.")
+        if "application/json" in request.headers.get("accept", ""):
+            return JSONResponse({"error": why}, status)
+        return self.page("word.html", status, why=why, known=status != 401)
+
+
+def said(when: datetime) -> str:
+    """Return a time as a sentence has it, with its zone."""
+    return f"{when:%A} {when.day} {when:%B %Y}, {when:%H:%M} ({when.tzname()})"
+
+
+def application(gallery: Gallery) -> ASGIApp:
+    """Return the pages as an ASGI application, which closes the gallery when it ends."""
+
+    @asynccontextmanager
+    async def life(app: Starlette) -> Any:
+        yield
+        gallery.close()
+
+    routes = [
+        Route("/", gallery.wall),
+        Route("/ballot", gallery.ballot, methods=["POST"]),
+        Route("/enter/{token}", gallery.link),
+        Route("/enter/{token}", gallery.enter, methods=["POST"]),
+        Route("/look/{id}", gallery.look),
+        Route("/compare", gallery.compare),
+        Route("/picture/{id}/{size}", gallery.picture),
+        Route("/results", gallery.results),
+        Route("/static/{name}", gallery.static),
+    ]
+    handlers: Mapping[Any, Any] = {kind: gallery.refused for kind in (Refusal, HTTPException, sqlite3.Error)}
+    app = Starlette(routes=routes, exception_handlers=handlers, lifespan=life)
+    return Guard(app, host=gallery.host, secure=gallery.secure)

@@ -1,0 +1,178 @@
+"""The gallery on disk: one folder with its pictures and a database, in which a voter has one ballot.
+
+What must never happen is forbidden by the database itself, whatever the program above it does: a second
+ballot (its key is the voter), a vote for one's own team and a vote too many (triggers), a vote for what is
+not there (a foreign key). A ballot is acknowledged after it is on the disk: WAL with full synchronisation.
+"""
+
+import sqlite3
+from collections.abc import Iterator
+from contextlib import contextmanager
+from datetime import datetime
+from pathlib import Path
+from secrets import token_bytes
+from typing import NamedTuple
+
+DATABASE, PICTURES = "gallery.sqlite", "pictures"
+SCHEMA = """
+CREATE TABLE gallery (
+  one INTEGER PRIMARY KEY CHECK (one = 1), title TEXT NOT NULL, closes TEXT NOT NULL,
+  marks INTEGER NOT NULL CHECK (marks > 0), secret BLOB NOT NULL) STRICT;
+CREATE TABLE artifacts (
+  id TEXT PRIMARY KEY, team TEXT NOT NULL UNIQUE, title TEXT NOT NULL, caption TEXT NOT NULL,
+  width INTEGER NOT NULL, height INTEGER NOT NULL) STRICT;
+CREATE TABLE voters (
+  id TEXT PRIMARY KEY, name TEXT NOT NULL, team TEXT NOT NULL,
+  link TEXT UNIQUE, link_digest BLOB, session TEXT UNIQUE, session_digest BLOB) STRICT;
+CREATE TABLE ballots (voter TEXT PRIMARY KEY REFERENCES voters, cast_at REAL NOT NULL) STRICT;
+CREATE TABLE votes (
+  voter TEXT NOT NULL REFERENCES ballots, artifact TEXT NOT NULL REFERENCES artifacts,
+  PRIMARY KEY (voter, artifact)) STRICT, WITHOUT ROWID;
+CREATE TRIGGER own BEFORE INSERT ON votes WHEN
+  (SELECT team FROM artifacts WHERE id = NEW.artifact) = (SELECT team FROM voters WHERE id = NEW.voter)
+  BEGIN SELECT RAISE(ABORT, 'own team'); END;
+CREATE TRIGGER many BEFORE INSERT ON votes WHEN
+  (SELECT count(*) FROM votes WHERE voter = NEW.voter) >= (SELECT marks FROM gallery)
+  BEGIN SELECT RAISE(ABORT, 'too many'); END;
+"""
+
+
+class Settings(NamedTuple):
+    """What the gallery is called, until when it takes ballots, and how many votes are on one."""
+
+    title: str
+    closes: datetime
+    marks: int
+    secret: bytes
+
+    def is_open(self, now: float) -> bool:
+        """Return whether a ballot that arrives at this time (seconds of the epoch) counts."""
+        return now < self.closes.timestamp()
+
+
+class Artifact(NamedTuple):
+    """What hangs on the wall; width and height are those of its large picture."""
+
+    id: str
+    team: str
+    title: str
+    caption: str
+    width: int
+    height: int
+
+
+class Voter(NamedTuple):
+    """Who may vote."""
+
+    id: str
+    name: str
+    team: str
+
+
+def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None:
+    """Make a gallery in a folder that holds none.
+
+    Raises
+    ------
+    FileExistsError
+        Where there is one.
+    ValueError
+        For an end without a time zone, or marks below 1.
+    """
+    folder = Path(folder)
+    if closes.tzinfo is None:
+        raise ValueError(f"expected an end with its zone, such as 2026-12-01T23:59+01:00, got {closes}")
+    if marks < 1:
+        raise ValueError(f"expected at least 1 vote on a ballot, got {marks}")
+    if (folder / DATABASE).exists():
+        raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
+    (folder / PICTURES).mkdir(parents=True, exist_ok=True)
+    (folder / DATABASE).touch(mode=0o600)
+    with _opened(folder) as db:
+        db.executescript(f"BEGIN; {SCHEMA} COMMIT;")
+        db.execute(
+            "INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", (title, closes.isoformat(), marks, token_bytes(32))
+        )
+
+
+def connect(folder: str | Path) -> sqlite3.Connection:
+    """Return a connection to the gallery of a folder."""
+    path = Path(folder) / DATABASE
+    if not path.is_file():
+        raise ValueError(f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one")
+    db = sqlite3.connect(path, timeout=10, isolation_level=None, check_same_thread=False)
+    for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF"):
+        db.execute(f"PRAGMA {pragma}")
+    return db
+
+
+@contextmanager
+def _opened(folder: str | Path) -> Iterator[sqlite3.Connection]:
+    db = connect(folder)
+    try:
+        yield db
+    finally:
+        db.close()
+
+
+@contextmanager
+def writing(folder: str | Path) -> Iterator[sqlite3.Connection]:
+    """Yield a connection within a transaction, which counts when the block ends well."""
+    with _opened(folder) as db, transaction(db):
+        yield db
+
+
+@contextmanager
+def transaction(db: sqlite3.Connection) -> Iterator[None]:
+    """Take all that the block writes, or nothing."""
+    db.execute("BEGIN IMMEDIATE")
+    try:
+        yield
+    except BaseException:
+        db.execute("ROLLBACK")
+        raise
+    db.execute("COMMIT")
+
+
+def settings(db: sqlite3.Connection) -> Settings:
+    """Return the Settings as they are now."""
+    title, closes, marks, secret = db.execute("SELECT title, closes, marks, secret FROM gallery").fetchone()
+    return Settings(title, datetime.fromisoformat(closes), marks, secret)
+
+
+def close(db: sqlite3.Connection, now: datetime) -> None:
+    """Let the time for ballots end now."""
+    db.execute("UPDATE gallery SET closes = ?", (now.isoformat(),))
+
+
+def artifacts(db: sqlite3.Connection) -> dict[str, Artifact]:
+    """Return the artifacts by id."""
+    rows = db.execute("SELECT id, team, title, caption, width, height FROM artifacts ORDER BY id")
+    return {row[0]: Artifact(*row) for row in rows}
+
+
+def hangs(db: sqlite3.Connection, id: str) -> bool:
+    """Return whether there is such an artifact."""
+    return db.execute("SELECT 1 FROM artifacts WHERE id = ?", (id,)).fetchone() is not None
+
+
+def hang(db: sqlite3.Connection, artifact: Artifact) -> None:
+    """Put an artifact in the place of the team's earlier one; another picture starts without votes."""
+    gone = (artifact.team, artifact.id)
+    db.execute(
+        "DELETE FROM votes WHERE artifact IN (SELECT id FROM artifacts WHERE team = ? AND id != ?)", gone
+    )
+    db.execute("DELETE FROM artifacts WHERE team = ? AND id != ?", gone)
+    update = "ON CONFLICT (id) DO UPDATE SET title = excluded.title, caption = excluded.caption"
+    db.execute(f"INSERT INTO artifacts VALUES (?, ?, ?, ?, ?, ?) {update}", artifact)
+
+
+def voters(db: sqlite3.Connection) -> list[Voter]:
+    """Return who may vote, by id."""
+    return [Voter(*row) for row in db.execute("SELECT id, name, team FROM voters ORDER BY id")]
+
+
+def admit(db: sqlite3.Connection, voter: Voter) -> None:
+    """Let somebody vote; who is there already gets the new name and team."""
+    update = "ON CONFLICT (id) DO UPDATE SET name = excluded.name, team = excluded.team"
+    db.execute(f"INSERT INTO voters (id, name, team) VALUES (?, ?, ?) {update}", voter)

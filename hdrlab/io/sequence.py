@@ -1,0 +1,236 @@
+"""Frames in and out: a folder of photographs, an animation, a film.
+
+A film is read and written through imageio: .gif by Pillow, which is there; .mp4, .mov, .mkv, .avi and .webm
+by PyAV, which is an extra (`pip install hdrlab[video]`), for it brings 35 MB of codecs that no still picture
+needs. PyAV rather than an ffmpeg program beside Python: frames come as arrays without a pipe, an error has a
+name, and there is nothing to find on the path.
+
+Frames are decoded one at a time: a film need not fit into memory.
+"""
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, cast
+
+import imageio.v3 as iio
+import numpy as np
+from numpy.typing import NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.io import photos, radiance
+from hdrlab.io.files import MAX_PIXELS, replacing
+
+Frame = NDArray[Any]
+
+FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
+ANIMATIONS = {".gif"}
+SUFFIXES = FILMS | ANIMATIONS
+WRITTEN = {".gif", ".mp4"}
+MISSING = (
+    "films need the extra `video` (pip install hdrlab[video]); a folder of frames or a .gif does without"
+)
+
+
+def is_film(path: str | Path) -> bool:
+    """Return whether a path is, by its suffix, a film or an animation."""
+    return Path(path).suffix.lower() in SUFFIXES
+
+
+def read(path: str | Path) -> Iterator[Frame]:
+    """Yield the frames of a film, an animation, or a folder of photographs sorted by name.
+
+    Parameters
+    ----------
+    path : a folder, or a .gif, .mp4, .mov, .mkv, .avi or .webm
+
+    Returns
+    -------
+    frames (H, W) or (H, W, 3) uint8, or uint16 from photographs of 16 bits, all of one size, one at a time
+
+    Raises
+    ------
+    ValueError
+        For something else, a damaged file, no frames, or frames that do not go together. What is wrong with a
+        file's beginning is said at once, what is wrong later when it is reached.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "film.gif"
+    >>> write(file, (np.full((8, 8, 3), level, np.uint8) for level in (0, 255)))
+    2
+    >>> [frame.shape for frame in read(file)]
+    [(8, 8, 3), (8, 8, 3)]
+    """
+    path = Path(path)
+    if path.is_dir():
+        files = photos.photographs(path)
+        return alike((photos.read_photo(file) for file in files), path)
+    if path.suffix.lower() not in SUFFIXES:
+        raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(SUFFIXES))})")
+    if not path.is_file():
+        raise FileNotFoundError(f"{path}: there is no such file")
+    if path.suffix.lower() in FILMS:
+        require_films(path)
+    frames = alike(decoded(path), path)
+    first = next(frames)  # an unreadable file is found before anything is done with it
+    return chained(first, frames)
+
+
+def count(path: str | Path) -> int | None:
+    """Return how many frames there are, where that is known without decoding them: in a folder."""
+    return len(photos.photographs(path)) if Path(path).is_dir() else None
+
+
+def require_films(path: Path) -> None:
+    """Raise a ValueError where PyAV is not installed."""
+    import importlib.util
+
+    if importlib.util.find_spec("av") is None:
+        raise ValueError(f"{path}: {MISSING}")
+
+
+def chained(first: Frame, frames: Iterator[Frame]) -> Iterator[Frame]:
+    """Yield the first frame, and the others."""
+    yield first
+    yield from frames
+
+
+def decoded(path: Path) -> Iterator[Frame]:
+    """Yield the frames of a film or an animation, (H, W, 3) uint8."""
+    film = path.suffix.lower() in FILMS
+    try:
+        with iio.imopen(path, "r", plugin="pyav" if film else "pillow") as file:
+            source: Any = file  # what its plug-in takes beyond the common type
+            height, width = source.properties(index=0).shape[:2]
+            if height * width > MAX_PIXELS:
+                raise ValueError(f"its header claims {width} x {height} pixels")
+            for frame in source.iter() if film else source.iter(mode="RGB"):
+                yield np.asarray(frame)[..., :3]
+    except GeneratorExit:
+        raise
+    except Exception as error:  # on damaged files the codecs raise what they like
+        raise ValueError(f"{path}: it is cut short or damaged ({error})") from None
+
+
+def alike(frames: Iterable[Frame], path: Path) -> Iterator[Frame]:
+    """Yield the frames; raise a ValueError where there is none, or one that differs from the first."""
+    first = None
+    for number, frame in enumerate(frames, 1):
+        first = frame if first is None else first
+        if (frame.shape, frame.dtype) != (first.shape, first.dtype):
+            raise ValueError(
+                f"{path}: expected frames of one size and depth, got {first.shape} {first.dtype} "
+                f"and, number {number}, {frame.shape} {frame.dtype}"
+            )
+        yield frame
+    if first is None:
+        raise ValueError(f"{path}: expected at least one frame, got none")
+
+
+def write(path: str | Path, frames: Iterable[Frame], *, rate: float = 25.0) -> int:
+    """Write frames as an animation or a film, whole or not at all, as they come.
+
+    Parameters
+    ----------
+    path : .gif, or .mp4 (H.264, whose sides are even: an odd row or column is cut off)
+    frames : (H, W) or (H, W, 3) uint8, all of one size
+    rate : frames a second; a .gif knows only hundredths of a second
+
+    Returns
+    -------
+    count : how many they were
+
+    Raises
+    ------
+    ValueError
+        For another suffix, a rate that is not positive, or frames that are not pictures of one size.
+    """
+    path = Path(path)
+    require_writable(path)
+    if not 0 < rate <= 1000:
+        raise ValueError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
+    pictures = alike((as_rgb(frame) for frame in frames), path)
+    with replacing(path) as name:
+        return (
+            _write_film(name, pictures, rate)
+            if path.suffix.lower() in FILMS
+            else _write_gif(name, pictures, rate)
+        )
+
+
+def _write_film(path: Path, frames: Iterable[Frame], rate: float) -> int:
+    written, file = 0, None
+    try:
+        for frame in frames:
+            if file is None:
+                file = cast(Any, iio.imopen(path, "w", plugin="pyav"))
+                file.init_video_stream("libx264", fps=float(rate))
+            even = frame[: len(frame) // 2 * 2, : frame.shape[1] // 2 * 2]
+            file.write_frame(np.ascontiguousarray(even))
+            written += 1
+    finally:
+        if file is not None:
+            file.close()
+    return written
+
+
+def _write_gif(path: Path, frames: Iterable[Frame], rate: float) -> int:
+    """Write them all at once: of an animation the frames are small."""
+    shown = np.stack(list(frames))
+    with iio.imopen(path, "w", plugin="pillow") as file:
+        cast(Any, file).write(shown, duration=1000 / rate, loop=0)
+    return len(shown)
+
+
+def write_maps(folder: str | Path, maps: Iterable[NDArray[np.float32]], *, suffix: str = ".exr") -> int:
+    """Write radiance maps as 0001.exr, 0002.exr, ... into a new folder, all of them or none.
+
+    Raises
+    ------
+    ValueError
+        Where the folder is there and holds something, and for another suffix than a radiance map's.
+    """
+    folder, number = Path(folder).resolve(), 0
+    require_new(folder)
+    with TemporaryDirectory(prefix=".hdrlab-", dir=folder.parent) as scratch:
+        made = Path(scratch) / "maps"
+        made.mkdir()
+        for number, E in enumerate(maps, 1):
+            radiance.write_radiance(made / f"{number:04d}{suffix}", E)
+        if not number:
+            raise ValueError(f"{folder}: expected at least one map, got none")
+        made.replace(folder)
+    return number
+
+
+def require_new(folder: Path) -> None:
+    """Raise a ValueError where a folder cannot be made, or holds something already."""
+    folder = folder.resolve()
+    if not folder.parent.is_dir():
+        raise FileNotFoundError(f"cannot write {folder.name}: there is no folder {folder.parent}")
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise ValueError(f"{folder}: expected a folder that is new or empty, it holds something")
+
+
+def require_writable(path: Path) -> None:
+    """Raise a ValueError for a suffix that is not written, or for films where PyAV is not installed."""
+    suffix = path.suffix.lower()
+    if suffix not in WRITTEN:
+        raise ValueError(f"{path}: expected {' or '.join(sorted(WRITTEN))}, got {suffix or 'no suffix'}")
+    if suffix in FILMS:
+        require_films(path)
+
+
+def as_rgb(frame: Frame) -> NDArray[np.uint8]:
+    """Return a frame as (H, W, 3) uint8, or raise a ValueError."""
+    array = np.asarray(frame)
+    if (
+        array.dtype != np.uint8
+        or array.ndim not in (2, 3)
+        or array.shape[2:] not in ((), (3,))
+        or not array.size
+    ):
+        raise ValueError(f"expected frames (H, W) or (H, W, 3) of uint8, got {describe(array)}")
+    return array if array.ndim == 3 else np.repeat(array[..., None], 3, axis=-1)

@@ -1,0 +1,488 @@
+"""What somebody may try against the gallery: each row of the table in hdrlab.course.gallery, a test.
+
+The pages are asked as a program would ask them, byte by byte where that matters.
+"""
+
+import asyncio
+import io
+import re
+import sqlite3
+import struct
+import zlib
+from contextlib import closing, contextmanager
+from html.parser import HTMLParser
+from importlib.util import find_spec
+from pathlib import Path
+from urllib.parse import quote, urlencode
+
+import gallery_class as small
+import pytest
+from PIL import Image
+
+if find_spec("starlette") is None:
+    pytest.skip('the gallery needs pip install ".[class]"', allow_module_level=True)
+
+from hdrlab.course import gallery, sheets
+from hdrlab.course.gallery import app, bearers, collect, export, guard, pictures, store
+from hdrlab.course.roster import Roster, Student
+
+ORIGIN = {"origin": small.ADDRESS}
+ROSTER = Roster(tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m))
+
+
+@pytest.fixture
+def room(tmp_path):
+    return small.make(tmp_path)
+
+
+@contextmanager
+def browser(room, address=small.ADDRESS):
+    """Yield a browser that stands before the gallery."""
+    pages = app.Gallery(room.folder, address, room.clock)
+    yield small.Browser(app.application(pages), address)
+    pages.close()
+
+
+@pytest.fixture
+def client(room):
+    with browser(room) as one:
+        yield one
+
+
+def enter(client, room, who):
+    """Sign somebody in, and return the key of their form."""
+    client.cookies.clear()
+    answer = client.post(f"/enter/{room.links[who]}", headers=ORIGIN)
+    assert answer.status == 303
+    return small.key(client.get("/").text) if room.clock() < small.CLOSES.timestamp() else ""
+
+
+def vote(client, key, *marks, **headers):
+    return client.post("/ballot", {"key": key, "mark": marks}, headers=ORIGIN | headers)
+
+
+def saved(room, who):
+    from hdrlab.course.gallery import ballots
+
+    with closing(store.connect(room.folder)) as db:
+        return ballots.every(db).get(who)
+
+
+def test_every_row_of_the_table_has_its_test():
+    rows = re.findall(r"^(\S.{20}) +\S.*  (\w+)$", gallery.__doc__, re.M)
+    named = [test for attack, test in rows if attack.strip() != "attack"]
+    assert len(named) >= 30
+    assert [name for name in named if f"test_{name}" not in globals()] == []
+
+
+# who one is
+
+
+def test_a_forged_link(client, room):
+    link = room.links["ann"]
+    other = "A" if link[-1] != "A" else "B"
+    for forged in (link[:12] + "x" * 43, link[:-1] + other, room.links["ben"][:12] + link[12:], "", "x" * 55):
+        assert client.get(f"/enter/{forged}").status == 404
+        assert client.post(f"/enter/{forged}", headers=ORIGIN).status == 404
+    assert client.cookies == {}
+
+
+def test_guessed_links(client, room):
+    tries = [client.get(f"/enter/{k:055d}").status for k in range(60)]
+    assert tries[:30] == [404] * 30 and set(tries[35:]) == {429}
+    enter(client, room, "ann")  # the class behind the same address is not locked out
+
+
+def test_a_replayed_link(client, room):
+    enter(client, room, "ann")
+    assert client.get(f"/enter/{room.links['ann']}").status == 303  # the own browser is led on
+    client.cookies.clear()
+    for ask in (client.get, client.post):
+        assert ask(f"/enter/{room.links['ann']}", headers=ORIGIN).status == 404
+    assert "gallery" not in client.cookies
+
+
+def test_a_link_read_ahead(client, room):
+    for _ in range(3):
+        assert client.get(f"/enter/{room.links['ann']}").status == 200
+        assert client.ask("HEAD", f"/enter/{room.links['ann']}").status == 200
+    assert client.post(f"/enter/{room.links['ann']}").status == 403  # without the origin of a form
+    enter(client, room, "ann")
+
+
+def test_a_link_that_leaks(client, room, capfd):
+    page = client.get(f"/enter/{room.links['ann']}")
+    assert page.headers["referrer-policy"] == "same-origin" and page.headers["cache-control"] == "no-store"
+    assert not re.findall(r'(?:src|href|action)="(?!/)', page.text)  # nothing on it is fetched elsewhere
+    assert room.links["ann"] not in "".join(capfd.readouterr())
+    assert "access_log=False" in (Path(app.__file__).parent / "serve.py").read_text()
+
+
+def test_a_stolen_database(client, room):
+    enter(client, room, "ann")
+    session = client.cookies["gallery"]
+    kept = b"".join(path.read_bytes() for path in room.folder.glob("gallery.sqlite*"))
+    for token in (session, *room.links.values()):
+        assert token[12:].encode() not in kept
+    assert (room.folder / "gallery.sqlite").stat().st_mode & 0o077 == 0
+
+
+def test_a_forged_session(client, room):
+    enter(client, room, "ann")
+    session = client.cookies["gallery"]
+    for forged in (session[:12] + "x" * 43, room.links["ben"], "", "x" * 5000, "a\x00b"):
+        client.cookies.clear()
+        assert client.get("/", headers={"cookie": f"gallery={forged}"}).status in (401, 429)
+    with store.writing(room.folder) as db:
+        bearers.new_link(db, "ann")
+    assert client.get("/", headers={"cookie": f"gallery={session}"}).status == 401
+
+
+# ballots
+
+
+def test_a_vote_for_the_own_team(client, room):
+    key = enter(client, room, "ann")
+    answer = vote(client, key, room.artifacts["team1"], room.artifacts["team2"])
+    assert answer.status == 409 and "own team" in answer.text
+    assert saved(room, "ann") is None
+    assert room.artifacts["team1"] not in re.findall(r'name="mark" value="(\w+)"', client.get("/").text)
+
+
+def test_a_second_ballot(client, room):
+    key = enter(client, room, "ann")
+    for team in ("team2", "eve", "fay"):
+        assert vote(client, key, room.artifacts[team]).status == 303
+    assert saved(room, "ann") == {room.artifacts["fay"]}
+    with store.writing(room.folder) as db, pytest.raises(sqlite3.IntegrityError):
+        db.execute("INSERT INTO ballots VALUES ('ann', 0)")
+
+
+def test_too_many_votes(client, room):
+    key = enter(client, room, "ann")
+    others = [room.artifacts[team] for team in ("team2", "eve", "fay")]
+    assert vote(client, key, *others).status == 409
+    assert vote(client, key, *others[:1] * 40).status == 303  # one artifact many times is one vote
+    assert saved(room, "ann") == set(others[:1])
+
+
+def test_a_vote_for_nothing(client, room):
+    key = enter(client, room, "ann")
+    for mark in ("0" * 24, "", "ann", room.artifacts["eve"].upper(), "%00"):
+        assert vote(client, key, room.artifacts["eve"], mark).status == 409
+    assert saved(room, "ann") is None
+
+
+def test_a_late_ballot(client, room):
+    key = enter(client, room, "ann")
+    assert vote(client, key, room.artifacts["eve"]).status == 303
+    room.clock.now = small.CLOSES.timestamp()
+    for claimed in ({}, {"date": "Tue, 01 Dec 2026 12:00:00 GMT"}):
+        assert vote(client, key, room.artifacts["fay"], **claimed).status == 409
+    assert saved(room, "ann") == {room.artifacts["eve"]}
+    room.clock.now = small.START.timestamp()
+    with store.writing(room.folder) as db:
+        store.close(db, small.START)  # from another process, while the gallery is served
+    assert vote(client, key, room.artifacts["fay"]).status == 409
+
+
+def test_the_ballots_of_others(client, room):
+    vote(client, enter(client, room, "ann"), room.artifacts["eve"], room.artifacts["fay"])
+    before = {who: [] for who in ("cy", "eve")}
+    for who in before:
+        enter(client, room, who)
+        pages = [client.get(path).text for path in ("/", f"/look/{room.artifacts['eve']}")]
+        assert "checked" not in pages[0] and "No vote yet" in pages[0]
+        assert all("ann" not in page.lower() for page in pages)  # not even who hung what, while it is open
+
+
+def test_results_before_the_end(client, room):
+    vote(client, enter(client, room, "ann"), room.artifacts["eve"])
+    assert client.get("/results").status == 403
+    room.clock.now = small.CLOSES.timestamp() + 1
+    assert client.get("/results").status == 200
+    client.cookies.clear()
+    assert client.get("/results").status == 401
+
+
+# what students write and draw
+
+SCRIPT = """"><script>alert(1)</script><img src=x onerror=alert(2)>{{7*7}}'"""
+
+
+class Reader(HTMLParser):
+    """What a browser would take for attributes and scripts, ours included."""
+
+    def __init__(self):
+        super().__init__()
+        self.attributes, self.scripts = [], []
+
+    def handle_starttag(self, tag, attrs):
+        self.attributes += [name for name, _ in attrs]
+        self.scripts += [dict(attrs)] if tag == "script" else []
+
+
+def test_script_in_a_name(tmp_path):
+    room = small.make(tmp_path, names={"ann": SCRIPT})
+    room.clock.now = small.CLOSES.timestamp() + 1
+    with browser(room) as client:
+        enter(client, room, "cy")
+        page = client.get("/results")
+    assert (
+        "&lt;script&gt;alert(1)" in page.text and "<script>alert" not in page.text and "{{7*7}}" in page.text
+    )
+    assert "<img src=x" not in page.text
+    policy = page.headers["content-security-policy"]
+    assert "default-src 'none'" in policy and "unsafe" not in policy and "*" not in policy
+
+
+def test_script_in_a_title(tmp_path):
+    room = small.make(tmp_path, title=SCRIPT.replace("{", "{{").replace("}", "}}"), caption=SCRIPT)
+    with browser(room) as client:
+        enter(client, room, "cy")
+        for path, script in (("/", "wall.js"), (f"/look/{room.artifacts['eve']}", "look.js")):
+            page = client.get(path).text
+            assert "<script>alert" not in page and "onerror=alert(2)>" not in page
+            reader = Reader()
+            reader.feed(page)
+            assert not [name for name in reader.attributes if name == "style" or name.startswith("on")]
+            assert reader.scripts == [{"src": f"/static/{script}", "defer": None}]
+    words = tmp_path / "team1.txt"
+    words.write_text("A\u202etitle\x1b[2J \u0000\n" + "caption " * 100, encoding="utf8")
+    with collect.entry(tmp_path / "team1.png", ROSTER) as entry:
+        assert entry.title == "Atitle[2J" and len(entry.caption) <= collect.CAPTION
+
+
+def test_svg_as_an_artifact(tmp_path):
+    svg = b'<svg xmlns="http://www.w3.org/2000/svg"><script>alert(1)</script></svg>'
+    for name in ("team1.svg", "team1.png", "team1.jpg"):
+        (tmp_path / name).write_bytes(svg)
+        with pytest.raises(ValueError, match="expected a JPEG, PNG or TIFF"):
+            pictures.prepare(tmp_path / name)
+
+
+def test_exif_of_an_artifact(tmp_path):
+    exif = Image.Exif()
+    exif[0x010E] = "<script>alert(1)</script>"
+    exif.get_ifd(0x8825)[2] = (48.0, 51.0, 29.0)
+    Image.new("RGB", (90, 60), "teal").save(tmp_path / "a.jpg", exif=exif, comment=b"<script>")
+    for data in pictures.prepare(tmp_path / "a.jpg").files.values():
+        assert b"script" not in data and b"EXIF" not in data and b"Exif" not in data
+
+
+def test_a_polyglot(tmp_path):
+    data = io.BytesIO()
+    Image.new("RGB", (90, 60), "teal").save(data, "JPEG")
+    page = b"<!DOCTYPE html><script>alert(1)</script>" + b"PK\3\4" + b"%PDF-1.7"
+    (tmp_path / "a.jpg").write_bytes(data.getvalue() + page)
+    for made in pictures.prepare(tmp_path / "a.jpg").files.values():
+        assert made[:4] == b"RIFF" and made[8:12] == b"WEBP"
+        assert not any(part in made for part in (b"<script", b"PK\3\4", b"%PDF"))
+
+
+def test_a_decompression_bomb(tmp_path):
+    def png(width, height, rows):
+        chunks = [
+            (b"IHDR", struct.pack(">LLBBBBB", width, height, 8, 2, 0, 0, 0)),
+            (b"IDAT", rows),
+            (b"IEND", b""),
+        ]
+        body = [struct.pack(">L", len(d)) + k + d + struct.pack(">L", zlib.crc32(k + d)) for k, d in chunks]
+        return b"\x89PNG\r\n\x1a\n" + b"".join(body)
+
+    for width, height in ((30_000, 30_000), (2**31 - 1, 2**31 - 1), (60_000, 2_000)):
+        (tmp_path / "a.png").write_bytes(png(width, height, zlib.compress(bytes(10_000_000))))
+        with pytest.raises(ValueError, match="claims"):
+            pictures.prepare(tmp_path / "a.png")
+
+
+def test_a_link_as_an_artifact(tmp_path):
+    small.picture(tmp_path / "secret.png")
+    (tmp_path / "team1.png").symlink_to(tmp_path / "secret.png")
+    with pytest.raises(ValueError, match="plain file"):
+        pictures.prepare(tmp_path / "team1.png")
+
+
+def test_an_archive_with_traps(tmp_path):
+    import json
+    import zipfile
+
+    small.picture(tmp_path / "a.png")
+    said = {"students": ["ann"], "title": "t", "caption": "", "artifact": "../a.png"}
+    with zipfile.ZipFile(tmp_path / "one.zip", "w") as archive:
+        archive.writestr("submission.json", json.dumps(said))
+    with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
+        archive.writestr("../planted.png", b"x")
+    for name in ("one.zip", "two.zip"):
+        with pytest.raises(ValueError), collect.entry(tmp_path / name, ROSTER):
+            pass
+    assert not (tmp_path.parent / "planted.png").exists()
+
+
+# requests
+
+
+def test_path_traversal(client, room):
+    enter(client, room, "ann")
+    good = room.artifacts["eve"]
+    assert client.get(f"/picture/{good}/small").headers["content-type"] == "image/webp"
+    for path in (
+        *("/picture/..%2f..%2fgallery.sqlite/small", "/picture/../gallery.sqlite", "/static/..%2fapp.py"),
+        *(f"/picture/{good}/..%2f..%2fgallery.sqlite", f"/picture/{good}/small%00", "/static/%2e%2e/app.py"),
+        *("/picture//etc/passwd/small", "/static/wall.js/../../app.py", f"/look/..%2f{good}"),
+    ):
+        answer = client.get(path)
+        assert answer.status == 404 and b"SQLite" not in answer.content, path
+
+
+def test_an_oversize_form(client, room):
+    key = enter(client, room, "ann")
+
+    def pieces():
+        for _ in range(40):
+            yield b"mark=" + b"x" * 1000 + b"&"
+
+    kind = ORIGIN | {"content-type": "application/x-www-form-urlencoded"}
+    assert client.post("/ballot", body=pieces(), headers=kind).status == 413
+    assert client.post("/ballot", body=[b"x" * 20_000], headers=kind).status == 413
+    many = "&".join([f"key={key}", *("a=1" for _ in range(100))])
+    assert client.post("/ballot", body=[many.encode()], headers=kind).status == 400
+    assert client.post("/ballot", body=[b"key=\xff\xfe"], headers=kind).status == 400
+    assert saved(room, "ann") is None
+
+
+def test_a_slow_form(client, room, monkeypatch):
+    key = enter(client, room, "ann")
+    monkeypatch.setattr(guard, "PATIENCE", 0.05)
+
+    class Slow(small.Browser):
+        def ask(self, *asked):
+            async def slowly(scope, receive, send):
+                async def drip():
+                    await asyncio.sleep(0.02)
+                    return {"type": "http.request", "body": b"a=1&", "more_body": True}
+
+                await client.application(scope, drip, send)
+
+            self.application = slowly
+            return super().ask(*asked)
+
+    slow = Slow(None)
+    slow.cookies = client.cookies
+    assert vote(slow, key, room.artifacts["eve"]).status == 408
+
+
+def test_csrf(client, room):
+    key, eve = enter(client, room, "ann"), room.artifacts["eve"]
+    cookie = client.cookies["gallery"]
+    form = {"key": key, "mark": eve}
+    assert client.post("/ballot", form).status == 403
+    for origin in ("http://evil.test", "null", "http://vote.test.evil.test", "https://vote.test", ""):
+        assert client.post("/ballot", form, headers={"origin": origin}).status == 403
+    assert vote(client, key, eve, **{"sec-fetch-site": "cross-site"}).status == 403
+    for wrong in ("", "0" * 64, key[::-1]):
+        assert vote(client, wrong, eve).status == 403
+    other = enter(client, room, "cy")  # the key of another session
+    assert client.post(
+        "/ballot", {"key": other, "mark": eve}, headers=ORIGIN | {"cookie": f"gallery={cookie}"}
+    )
+    client.cookies.clear()
+    mixed = {"cookie": f"gallery={cookie}"} | ORIGIN
+    assert client.post("/ballot", {"key": other, "mark": eve}, headers=mixed).status == 403
+    plain = mixed | {"content-type": "text/plain"}
+    assert client.post("/ballot", body=[f"key={key}&mark={eve}".encode()], headers=plain).status == 415
+    assert client.get(f"/ballot?key={key}&mark={eve}", headers=mixed).status == 405
+    assert saved(room, "ann") is None
+
+
+def test_sql_injection(client, room):
+    key = enter(client, room, "ann")
+    for text in ("' OR '1'='1", "x'; DROP TABLE ballots; --", '" UNION SELECT link FROM voters --'):
+        assert vote(client, key, text).status == 409
+        assert client.get(f"/look/{quote(text)}").status == 404
+        assert (
+            client.get(f"/compare?{urlencode({'with': [text, room.artifacts['eve']]}, doseq=True)}").status
+            == 400
+        )
+        assert client.get(f"/enter/{quote(text)}").status == 404
+        assert client.get("/", headers={"cookie": f"gallery={text.replace(';', '')}"}).status in (
+            200,
+            401,
+        )
+    assert vote(client, key, room.artifacts["eve"]).status == 303
+    assert saved(room, "ann") == {room.artifacts["eve"]}
+
+
+def test_clickjacking(client, room):
+    enter(client, room, "ann")
+    for path in ("/", "/nothing", "/static/wall.js", f"/picture/{room.artifacts['eve']}/small"):
+        headers = client.get(path).headers
+        assert "frame-ancestors 'none'" in headers["content-security-policy"]
+        assert headers["x-frame-options"] == "DENY" and headers["x-content-type-options"] == "nosniff"
+
+
+def test_enumeration(client, room, tmp_path):
+    again = tmp_path / "again"
+    again.mkdir()
+    assert not set(small.make(again).artifacts.values()) & set(room.artifacts.values())  # same pictures
+    unknown = client.get(f"/enter/{'A' * 55}")
+    known = client.get(f"/enter/{room.links['ann'][:12]}{'A' * 43}")
+    assert (unknown.status, unknown.text) == (known.status, known.text)
+    for path in ("/", f"/picture/{room.artifacts['eve']}/small", f"/look/{room.artifacts['eve']}"):
+        assert client.get(path).status == 401  # nothing of the class is public
+    wall = enter(client, room, "cy") and client.get("/").text
+    assert not any(f">{name}<" in wall or f"{name}@" in wall for name in ("ann", "Ann", "ben", "eve"))
+
+
+def test_header_injection(client, room):
+    link = room.links["ann"]
+    for host in ("evil.test", "vote.test.evil.test", "vote.test:81", "vote.test@evil.test", ""):
+        answer = client.get(f"/enter/{link}", headers={"host": host})
+        assert answer.status == 421 and "evil" not in answer.text
+    answer = client.get("/enter/x%0d%0aSet-Cookie:%20gallery=planted")
+    assert "set-cookie" not in answer.headers and answer.status == 404
+    answer = client.post(f"/enter/{link}", headers=ORIGIN | {"x-forwarded-host": "evil.test"})
+    assert answer.headers["location"] == "/"
+    cookie = answer.headers["set-cookie"].lower()
+    assert "httponly" in cookie and "samesite=lax" in cookie and "domain" not in cookie
+    with browser(room, "https://vote.test") as secure:
+        renewed = store.connect(room.folder)
+        with closing(renewed) as db, store.transaction(db):
+            fresh = bearers.new_link(db, "ann")
+        answer = secure.post(f"/enter/{fresh}", headers={"origin": "https://vote.test"})
+        assert (
+            answer.headers["set-cookie"].startswith("__Host-gallery=")
+            and "Secure" in answer.headers["set-cookie"]
+        )
+        assert answer.headers["strict-transport-security"]
+
+
+def test_a_forged_client_address(client, room):
+    for k in range(60):
+        forged = {
+            "x-forwarded-for": f"10.0.0.{k}",
+            "forwarded": f"for=10.0.0.{k}",
+            "x-real-ip": f"10.0.0.{k}",
+        }
+        last = client.get(f"/enter/{k:055d}", headers=forged).status
+    assert last == 429
+
+
+def test_a_flood(client, room):
+    key = enter(client, room, "ann")
+    codes = [vote(client, key, room.artifacts["eve"]).status for _ in range(40)]
+    assert codes[:25] == [303] * 25 and codes[-1] == 429
+    enter(client, room, "cy")  # nobody else is held up
+    assert vote(client, small.key(client.get("/").text), room.artifacts["eve"]).status == 303
+    rates = guard.Rates(most=10)
+    assert (
+        all(rates.take("requests", str(k), guard.Rate(1, 0)) for k in range(1000)) and len(rates._seen) == 10
+    )
+
+
+def test_formulas_in_a_table(tmp_path):
+    room = small.make(tmp_path, names={"ann": "=cmd|' /C calc'!A0"}, title="@SUM(A1)")
+    with closing(store.connect(room.folder)) as db:
+        rows = list(export.gradebook(db))
+    text = sheets.csv_text(export.GRADEBOOK, rows)
+    assert "'=cmd|" in text and "'@SUM(A1)" in text and not re.search(r"(^|,)\"?[=@]", text, re.M)

@@ -1,0 +1,229 @@
+"""Films in and out, and the command that makes one of high dynamic range."""
+
+import os
+import select
+import signal
+import subprocess
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from hdrlab.cli import run
+from hdrlab.io import radiance, sequence
+from hdrlab.io.photos import write_picture
+
+FILMS = [
+    ".gif",
+    pytest.param(
+        ".mp4",
+        marks=pytest.mark.skipif(
+            not __import__("importlib.util").util.find_spec("av"), reason="films need the extra `video`"
+        ),
+    ),
+]
+PATIENCE = 120  # seconds
+
+
+def moving(count=6, shape=(48, 64)):
+    """Frames (count, H, W, 3) uint8: gray waves that move a pixel to the right each time."""
+    y, x = np.indices(shape)
+    waves = [128 + 50 * np.sin((x - j) / 6) * np.cos(y / 7) for j in range(count)]
+    return np.stack([np.repeat(np.uint8(wave)[..., None], 3, axis=-1) for wave in waves])
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder of frames whose exposures take turns, 4 s and 1 s, of a linear camera."""
+    place = tmp_path / "frames"
+    place.mkdir()
+    for j, frame in enumerate(moving()):
+        light = (frame / 255.0) ** 2 * (1 if j % 2 else 4)
+        write_picture(place / f"{j:02d}.png", np.uint8(np.round(255 * np.minimum(light, 1))))
+    return place
+
+
+@pytest.mark.parametrize("suffix", FILMS)
+def test_a_film_comes_back(suffix, tmp_path):
+    frames = moving()
+    assert sequence.write(tmp_path / f"film{suffix}", iter(frames), rate=12) == 6
+    back = np.stack(list(sequence.read(tmp_path / f"film{suffix}")))
+    assert back.shape == frames.shape and back.dtype == np.uint8
+    assert np.abs(back.astype(int) - frames).mean() < 3
+    assert [path.name for path in tmp_path.iterdir()] == [f"film{suffix}"]
+
+
+@pytest.mark.parametrize("suffix", FILMS)
+def test_gray_frames_of_odd_sides_are_written_too(suffix, tmp_path):
+    sequence.write(tmp_path / f"film{suffix}", moving(3, (31, 45))[..., 0])
+    (height, width, _) = next(sequence.read(tmp_path / f"film{suffix}")).shape
+    assert 30 <= height <= 31 and 44 <= width <= 45
+
+
+def test_a_folder_is_read_in_the_order_of_its_names_one_at_a_time(folder):
+    frames = sequence.read(folder)
+    first = next(frames)
+    (folder / "05.png").unlink()  # what has not been reached is not yet read
+    assert first.shape == (48, 64, 3) and sequence.count(folder) == 5
+    with pytest.raises(FileNotFoundError):
+        list(frames)
+
+
+def test_frames_of_two_sizes_are_refused_by_number(folder):
+    write_picture(folder / "03.png", np.zeros((10, 10, 3), np.uint8))
+    with pytest.raises(ValueError, match="one size and depth.*number 4"):
+        list(sequence.read(folder))
+
+
+@pytest.mark.parametrize("suffix", FILMS)
+@pytest.mark.parametrize("content", [b"", b"no film at all", b"GIF89a", None])
+def test_a_damaged_film_is_refused(suffix, content, tmp_path):
+    file = tmp_path / f"film{suffix}"
+    if content is None:
+        sequence.write(file, moving())
+        content = file.read_bytes()[: file.stat().st_size // 3]
+    file.write_bytes(content)
+    try:
+        assert 0 < len(list(sequence.read(file))) < 6  # a film that is cut short may hold whole frames
+    except ValueError as error:
+        assert file.name in str(error)
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda folder: sequence.read(folder / "none.txt"),
+        lambda folder: sequence.write(folder / "film.txt", moving()),
+        lambda folder: sequence.write(folder / "film", moving()),
+        lambda folder: sequence.write(folder / "film.gif", []),
+        lambda folder: sequence.write(folder / "film.gif", [np.zeros((4, 4))]),
+        lambda folder: sequence.write(folder / "film.gif", moving(), rate=0),
+        lambda folder: sequence.write(folder / "film.gif", [*moving(2), *moving(2, (8, 8))]),
+        lambda folder: sequence.write_maps(folder / "maps", []),
+        lambda folder: sequence.write_maps(folder, [np.ones((4, 4), np.float32)]),
+    ],
+)
+def test_what_means_nothing_is_refused_and_nothing_is_left(call, folder):
+    before = sorted(path.name for path in folder.iterdir())
+    with pytest.raises(ValueError, match="expected"):
+        call(folder)
+    assert sorted(path.name for path in folder.iterdir()) == before
+
+
+def test_a_film_that_is_not_there_is_said(tmp_path):
+    with pytest.raises(FileNotFoundError, match="there is no such file"):
+        sequence.read(tmp_path / "film.gif")
+
+
+def test_without_the_extra_a_film_says_what_is_missing(tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "av", None)
+    monkeypatch.setattr("importlib.util.find_spec", lambda name: None)
+    with pytest.raises(ValueError, match=r"hdrlab\[video\]"):
+        sequence.write(tmp_path / "film.mp4", moving())
+
+
+def test_maps_are_written_all_or_none(tmp_path):
+    maps = [np.full((4, 5), level, np.float32) for level in (1, 2)]
+    assert sequence.write_maps(tmp_path / "maps", maps) == 2
+    assert [path.name for path in sorted((tmp_path / "maps").iterdir())] == ["0001.exr", "0002.exr"]
+    assert np.array_equal(radiance.read_radiance(tmp_path / "maps" / "0002.exr"), maps[1])
+
+    def failing():
+        yield maps[0]
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        sequence.write_maps(tmp_path / "others", failing())
+    assert [path.name for path in tmp_path.iterdir()] == ["maps"]
+
+
+def told(capsys, *arguments):
+    """Return the exit code of the command, what it printed, and its complaints."""
+    with pytest.raises(SystemExit) as end:
+        run([str(argument) for argument in arguments])
+    return end.value.code or 0, *capsys.readouterr()
+
+
+def test_the_command_makes_a_film_of_a_folder(folder, tmp_path, capsys):
+    out = tmp_path / "out.gif"
+    code, said, _ = told(
+        capsys, "video", folder, "-o", out, "--times", "4,1", "--response", "linear", "--rate", 10
+    )
+    assert code == 0 and said == f"{out}: 6 frames, 64 x 48\n"
+    assert len(list(sequence.read(out))) == 6
+
+
+def test_the_command_makes_maps_of_a_film(folder, tmp_path, capsys):
+    film, out = tmp_path / "in.gif", tmp_path / "maps"
+    sequence.write(film, sequence.read(folder))
+    code, said, _ = told(capsys, "video", film, "-o", out, "--times", "4,1", "--response", "linear")
+    assert code == 0 and "6 frames" in said
+    first, second = (radiance.read_radiance(out / f"000{j}.exr") for j in (1, 2))
+    light = [(frame / 255.0) ** 2 for frame in moving()[:2, :, :, 1]]
+    for E, truth in ((first[..., 1], light[0]), (second[..., 1], light[1])):
+        ratio = E[8:-8, 8:-8] / truth[8:-8, 8:-8]
+        assert np.abs(ratio / np.median(ratio) - 1).max() < 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "says"),
+    [
+        (["-o", "out.gif", "--times", "1"], "at least two exposures"),
+        (["-o", "out.gif", "--times", "1,x"], "expected seconds"),
+        (["-o", "out.gif", "--times", "1,1/0"], "expected seconds"),
+        (["-o", "out.txt", "--times", "1,4"], "expected .gif or .mp4"),
+        (["-o", "frames", "--times", "1,4"], "new or empty"),
+        (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a turn"),
+        (["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"], "expected a rate"),
+        (
+            ["-o", "out.gif", "--times", "1,4", "--key", "-1", "--response", "linear"],
+            "expected a positive key",
+        ),
+    ],
+)
+def test_the_command_says_in_one_line_what_is_wrong(arguments, says, folder, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    code, _, complaint = told(capsys, "video", "frames", *arguments)
+    assert code == 2 and says in complaint and complaint.count("\n") == 1
+    assert [path.name for path in tmp_path.iterdir()] == ["frames"]
+
+
+def test_ctrl_c_leaves_what_was_there(tmp_path):
+    pty = pytest.importorskip("pty", reason="there are no such terminals here")
+    place, out = tmp_path / "frames", tmp_path / "out.gif"
+    place.mkdir()
+    for j, frame in enumerate(moving(60, (240, 320))):
+        write_picture(place / f"{j:02d}.png", frame)
+    out.write_bytes(b"precious")
+    terminal, its_end = pty.openpty()
+    command = [
+        sys.executable,
+        "-m",
+        "hdrlab",
+        "video",
+        place,
+        "-o",
+        out,
+        "--times",
+        "4,1",
+        "--response",
+        "linear",
+    ]
+    process = subprocess.Popen(
+        list(map(str, command)), stdout=its_end, stderr=its_end, stdin=subprocess.DEVNULL
+    )
+    os.close(its_end)
+    try:
+        said, deadline = "", time.monotonic() + PATIENCE
+        while "merging" not in said and time.monotonic() < deadline:
+            if select.select([terminal], [], [], 1)[0]:
+                said += os.read(terminal, 4096).decode()
+        process.send_signal(signal.SIGINT)
+        assert process.wait(PATIENCE) == 130
+    finally:
+        process.kill()
+        process.wait()
+        os.close(terminal)
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["frames", "out.gif"]
+    assert out.read_bytes() == b"precious"
