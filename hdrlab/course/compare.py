@@ -1,0 +1,140 @@
+"""Comparing an answer with what was expected, and remembering both, so that the difference can be drawn.
+
+came      what a student's function answered: the plain arrays that the channel built, and nothing else
+expected  what the specification says it should be
+
+Asked in this order: answered, a kind of number, shape, finite, and at last `error <= tolerance`, which a NaN
+does not pass.
+"""
+
+from collections.abc import Iterator
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+Array = NDArray[Any]
+Kind = Literal["image", "curve", "values"]
+
+
+class Different(AssertionError):
+    """An answer that is not what was expected; `expected` and `came` are arrays of one shape, or None."""
+
+    def __init__(
+        self, message: str, *, expected: Array | None = None, came: Array | None = None, kind: Kind = "values"
+    ) -> None:
+        super().__init__(message)
+        self.message, self.expected, self.came, self.kind = message, expected, came, kind
+
+
+def numbers(came: Any, *, what: str = "the answer") -> Array:
+    """Return an answer as an array of numbers, or raise Different that says what came instead."""
+    if came is None:
+        raise Different(f"{what}: expected numbers, and nothing came (None)")
+    if isinstance(came, tuple | list | str | bytes | dict):
+        raise Different(f"{what}: expected one array of numbers, got {_named(came)}")
+    array = np.asarray(came)
+    if array.dtype.kind not in "biuf":
+        raise Different(f"{what}: expected real numbers, got dtype {array.dtype}")
+    return array
+
+
+def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
+    """Return the first `count` parts of an answer of several, or raise Different."""
+    if not isinstance(came, tuple | list) or len(came) < count:
+        raise Different(f"{what}: expected {count} things, got {_named(came)}")
+    return tuple(came[:count])
+
+
+def states(came: Any, *, what: str = "the steps") -> list[Any]:
+    """Return what a generator yielded, at least one state, or raise Different."""
+    if not isinstance(came, list | tuple) or not came:
+        raise Different(f"{what}: expected a generator that yields states, got {_named(came)}")
+    return list(came)
+
+
+def same(
+    came: Any,
+    expected: Any,
+    tolerance: float,
+    *,
+    what: str = "the answer",
+    kind: Kind | None = None,
+    picture: bool = False,
+    where: Any = None,
+) -> Array:
+    """Return the answer as an array if it is what was expected within `tolerance`, or raise Different.
+
+    Parameters
+    ----------
+    came, expected : arrays or numbers; a NaN that is expected must come as one
+    tolerance : the largest difference of a value that is still the same, in the unit of the values
+    what : the answer's name in the message
+    kind : how to draw it; by default a curve for (n,), values for all else
+    picture : the same as kind="image"
+    where : mask; values elsewhere may be anything
+    """
+    wanted = np.asarray(expected)
+    kind = "image" if picture else kind or ("curve" if wanted.ndim == 1 and wanted.size > 8 else "values")
+    array = numbers(came, what=what)
+    if array.shape != wanted.shape:
+        raise Different(f"{what}: expected shape {wanted.shape}, got shape {array.shape}")
+    asked = np.ones(wanted.shape, bool) if where is None else np.broadcast_to(where, wanted.shape)
+    values, truth = array.astype(np.float64), wanted.astype(np.float64)
+    unknown = np.isnan(truth)
+    _require_finite(values[asked & ~unknown], what, expected=wanted, came=array, kind=kind)
+    if not np.all(np.isnan(values[asked & unknown])):
+        count = np.count_nonzero(~np.isnan(values[asked & unknown]))
+        message = f"{what}: expected NaN where nothing is known, got numbers at {count} places"
+        raise Different(message, expected=wanted, came=array, kind=kind)
+    error = np.where(asked & ~unknown, np.abs(values - truth), 0.0)
+    if not error.max(initial=0.0) <= tolerance:
+        at = np.unravel_index(int(np.argmax(error)), error.shape)
+        place = f" at {tuple(int(i) for i in at)}" if error.ndim else ""
+        raise Different(
+            f"{what}: expected {truth[at]:.6g}{place}, got {values[at]:.6g}; the difference may be "
+            f"{tolerance:.2g}, and is more for {np.count_nonzero(error > tolerance)} of {error.size} values",
+            expected=wanted,
+            came=array,
+            kind=kind,
+        )
+    return array
+
+
+def finite(came: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Array:
+    """Return an answer of which only the shape is known beforehand, if it is finite, or raise Different."""
+    array = numbers(came, what=what)
+    if array.shape != shape:
+        raise Different(f"{what}: expected shape {shape}, got shape {array.shape}")
+    _require_finite(array.astype(np.float64), what)
+    return array
+
+
+def _require_finite(values: Array, what: str, **remembered: Any) -> None:
+    """Raise Different where a value is NaN or infinite."""
+    bad = np.count_nonzero(~np.isfinite(values))
+    if bad:
+        raise Different(f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **remembered)
+
+
+def _named(came: Any) -> str:
+    """Return what came, in few words, and never by asking the thing itself."""
+    if came is None:
+        return "nothing (None)"
+    if isinstance(came, tuple | list | bytes | str):
+        return f"{type(came).__name__} of {len(came)}"
+    return "one array" if isinstance(came, np.ndarray | np.generic | int | float) else "something else"
+
+
+def plain(answer: Any) -> Any:
+    """Return an answer of trusted code as the channel brings those of students: arrays, tuples, lists.
+
+    A NamedTuple becomes a tuple, what a generator yields a list; a number becomes an array without axes.
+    """
+    if answer is None or isinstance(answer, bytes | str):
+        return answer
+    if isinstance(answer, tuple):
+        return tuple(plain(one) for one in answer)
+    if isinstance(answer, Iterator | list):
+        return [plain(one) for one in answer]
+    return np.array(answer)

@@ -1,0 +1,64 @@
+"""The container tier, for machines where namespaces cannot nest: a user of its own, a fence, limits, filters.
+
+The container around it keeps the machine and the network away: its owner says so. Here a spare user,
+Landlock, the limits and the filter of system calls keep submissions from the grader and from each other. What
+a file holds is kept from them; that there is a file of a certain name is not.
+"""
+
+import os
+import sys
+from pathlib import Path
+from socket import socket
+
+from hdrlab.course.sandbox import descent, filters, users
+from hdrlab.course.sandbox.contents import contents
+from hdrlab.course.sandbox.running import (
+    ENVIRONMENT,
+    PROGRAM,
+    Launched,
+    Sandbox,
+    Unavailable,
+    command,
+    packages,
+    start,
+)
+
+
+def sandbox() -> Sandbox:
+    """Return the container tier.
+
+    Raises
+    ------
+    Unavailable
+        Where the system is not Linux with Landlock, this is not root, or libseccomp is missing.
+    """
+    if sys.platform != "linux":
+        raise Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
+    if os.geteuid() != 0:
+        raise Unavailable("the container tier needs root, which alone can become another user")
+    if descent.landlock() == 0:
+        raise Unavailable("the container tier needs Landlock, which is kept back by this kernel or container")
+    return Sandbox("container", True, launch, program=filters.program("check"))
+
+
+def launch(control: socket) -> Launched:
+    """Start the warden behind the fence, as a spare user who reads what root has opened."""
+    inside = contents()
+    homes = [inside.prefix, *(os.path.dirname(folder) for folder in packages()), str(PROGRAM.parent)]
+    folders = [f"{{{j}}}/{Path(folder).name}" for j, folder in enumerate(packages(), 1)]
+    python = "{0}/" + os.path.relpath(inside.places[inside.python], inside.prefix)
+    program = f"{{{len(homes) - 1}}}/{PROGRAM.name}"
+    walk, read = inside.readable()
+    user, held = users.lease()
+    words = users.descend(
+        user=user,
+        homes=homes,
+        fence={"read": read, "walk": walk, "write": [os.devnull]},
+        command=command(python, program, control.fileno(), folders),
+        environment=ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib"},
+    )
+    try:
+        return Launched(start(words, {}, control.fileno()), held.close)
+    except BaseException:
+        held.close()
+        raise

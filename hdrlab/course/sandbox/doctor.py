@@ -1,0 +1,115 @@
+"""What this machine can give: each tier is tried, and what is missing is said, with what would help.
+
+A trial starts the sandbox and asks a function in it to break out, harmlessly, past Python's own refusals: to
+read a file of hdrlab, to start a process, to make a socket and a file. A tier for credit works if all of it
+fails.
+"""
+
+import time
+from pathlib import Path
+from typing import NamedTuple
+
+from hdrlab.course.sandbox import practice, tiers
+from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.subject import NoAnswer, Subject
+
+BREAK_OUT = """
+import ctypes, os
+def tried(secret, target):
+    libc = ctypes.CDLL(None)
+    done = []
+    if libc.open(secret, 0) >= 0: done.append("a file of the grader could be read")
+    if libc.open(target, 0o101, 0o600) >= 0: done.append("a file could be written")
+    libc.unlink(target)
+    if libc.socket(2, 1, 0) >= 0: done.append("a socket could be made")
+    child = libc.fork()
+    if child == 0: os._exit(0)
+    if child > 0: done.append("a process could be started")
+    return done
+"""
+SWITCHES = (  # of Linux, which keep ordinary users from namespaces: file, the value that does, what helps
+    (
+        "kernel/apparmor_restrict_unprivileged_userns",
+        "1",
+        "give bwrap an AppArmor profile that allows userns",
+    ),
+    ("kernel/unprivileged_userns_clone", "0", "sysctl kernel.unprivileged_userns_clone=1"),
+    ("user/max_user_namespaces", "0", "sysctl user.max_user_namespaces=10000"),
+)
+INSTALL = {
+    "bwrap": "install bubblewrap 0.8 or later (Debian, Ubuntu: apt install bubblewrap)",
+    "bubblewrap": "install bubblewrap 0.8 or later; Debian 12 and Ubuntu 24.04 have it",
+    "libseccomp": "install libseccomp (Debian, Ubuntu: apt install libseccomp2) and pip install pyseccomp",
+    "root": "run as root, as in most containers, or use the strict tier",
+}
+
+
+class Finding(NamedTuple):
+    """What was found of a tier.
+
+    Attributes
+    ----------
+    tier : "strict", "container" or "practice"
+    works : whether it can be had, and holds
+    credit : whether what is scored in it may count
+    says : how long its start took, or what is missing
+    remedy : what would help, or nothing
+    """
+
+    tier: str
+    works: bool
+    credit: bool
+    says: str
+    remedy: str
+
+
+def report() -> list[Finding]:
+    """Return what each tier can give on this machine, the strictest first.
+
+    Examples
+    --------
+    >>> [finding.tier for finding in report()]
+    ['strict', 'container', 'practice']
+    """
+    return [examine(tier) for tier in tiers.TIERS]
+
+
+def examine(tier: str) -> Finding:
+    """Return what was found of a tier when it was tried."""
+    credit = tier != "practice"
+    try:
+        broken, start = _trial(tier)
+    except (Unavailable, NoAnswer, OSError) as error:
+        return Finding(tier, False, credit, str(error), _remedy(str(error)))
+    if not credit:
+        stops = "; ".join(practice.DOES_NOT_STOP)
+        return Finding(tier, True, False, f"started in {start:.2f} s. It does not stop: {stops}", "")
+    if broken:
+        says = f"it started, but {' and '.join(broken)}"
+        return Finding(tier, False, True, says, "do not grade on this machine, and please report this")
+    return Finding(tier, True, True, f"started in {start:.2f} s, and nothing got out", "")
+
+
+def _trial(tier: str) -> tuple[list[str], float]:
+    """Return what could be done from inside that should not be, and the seconds until the first answer."""
+    secret, target = bytes(Path(__file__).resolve()), b"/tmp/hdrlab-doctor"
+    began = time.perf_counter()
+    sources = {"ready": "def ready(): return True", "tried": BREAK_OUT}
+    with Subject(sources, {}, tiers.choose(tier)) as subject:
+        subject.ready()
+        start = time.perf_counter() - began
+        return (subject.tried(secret, target) if tier != "practice" else []), start
+
+
+def _remedy(reason: str) -> str:
+    """Return what would help, as far as the reason and the system's switches tell."""
+    known = [help for word, help in INSTALL.items() if word in reason.partition("\n")[0]]
+    if known and "did not start" not in reason:
+        return known[0]
+    for name, keeps, help in SWITCHES:
+        file = Path("/proc/sys") / name
+        if file.is_file() and file.read_text().strip() == keeps:
+            return help
+    if any(Path(mark).exists() for mark in ("/.dockerenv", "/run/.containerenv")):
+        return "namespaces rarely nest in containers: use the container tier, as root"
+    return ""

@@ -1,0 +1,74 @@
+"""The practice tier: a process of its own and limits. It keeps mistakes apart from the grader, and no attack.
+
+It serves a student's own computer, where a function that loops, crashes or fills the memory must not take the
+notebook with it. What it finds is never for credit, for it does not stop what DOES_NOT_STOP tells.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from functools import partial
+from socket import socket
+from typing import Any
+
+from hdrlab.course.sandbox.running import (
+    ENVIRONMENT,
+    LIMITS,
+    PROGRAM,
+    Launched,
+    Sandbox,
+    command,
+    packages,
+    start,
+)
+
+DOES_NOT_STOP = (
+    "reading any file that you can read: tests, solutions, this library, your own files",
+    "importing a package from a folder that the code adds to its path",
+    "removing any file that is yours",
+    "using the network",
+    "starting programs, and ending or watching your other processes, the grader among them",
+)
+
+
+OWN_LIMITS = {name: most for name, most in LIMITS.items() if name != "NPROC"}  # it would count all of yours
+
+
+def sandbox() -> Sandbox:
+    """Return the practice tier; where processes cannot fork, each check starts a process of its own."""
+    return Sandbox("practice", False, launch, forks=hasattr(os, "fork"), limits=OWN_LIMITS)
+
+
+def launch(control: socket) -> Launched:
+    """Start the warden with this interpreter, in an empty folder, without this process's environment."""
+    scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
+    python = getattr(sys, "_base_executable", sys.executable)  # not the environment's, with all its packages
+    words = command(python, str(PROGRAM), control.fileno(), packages())
+    environment = ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
+    environment |= {name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ}  # for Windows
+    after = partial(shutil.rmtree, scratch, ignore_errors=True)
+    try:
+        if sys.platform == "win32":
+            return Launched(_shared(words, environment, control, scratch), after)
+        return Launched(start(words, environment, control.fileno(), folder=scratch), after)
+    except BaseException:
+        after()
+        raise
+
+
+def _shared(words: list[str], environment: dict[str, str], control: socket, folder: str) -> Any:
+    """Return the process of a command that is told its control on the standard input, as Windows does."""
+    process = subprocess.Popen(
+        words,
+        stdin=subprocess.PIPE,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        cwd=folder,
+        env=environment,
+    )
+    if sys.platform == "win32" and process.stdin:
+        process.stdin.write(control.share(process.pid))
+        process.stdin.close()
+    return process

@@ -1,0 +1,209 @@
+"""A sandbox that runs: one process that has imported numpy, from which every check gets a process of its own.
+
+control  the socket on which the parent orders checks, and hears that they are begun and cleared away
+link     the socket of one check, on which its calls go out and its answers come back
+
+A submission has a sandbox to itself. Between its checks nothing is kept: the process is forked anew, what it
+started is ended, and there is no place for a file. Where a check does not end, the whole sandbox is ended and
+started anew.
+"""
+
+import contextlib
+import socket
+import subprocess
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hdrlab.course import channel
+
+START = 60.0  # seconds in which a sandbox must have started, on a machine however busy
+CLEAR = 10.0  # seconds in which a check must have been cleared away; else the sandbox is started anew
+LIMITS = {  # per process, named as in the module resource
+    "CPU": 60,  # seconds
+    "AS": 2 << 30,  # bytes of address space
+    "FSIZE": 0,  # bytes of a file: none can be written
+    "NPROC": 32,  # processes and threads
+    "NOFILE": 64,
+    "CORE": 0,
+}
+ENVIRONMENT = {
+    **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
+    "PYTHONHASHSEED": "0",  # regrading gives the same bytes
+    "LC_ALL": "C.UTF-8",
+}
+FLAGS = (
+    "-s",
+    "-P",
+    "-S",
+    "-B",
+    "-X",
+    "utf8",
+)  # no site-packages, no .pth, nothing from the folder it stands in
+PROGRAM = Path(channel.__file__).with_name("warden.py")  # beside worker.py and channel.py, which it needs
+
+
+class Unavailable(RuntimeError):
+    """A tier that this machine cannot give, and why."""
+
+
+class Launched(NamedTuple):
+    """A process that was started, and what to do when it has ended."""
+
+    process: subprocess.Popen[bytes]
+    after: Callable[[], object]
+
+
+class Sandbox(NamedTuple):
+    """How a tier runs a student's functions.
+
+    Attributes
+    ----------
+    tier : "strict", "container" or "practice"
+    credit : whether what was scored in it may count
+    launch : starts the warden, given its end of the control
+    program : a seccomp filter for the checks, or nothing
+    alone : whether the warden is the first process of a namespace of its own
+    forks : whether the warden can fork a process for a check; else it is that process, and started for each
+    limits : of the process of a check, as in the module resource
+    """
+
+    tier: str
+    credit: bool
+    launch: Callable[[socket.socket], Launched]
+    program: bytes = b""
+    alone: bool = False
+    forks: bool = True
+    limits: dict[str, int] = LIMITS
+
+
+class Running:
+    """A sandbox that was started for one submission; `modules` are imported once, before the first check."""
+
+    def __init__(self, sandbox: Sandbox, modules: Sequence[str] = ()) -> None:
+        self.sandbox, self.modules = sandbox, list(modules)
+        self._start()
+
+    def _start(self) -> None:
+        """Launch, and do not wait: it gets ready while the parent does other things."""
+        self._control, theirs = socket.socketpair()
+        with theirs:
+            try:
+                self._launched = self.sandbox.launch(theirs)
+            except BaseException:
+                self._control.close()
+                raise
+        self._ready, self._checks = False, 0  # how many checks it has begun
+        order = {
+            "modules": self.modules,
+            "alone": self.sandbox.alone,
+            "forks": self.sandbox.forks,
+            "credit": self.sandbox.credit,
+            "limits": self.sandbox.limits,
+            "filter": self.sandbox.program,
+        }
+        with contextlib.suppress(OSError):  # it has ended already: `wait` says why
+            channel.send(self._control, "order", order)
+
+    def wait(self) -> None:
+        """Return when it is ready, or raise Unavailable with what it said."""
+        if self._ready:
+            return
+        try:
+            self._hear("ready", START)
+            self._ready = True
+        except (OSError, EOFError, ValueError) as error:
+            said = self._last_words() or type(error).__name__
+            self.close()
+            raise Unavailable(f"the {self.sandbox.tier} sandbox did not start: {said}") from None
+
+    def check(self) -> socket.socket:
+        """Return the link to a new process, for one check; what the one before has left is cleared away."""
+        self.wait()
+        try:
+            return self._begin()
+        except (OSError, EOFError, ValueError):  # it was ended from outside, or cannot end what it began
+            self.close()
+            self._start()
+            self.wait()
+            return self._begin()
+
+    def _begin(self) -> socket.socket:
+        """Clear the last check away, begin another, and return its link."""
+        if not self.sandbox.forks:
+            if self._checks:
+                raise ConnectionError("one process serves one check")
+            self._checks = 1
+            return self._control.dup()
+        if self._checks:
+            channel.send(self._control, "end", call=self._checks)
+            self._hear("clean", CLEAR)
+        ours, theirs = socket.socketpair()
+        try:
+            with theirs:
+                self._checks += 1
+                channel.send(self._control, "check", call=self._checks)
+                socket.send_fds(self._control, [b"c"], [theirs.fileno()])
+            self._hear("begun", CLEAR)
+        except BaseException:
+            ours.close()
+            raise
+        return ours
+
+    def _hear(self, kind: str, seconds: float) -> Any:
+        """Return the value of the next word from the warden, which must be of this kind."""
+        came, call, value = channel.receive(self._control, time.monotonic() + seconds)
+        if came != kind or call not in (0, self._checks):
+            raise channel.Damaged(f"expected {kind!r}, got {came[:80]!r}")
+        return value
+
+    def _last_words(self) -> str:
+        """Return what the process wrote to stderr, when it has ended."""
+        process = self._launched.process
+        process.kill()
+        _, said = process.communicate()
+        return (said or b"").decode(errors="replace").strip()[-2000:]
+
+    def close(self) -> None:
+        """End it, and all that runs in it."""
+        self._control.close()
+        process = self._launched.process
+        try:
+            process.wait(
+                CLEAR if self._ready and self.sandbox.forks else 0
+            )  # it ends what it started, then itself
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+        if process.stderr:
+            process.stderr.close()
+        self._launched.after()
+
+
+def start(
+    words: list[str], environment: dict[str, str], *inherited: int, folder: str = "/"
+) -> subprocess.Popen[bytes]:
+    """Return the process of a command: it hears nothing, and what it says is kept in case it fails."""
+    return subprocess.Popen(
+        words,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        cwd=folder,
+        env=environment,
+        pass_fds=inherited,
+    )
+
+
+def command(python: str, program: str, control: int, packages: Sequence[str]) -> list[str]:
+    """Return the command that starts the warden, which knows these packages by their folders."""
+    return [python, *FLAGS, program, str(control), *packages]
+
+
+def packages() -> list[str]:
+    """Return the folders of numpy and of scipy: what a submission may import."""
+    import numpy
+    import scipy
+
+    return [one.__path__[0] for one in (numpy, scipy)]

@@ -1,0 +1,102 @@
+"""The strict tier: bubblewrap, a user of its own, limits, and a filter of system calls.
+
+Inside there is the interpreter, numpy and scipy, all to be read only; no network, no other process, no /proc,
+no place for a file, no environment, no privilege, and no way to get one. The process of a check is filtered
+once more: see filters.py.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from functools import cache, partial
+from socket import socket
+
+from hdrlab.course.sandbox import descent, filters, users
+from hdrlab.course.sandbox.contents import PYTHON, Contents, contents
+from hdrlab.course.sandbox.running import ENVIRONMENT, Launched, Sandbox, Unavailable, command, start
+
+WALLS = (
+    *("--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts"),
+    *("--unshare-cgroup-try", "--disable-userns", "--cap-drop", "ALL"),
+    *("--as-pid-1", "--new-session", "--die-with-parent", "--clearenv"),
+    *("--uid", "1000", "--gid", "1000", "--hostname", "sandbox"),
+)
+NEEDED = ("--disable-userns", "--as-pid-1", "--clearenv", "--size", "--perms")  # since bubblewrap 0.8
+
+
+def sandbox() -> Sandbox:
+    """Return the strict tier.
+
+    Raises
+    ------
+    Unavailable
+        Where the system is not Linux, or bubblewrap or libseccomp is missing or too old.
+    """
+    if sys.platform != "linux":
+        raise Unavailable(f"the strict tier needs Linux, and this is {sys.platform}")
+    program = filters.program("check")
+    return Sandbox("strict", True, partial(launch, bubblewrap()), program=program, alone=True)
+
+
+@cache
+def bubblewrap() -> str:
+    """Return where bubblewrap is, if it is new enough, or raise Unavailable."""
+    path = shutil.which("bwrap")
+    if path is None:
+        raise Unavailable("the strict tier needs bubblewrap, and there is no bwrap on the path")
+    told = subprocess.run([path, "--help"], capture_output=True, text=True, stdin=subprocess.DEVNULL)
+    missing = [option for option in NEEDED if option not in told.stdout + told.stderr]
+    if missing:
+        raise Unavailable(f"the strict tier needs bubblewrap 0.8 or later; {path} does not know {missing[0]}")
+    return path
+
+
+def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
+    """Return bubblewrap's options.
+
+    `sources` says where the places of the inside are outside, and `rules` is the filter's descriptor.
+    """
+    options = list(WALLS)
+    for name, value in (ENVIRONMENT | {"LD_LIBRARY_PATH": f"{PYTHON}/lib"}).items():
+        options += ["--setenv", name, value]
+    for place in sorted(sources):  # a folder before what lies in it
+        options += ["--ro-bind", sources[place], place]
+    for folder in inside.hidden:
+        options += ["--perms", "0555", "--size", "4096", "--tmpfs", folder, "--remount-ro", folder]
+    options += ["--dev-bind", os.devnull, os.devnull]
+    return [*options, "--remount-ro", "/", "--chdir", "/", "--seccomp", str(rules), "--"]
+
+
+def launch(bwrap: str, control: socket) -> Launched:
+    """Start the warden behind the walls; root becomes a spare user first."""
+    inside, after = contents(), _nothing
+    warden = command(inside.python, inside.program, control.fileno(), inside.packages)
+    rules = _readable(filters.program("warden"))
+    try:
+        words = [bwrap, *walls(inside, inside.places, rules), *warden]
+        if os.geteuid() == 0:
+            user, held = users.lease()
+            after = held.close
+            staged = {place: f"{descent.STAGE}/{j}" for j, place in enumerate(inside.places)}
+            words = [bwrap, *walls(inside, staged, rules), *warden]
+            paths = list(inside.places.values())
+            words = users.descend(user=user, stage=paths, command=words, environment={})
+        return Launched(start(words, {}, control.fileno(), rules), after)
+    except BaseException:
+        after()
+        raise
+    finally:
+        os.close(rules)
+
+
+def _nothing() -> None:
+    """Clear nothing up: bubblewrap leaves nothing behind."""
+
+
+def _readable(program: bytes) -> int:
+    """Return a descriptor from which a program of a few thousand bytes can be read."""
+    ours, theirs = os.pipe()
+    with open(theirs, "wb") as begin:
+        begin.write(program)
+    return ours

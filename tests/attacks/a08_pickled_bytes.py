@@ -1,0 +1,19 @@
+"""It answers with the bytes of a pickle, and with those of a file of numpy's that holds one."""
+
+import io
+import pickle
+
+import numpy as np
+
+PLACE = ""
+
+
+class Pickled:
+    def __reduce__(self):
+        return eval, (f"open({PLACE + '/unpickled'!r}, 'w').write('x')",)
+
+
+def double(x):
+    file = io.BytesIO()
+    np.save(file, np.array([Pickled()], dtype=object), allow_pickle=True)
+    return file.getvalue() + pickle.dumps(Pickled())

@@ -1,0 +1,9 @@
+"""It yields, slowly, without an end."""
+
+import time
+
+
+def double(x):
+    while True:
+        yield x
+        time.sleep(0.05)

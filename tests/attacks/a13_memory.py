@@ -1,0 +1,10 @@
+"""It asks for more and more memory, and answers when it has been given twelve gigabytes."""
+
+import mmap
+
+
+def double(x):
+    held = [
+        mmap.mmap(-1, 1 << 29, mmap.MAP_PRIVATE) for _ in range(24)
+    ]  # untouched: nothing is used up where it is given
+    return 2 * x if len(held) == 24 else None

@@ -1,0 +1,17 @@
+"""It leaves a process behind, which has left its group and its parent, and writes when all is over."""
+
+import os
+import time
+
+PLACE = ""
+
+
+def double(x):
+    if os.fork() == 0:
+        os.setsid()
+        if os.fork() == 0:
+            time.sleep(0.3)
+            with open(os.path.join(PLACE, "daemon"), "w") as file:
+                file.write("still here")
+        os._exit(0)
+    return 2 * x
