@@ -14,7 +14,7 @@ from hdrlab import scenes
 from hdrlab.core.colour import luminance
 from hdrlab.io import exr
 from hdrlab.io.layers import read_layers, write_layers
-from hdrlab.scenes import denoise, places, render
+from hdrlab.scenes import denoise, places, relay, render, tracer
 from hdrlab.scenes.models import openings, shapes, sun, surfaces
 from hdrlab.scenes.models.place import Camera, Light, Place
 
@@ -128,6 +128,13 @@ def test_an_offset_that_is_not_two_whole_numbers_is_refused(offset):
 def test_depth_tells_what_is_near_from_what_is_far(name):
     z = scenes.layers(name).depth
     assert z[-1].max() < np.median(z) + 5 and 0.3 < z.min() < 5 and z.max() > 10
+
+
+def test_the_street_is_darkest_in_its_alley():
+    L = luminance(scenes.street())
+    y, x = np.unravel_index(np.argsort(L, axis=None)[:100], L.shape)
+    assert y.min() > 230 and y.max() < 400 and x.min() > 100 and x.max() < 170  # behind the arch on the left
+    assert scenes.layers("street").depth[y, x].min() > 10
 
 
 # Files of layers
@@ -248,6 +255,27 @@ def test_the_slide_of_a_projector_is_upright_and_as_large_as_its_pane():
     assert y.mean() < slide.shape[0] / 2  # from behind the pane, its upper half is still on top
 
 
+def test_each_spot_of_sunlight_has_a_texel_to_itself_with_its_radiance():
+    rng = np.random.default_rng(3)
+    P, E = rng.random((11, 3)), rng.random((11, 3))
+    mesh, data = relay.squares(P, np.tile([0.0, 0, 1], (11, 1)), np.full(11, 0.1)), relay.chart(E)["data"]
+    middle = mesh.uv.reshape(11, 4, 2).mean(axis=1)
+    row, column = ((1 - middle[:, 1]) * len(data)).astype(int), (middle[:, 0] * len(data)).astype(int)
+    assert np.allclose(data[row, column], E)
+    assert np.allclose(mesh.vertices.reshape(11, 4, 3).mean(axis=1), P + [0, 0, 0.002])
+
+
+def test_windows_that_shine_with_one_texture_are_lamps_of_their_own():
+    """One mesh of them all would have several places for each texel, of which Mitsuba finds but one."""
+    place = render.model("street")
+    light = place.lights["windows"]
+    names = [name for name, _ in tracer.solids(place.parts, light)]
+    for name, glow in light.glow.items():
+        panes = sum(each == name for each, _ in place.parts)
+        assert names.count(name) == (1 if isinstance(glow, tuple) else panes)
+    assert names.count("road") == 1 and len(names) > 40
+
+
 # The noise
 
 
@@ -310,6 +338,20 @@ def test_the_visitors_layer_makes_the_place_with_the_visitor_again():
 def test_a_height_that_cannot_be_halved_twice_is_refused(height):
     with pytest.raises(ValueError, match="expected a height"):
         render.rendered("chapel", height=height)
+
+
+def test_rounds_are_averaged_and_what_a_half_float_cannot_hold_is_brought_into_it():
+    first = {"radiance": np.float32([[[0, 2, 90_000]]]), "mover": np.zeros((1, 1, 4), np.float32)}
+    second = {"radiance": np.float32([[[0, 4, 90_000]]]), "mover": np.ones((1, 1, 4), np.float32)}
+    found = render.mean([first, second])
+    assert found["radiance"].tolist() == [[[render.DIMMEST, 3, exr.LARGEST_HALF]]]
+    assert (found["mover"] == 0.5).all()
+    assert all(layer.dtype == np.float32 for layer in found.values())
+
+
+def test_no_round_at_all_is_refused():
+    with pytest.raises(ValueError, match="expected at least one round, got 0"):
+        render.rendered("chapel", rounds=0)
 
 
 mitsuba = pytest.mark.skipif(

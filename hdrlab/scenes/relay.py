@@ -26,11 +26,13 @@ from hdrlab.scenes.models.shapes import Mesh, Parts, unit
 from hdrlab.scenes.places import mean_between
 from hdrlab.scenes.tracer import Float, Frame, described, scene, sensor
 
+SMALL = 0.5  # side of a lamp in its cell: large ones would stand out over edges, in each other's light
+DARK = 1e-3  # of the brightest light: what gets less, behind the lead of a window, makes no lamp
 GRAZING = 0.08  # the least cosine: a surface almost along the light would get a lamp without end
 
 
-def spots(mi: ModuleType, made: Any, beam: Material, count: int = 72) -> tuple[Mesh, Float]:
-    """Return what a projector lights, as small squares that shine: their mesh, and their radiance (2, n, 3).
+def spots(mi: ModuleType, made: Any, beam: Material, count: int = 96) -> tuple[Mesh, Material]:
+    """Return what a projector lights, as small squares that shine: their mesh, and their radiance.
 
     A camera stands where the projector does: what it sees is what is lit.
     """
@@ -40,25 +42,40 @@ def spots(mi: ModuleType, made: Any, beam: Material, count: int = 72) -> tuple[M
     aovs = mi.load_dict({"type": "aov", "aovs": "rho:albedo,n:geo_normal,P:position,t:depth"})
     found = np.array(mi.render(made, sensor=eye, integrator=aovs, spp=1, seed=0), np.float64).reshape(-1, 10)
     light = np.pi * zoom(beam["irradiance"], count).reshape(-1, 3)  # as Mitsuba's projector has it
-    hit = (found[:, 9] > 0) & (light.max(axis=1) > 0)
+    hit = (found[:, 9] > 0) & (light.max(axis=1) > DARK * light.max())
     rho, n, P, t = found[hit, :3], found[hit, 3:6], found[hit, 6:9], found[hit, 9]
     ray = unit(P - np.array(beam["look_at"]["origin"]))
     n = n * -np.sign((n * ray).sum(axis=1, keepdims=True))
     cos = np.maximum(-(n * ray).sum(axis=1), GRAZING)
     side = 2 * t * np.tan(np.radians(beam["fov"]) / 2) / count / np.sqrt(cos)
     E = rho * light[hit] * (cos / t**2)[:, None] / np.pi  # a matt surface returns rho / pi of what it gets
-    return squares(P, n, side), np.stack([E, E]).astype(np.float32)
+    return squares(P, n, SMALL * side), chart(E / SMALL**2)
 
 
 def squares(P: Float, n: Float, side: Float) -> Mesh:
-    """Return a square about each point, 2 mm before its surface; the u of its texture tells which it is."""
+    """Return a square about each point, 2 mm before its surface; each has a texel of `chart` to itself."""
     a = unit(np.cross(n, np.where(np.abs(n[:, :1]) < 0.7, [1.0, 0, 0], [0, 1.0, 0]))) * side[:, None] / 2
     b = np.cross(n, a)
     corners = np.stack([P - a - b, P + a - b, P + a + b, P - a + b], axis=1) + 0.002 * n[:, None]
     first = 4 * np.arange(len(P))[:, None]
     faces = np.concatenate([first + [0, 1, 2], first + [0, 2, 3]])
-    texel = np.column_stack([(np.arange(len(P)) + 0.5) / max(len(P), 1), np.full(len(P), 0.5)])
-    return Mesh(corners.reshape(-1, 3), np.repeat(n, 4, axis=0), np.repeat(texel, 4, axis=0), faces)
+    size = chart_size(len(P))
+    texel = np.column_stack([np.arange(len(P)) % size, size - 1 - np.arange(len(P)) // size])
+    uv = (texel[:, None] + [(0, 0), (1, 0), (1, 1), (0, 1)]) / size
+    return Mesh(corners.reshape(-1, 3), np.repeat(n, 4, axis=0), uv.reshape(-1, 2), faces)
+
+
+def chart_size(count: int) -> int:
+    """Return the side of the smallest square of so many texels, at least 2."""
+    return max(int(np.ceil(np.sqrt(count))), 2)
+
+
+def chart(E: Float) -> Material:
+    """Return a texture with a texel for each radiance (n, 3), row by row; paths prefer the bright ones."""
+    size = chart_size(len(E))
+    texels = np.zeros((size * size, 3), np.float32)
+    texels[: len(E)] = E
+    return {"type": "bitmap", "data": texels.reshape(size, size, 3), "filter_type": "nearest"}
 
 
 def zoom(picture: NDArray[Any], count: int) -> NDArray[np.float64]:

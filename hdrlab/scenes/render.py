@@ -11,6 +11,7 @@ rho    reflectance (H, W, 3)
 import argparse
 import sys
 import tempfile
+from collections.abc import Iterable
 from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
@@ -38,12 +39,14 @@ from hdrlab.scenes.tracer import (
     scene,
     seen,
     sensor,
+    sharp,
     stacked,
     traced,
 )
 
-SMOOTH = 112  # samples per pixel, at most, of what has but its edges to smooth
+SMOOTH = 144  # samples per pixel, at most, of what has but its edges to smooth
 FAR = 1000.0  # metres: where a line of sight meets nothing
+APART = 10_000_019  # between the seeds of two rounds: passes and lights count on from theirs
 DIMMEST = 2.0**-14  # cd/m^2, the smallest half float of full precision
 
 
@@ -60,11 +63,14 @@ def shining(
     mi: ModuleType, place: Place, parts: Parts, light: Light, frame: Frame, samples: int, seed: int
 ) -> Float:
     """Return E of what shines into the camera, and of what a projector lights: no path of it is chance."""
+    if light.hidden:
+        rows, columns = (len(range(n)[part]) for n, part in zip(frame[:2], frame[2:], strict=True))
+        return np.zeros((rows, columns, 3), np.float32)
     lengths = 2 if light.bounces == 1 else 1
     path = {"type": "path", "max_depth": lengths, "hide_emitters": light.hidden}
     with tempfile.TemporaryDirectory() as folder:
         made = scene(mi, place, parts, light, Path(folder), sensor(mi, place.camera, frame))
-        return traced(mi, made, path, min(samples, SMOOTH), seed)
+        return sharp(mi, made, place.camera, frame, path, min(samples, SMOOTH), seed)
 
 
 def scattered(
@@ -104,13 +110,13 @@ def lit(
     E = shining(mi, place, parts, light, frame, samples, seed)
     if light.bounces == 1:
         return E
-    sharp, blunt = known
+    fine, blunt = known
     if light.detailed:
-        light_on = scattered(mi, place, parts, light, frame, sharp, samples, seed)
+        light_on = scattered(mi, place, parts, light, frame, fine, samples, seed)
     else:
         coarse = scattered(mi, place, parts, light, halved(frame), blunt, samples, seed)
-        light_on = finer(coarse, stacked(blunt)[..., :4], stacked(sharp)[..., :4])
-    return E + np.maximum(sharp.rho, np.float32(DARKEST)) * light_on
+        light_on = finer(coarse, stacked(blunt)[..., :4], stacked(fine)[..., :4])
+    return E + np.maximum(fine.rho, np.float32(DARKEST)) * light_on
 
 
 def radiance(mi: ModuleType, place: Place, parts: Parts, frame: Frame, samples: int, seed: int) -> Float:
@@ -120,8 +126,8 @@ def radiance(mi: ModuleType, place: Place, parts: Parts, frame: Frame, samples: 
     E: Any = 0.0
     for k, light in enumerate(relayed(mi, place).values()):
         if light.absent not in known:
-            sharp, blunt = (seen(mi, place, parts, light, view, smooth, seed) for view in views)
-            known[light.absent] = sharp, blunt
+            fine, blunt = (seen(mi, place, parts, light, view, smooth, seed) for view in views)
+            known[light.absent] = fine, blunt
         E = E + lit(mi, place, parts, light, frame, known[light.absent], samples, seed + 7919 * (k + 1))
     return E
 
@@ -145,7 +151,7 @@ def cover(mi: ModuleType, place: Place, frame: Frame) -> Float:
     white = Light({"visitor": (1.0, 1.0, 1.0)}, black=tuple(place.materials))
     with tempfile.TemporaryDirectory() as folder:
         made = scene(mi, place, place.parts + visitor, white, Path(folder), sensor(mi, place.camera, frame))
-        return traced(mi, made, {"type": "path", "max_depth": 1}, SMOOTH, 5)[..., 0]
+        return sharp(mi, made, place.camera, frame, {"type": "path", "max_depth": 1}, SMOOTH, 5)[..., 0]
 
 
 def around(mask: Float) -> tuple[slice, slice]:
@@ -172,28 +178,8 @@ def visitor(E: Float, without: Float, hidden: Float) -> Float:
     return np.dstack([body, hidden + (1 - hidden) * shade]).astype(np.float32)
 
 
-def rendered(
-    name: str, *, height: int = 512, samples: int = 640, seed: int = 0, variant: str = "scalar_rgb"
-) -> dict[str, Float]:
-    """Return the layers of a place: radiance (H, W, 3), depth (H, W) and mover (H, W, 4).
-
-    Parameters
-    ----------
-    name : "chapel", "workshop" or "street"
-    height : of the picture in pixels, which 4 divides; its width is 3 / 2 of it
-    samples : paths per pixel of the coarser grid, in each light
-    seed : of the paths
-    variant : of Mitsuba; "llvm_ad_rgb" is quicker where the machine has LLVM, and its results are equal
-
-    Raises
-    ------
-    ModuleNotFoundError
-        Where Mitsuba is not installed.
-    ValueError
-        For another name, or a height that is below 32 or that 4 does not divide.
-    """
-    if height < 32 or height % 4:
-        raise ValueError(f"expected a height of at least 32 pixels that 4 divides, got {height}")
+def once(name: str, *, height: int, samples: int, seed: int, variant: str) -> dict[str, Float]:
+    """Return the layers of a place, rendered once; see `rendered`."""
     mi, place = mitsuba(variant), model(name)
     frame = Frame(height, height * 3 // 2)
     E = radiance(mi, place, place.parts, frame, samples, seed)
@@ -203,8 +189,52 @@ def rendered(
     visited = radiance(mi, place, place.parts + place.visitor, cut, samples, seed)
     mover = np.zeros((*hidden.shape, 4), np.float32)
     mover[part] = visitor(visited, E[part], hidden[part])
-    layers = {"radiance": np.maximum(E, DIMMEST), "depth": depth(mi, place, frame), "mover": mover}
+    return {"radiance": E, "depth": depth(mi, place, frame), "mover": mover}
+
+
+def mean(rounds: Iterable[dict[str, Float]]) -> dict[str, Float]:
+    """Return the mean of layers that were rendered several times, as half floats can hold it."""
+    every = list(rounds)
+    layers = {key: np.mean([each[key] for each in every], axis=0) for key in every[0]}
+    layers["radiance"] = np.maximum(layers["radiance"], DIMMEST)
     return {key: np.minimum(layer, np.float32(LARGEST_HALF)) for key, layer in layers.items()}
+
+
+def rendered(
+    name: str,
+    *,
+    height: int = 512,
+    samples: int = 320,
+    rounds: int = 1,
+    seed: int = 0,
+    variant: str = "scalar_rgb",
+) -> dict[str, Float]:
+    """Return the layers of a place: radiance (H, W, 3), depth (H, W) and mover (H, W, 4).
+
+    Parameters
+    ----------
+    name : "chapel", "workshop" or "street"
+    height : of the picture in pixels, which 4 divides; its width is 3 / 2 of it
+    samples : paths per pixel of the coarser grid, in each light and round
+    rounds : how often it is rendered, each time with other paths; the result is the mean
+    seed : of the paths
+    variant : of Mitsuba; "llvm_ad_rgb" is quicker where the machine has LLVM, and its results are equal
+
+    Raises
+    ------
+    ModuleNotFoundError
+        Where Mitsuba is not installed.
+    ValueError
+        For another name, a height that is below 32 or that 4 does not divide, or no round at all.
+    """
+    if height < 32 or height % 4:
+        raise ValueError(f"expected a height of at least 32 pixels that 4 divides, got {height}")
+    if rounds < 1:
+        raise ValueError(f"expected at least one round, got {rounds}")
+    return mean(
+        once(name, height=height, samples=samples, seed=seed + k * APART, variant=variant)
+        for k in range(rounds)
+    )
 
 
 def main() -> None:
@@ -215,7 +245,8 @@ def main() -> None:
     parser.add_argument("name", choices=PLACES)
     parser.add_argument("-o", "--out", type=Path, help="an .exr file; NAME.exr, unless told")
     parser.add_argument("--height", type=int, default=512, help="of the picture, pixels (default: 512)")
-    parser.add_argument("--samples", type=int, default=640, help="paths per pixel and light (default: 640)")
+    parser.add_argument("--samples", type=int, default=320, help="paths per pixel and light (default: 320)")
+    parser.add_argument("--rounds", type=int, default=1, help="of which the mean is taken (default: 1)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
         "--variant", default="scalar_rgb", help="of Mitsuba; llvm_ad_rgb is quicker where LLVM is"

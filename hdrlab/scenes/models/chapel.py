@@ -198,9 +198,9 @@ def place() -> Place:
         for k, z in enumerate(BAYS)
     )
     lights = {
-        "glass": Light(glow),
-        "sun": Light({}, beams, absent=tuple(T)),
-        "candles": Light({"flame": FLAME, "ruby": (420.0, 12.0, 5.0)}),
+        "glass": Light(glow, share=0.8),
+        "sun": Light({}, beams, absent=tuple(T), share=1.5),
+        "candles": Light({"flame": FLAME, "ruby": (420.0, 12.0, 5.0)}, share=0.7),
     }
     parts = shell() + panes() + ribs() + pews() + sanctuary() + votives() + corona()
     visitor = put(standing("coat", "trousers"), (0.05, 0.01, -5.6), turn=180)

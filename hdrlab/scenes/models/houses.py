@@ -109,7 +109,7 @@ def front(side: int, start: float, width: float, floors: int, coat: str, *, seed
         )
     )
     for u, turn in ((0, -90), (width, 90)):  # the sides, where a neighbour is lower
-        gable = quad((-2.5, 0, 0), (2.5, 0, 0), (2.5, height, 0), (-2.5, height, 0))
+        gable = quad((-2.5, 3.2, 0), (2.5, 3.2, 0), (2.5, height, 0), (-2.5, height, 0))
         parts.append((coat, placed(gable, (u, 0, -2.5), turned(turn))))
     if side < 0:
         return [(name, facing_right(mesh, LEFT)) for name, mesh in put(parts, (-start, 0, 0))]
@@ -127,20 +127,24 @@ def door(opening: Opening) -> Parts:
 
 
 def alley() -> Parts:
-    """Return the alley between two houses on the left: its walls, barrels, a crate, a door in the dark."""
+    """Return the alley between two houses on the left: its walls, barrels, a crate, a door in the dark.
+
+    Behind its arch it is wider than the arch, so that the camera looks past the light that falls through.
+    """
     a, b = ALLEY
+    back, far = a - 3.2, LEFT - 9
     parts: Parts = [
-        ("brick", quad((LEFT - 9, 0, a), (LEFT, 0, a), (LEFT, 9, a), (LEFT - 9, 9, a))),
-        ("brick", quad((LEFT, 0, b), (LEFT - 9, 0, b), (LEFT - 9, 9, b), (LEFT, 9, b))),
-        ("brick", quad((LEFT - 9, 0, b), (LEFT - 9, 0, a), (LEFT - 9, 9, a), (LEFT - 9, 9, b))),
-        ("pavement", quad((LEFT - 9, 0.01, b), (LEFT, 0.01, b), (LEFT, 0.01, a), (LEFT - 9, 0.01, a))),
-        ("brick", quad((LEFT, 3.3, b), (LEFT - 9, 3.3, b), (LEFT - 9, 3.3, a), (LEFT, 3.3, a))),
-        ("door", box((LEFT - 8.9, 0, a + 0.3), (LEFT - 8.8, 2.1, b - 0.3))),
+        ("soot", quad((far, 0, back), (LEFT, 0, back), (LEFT, 3.3, back), (far, 3.3, back))),
+        ("soot", quad((LEFT, 0, b), (far, 0, b), (far, 3.3, b), (LEFT, 3.3, b))),
+        ("soot", quad((far, 0, b), (far, 0, back), (far, 3.3, back), (far, 3.3, b))),
+        ("road", quad((far, 0.01, b), (LEFT, 0.01, b), (LEFT, 0.01, back), (far, 0.01, back))),
+        ("soot", quad((LEFT, 3.3, b), (far, 3.3, b), (far, 3.3, back), (LEFT, 3.3, back))),
+        ("door", box((LEFT - 2.3, 0, back), (LEFT - 1.3, 2.1, back + 0.06))),
     ]
     barrel = [(0, 0.9), (0.25, 0.9), (0.3, 0.7), (0.32, 0.45), (0.3, 0.2), (0.25, 0), (0, 0)]
-    for x, z in ((-1.0, a + 0.45), (-1.8, a + 0.4), (-3.4, b - 0.45)):
+    for x, z in ((-1.15, back + 1.9), (-1.8, back + 1.2), (-3.4, b - 0.45)):
         parts.append(("oak", placed(lathe(barrel), (LEFT + x, 0, z))))
-    parts.append(("oak", box((LEFT - 2.9, 0, a + 0.1), (LEFT - 2.2, 0.7, a + 0.8))))
+    parts.append(("oak", box((LEFT - 2.9, 0, back + 0.1), (LEFT - 2.2, 0.7, back + 0.8))))
     # The arch is low: what comes in of the lamp's light falls on the stones behind it.
     arch = Opening((b - a) / 2, 1.8, 0.0, 1.55, 0.55, False)
     edge = outline(arch.widened(0.06))

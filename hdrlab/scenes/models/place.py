@@ -23,7 +23,8 @@ class Light(NamedTuple):
 
     Attributes
     ----------
-    glow : radiance, cd/m^2, of what shines, by material: (r, g, b), or a texture over uv from 0 to 1
+    glow : radiance, cd/m^2, of what shines, by material: (r, g, b), or a texture over uv from 0 to 1, each
+        place of which belongs to one place of each part of that material
     beams : further emitters, as Mitsuba's dictionaries
     absent : materials that are not there, as they would be in the way
     black : materials that return no light
@@ -34,7 +35,7 @@ class Light(NamedTuple):
     detailed : True where it varies over a pixel or two, as it does among leaves
     """
 
-    glow: Mapping[str, Colour | Texture] = {}
+    glow: Mapping[str, Colour | Texture | Material] = {}
     beams: tuple[Material, ...] = ()
     absent: tuple[str, ...] = ()
     black: tuple[str, ...] = ()

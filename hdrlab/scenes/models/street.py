@@ -85,7 +85,9 @@ def materials() -> dict[str, Material]:
         "trim": s.matt(s.plaster((0.46, 0.42, 0.36), seed=6)),
         "step": s.matt((0.3, 0.28, 0.26)),
         "brick": s.matt(s.bricks((0.24, 0.12, 0.08)), metres=1.5),
+        "soot": s.matt(s.bricks((0.03, 0.022, 0.018)), metres=1.5),
         "roof": s.matt(s.bricks((0.09, 0.05, 0.045)), metres=1.2),
+        "clouds": s.matt((0, 0, 0)),
         "sash": s.matt((0.32, 0.31, 0.29)),
         "dark": s.glossy((0.006, 0.007, 0.009), rough=0.05),
         "door": s.glossy((0.03, 0.085, 0.06), rough=0.2),
@@ -115,6 +117,20 @@ def stripes(first: tuple[float, float, float], second: tuple[float, float, float
     return np.broadcast_to(np.where(first_here[:, None], first, second), (size, size, 3)).copy()
 
 
+def clouds(size: int = 256) -> Float:
+    """Return the radiance of the sky, cd/m^2: clouds over a town, which light them from below."""
+    height = np.linspace(1, 0, size)[:, None]
+    puffs = surfaces.noise((size, size), ((30, 60), (12, 24), (5, 10)), seed=17)
+    glow = (0.2 + np.exp(-3.5 * height)) * np.exp(0.3 * puffs)
+    return glow[..., None] * np.array([0.11, 0.082, 0.066])
+
+
+def overcast() -> Parts:
+    """Return the sky behind the church."""
+    z = END - 40
+    return [("clouds", quad((-70, 0, z), (70, 0, z), (70, 80, z), (-70, 80, z), unit_uv=True))]
+
+
 def place() -> Place:
     """Return the street."""
     warm = [(34.0, 20.0, 8.5), (52.0, 36.0, 18.0), (26.0, 13.0, 4.5), (30.0, 30.0, 26.0)]
@@ -125,12 +141,12 @@ def place() -> Place:
         "lit church": (5.0, 2.6, 1.2),
         "door lit": (60.0, 40.0, 18.0),
     }
-    night: Material = {"type": "constant", "radiance": {"type": "rgb", "value": [0.0016, 0.0024, 0.0046]}}
+    night: Material = {"type": "constant", "radiance": {"type": "rgb", "value": [0.022, 0.021, 0.022]}}
     lights = {
-        "lamps": Light({"bulb": (52_000.0, 33_000.0, 14_500.0)}, bounces=6),
-        "windows": Light(glow, bounces=6),
-        "night": Light({}, (night,), bounces=4, share=0.3),
+        "lamps": Light({"bulb": (52_000.0, 33_000.0, 14_500.0)}, share=1.5),
+        "windows": Light(glow, share=0.7),
+        "night": Light({"clouds": clouds()}, (night,), bounces=4, share=0.3),
     }
-    parts = ground() + houses() + alley() + furniture() + church()
+    parts = ground() + houses() + alley() + furniture() + church() + overcast()
     visitor = put(walking("coat", "trousers"), (-0.75, -0.06, -4.3), turn=32)
     return Place(parts, materials(), lights, Camera((0.55, 1.65, 3.2), (-0.35, 2.35, -14.0), 62), visitor)

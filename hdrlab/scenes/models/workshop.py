@@ -15,7 +15,7 @@ from hdrlab.scenes.models.shapes import Parts, ball, box, placed, put, quad, she
 from hdrlab.scenes.models.sun import through
 from hdrlab.scenes.models.yard import sky, yard
 
-RIGHT, CEILING = 3.0, 2.85
+RIGHT, CEILING, THICK = 3.0, 2.85, 0.32  # metres; the wall's thickness
 WINDOW = Opening(-0.55, 2.5, 1.02, 2.32, 0.16, False)
 SUN = (-0.50, 0.62, -0.52)  # towards the sun
 SUNLIGHT = (88_000.0, 80_000.0, 66_000.0)
@@ -37,7 +37,7 @@ YARD = (
 
 def shell() -> Parts:
     """Return the room with its window, and the beams under its ceiling."""
-    back = wall((LEFT, RIGHT), (0, CEILING), [WINDOW], 0.32, 0.05)
+    back = wall((LEFT, RIGHT), (0, CEILING), [WINDOW], THICK, 0.05)
     parts: Parts = [
         ("wall", placed(back, (0, 0, BACK))),
         ("wall", quad((RIGHT, 0, BACK), (RIGHT, 0, 3), (RIGHT, CEILING, 3), (RIGHT, CEILING, BACK))),
@@ -153,17 +153,15 @@ def place() -> Place:
         "irradiance": {"type": "rgb", "value": list(SUNLIGHT)},
     }
     air: Material = {"type": "constant", "radiance": {"type": "rgb", "value": list(SKY)}}
-    low, high = (
-        (WINDOW.middle - 0.1 - WINDOW.width / 2, WINDOW.sill - 0.1, BACK - 0.35),
-        (WINDOW.width + 0.2, 1.7),
-    )
-    beam = through(np.ones((4, 4, 3)), low, (high[0], 0, 0), (0, high[1], 0), SUN, SUNLIGHT)
+    left, upper = WINDOW.middle - WINDOW.width / 2, WINDOW.spring + WINDOW.rise
+    corner, sides = (left, WINDOW.sill, BACK - THICK), ((WINDOW.width, 0, 0), (0, upper - WINDOW.sill, 0))
+    beam = through(np.ones((4, 4, 3)), corner, *sides, SUN, SUNLIGHT)
     lights = {
         "yard": Light(
             {"sky": sky()}, (sun, air), absent=("pane",), black=inside, bounces=3, share=0.3, detailed=True
         ),
-        "sun": Light({}, (beam,), absent=("pane", *YARD)),
-        "window": Light({"pane": panes()}, absent=YARD, hidden=True),
+        "sun": Light({}, (beam,), absent=("pane", *YARD), share=2.0),
+        "window": Light({"pane": panes()}, absent=YARD, hidden=True, share=0.7),
         "lamp": Light({"bulb": (26_000.0, 17_500.0, 8_800.0)}, absent=("pane", *YARD), share=0.15),
     }
     parts = shell() + bench() + toolboard() + shelves() + middle() + yard()
