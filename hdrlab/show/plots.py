@@ -167,7 +167,7 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
         step = max(1, w // 350)
         ax.imshow(_eight_bits(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
         moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
-        ax.set_title(seconds(time) + moved, fontsize=9, pad=3)
+        ax.set_title(seconds(time) + moved, fontsize=11, pad=3)
         ax.set_axis_off()
     return figure
 

@@ -32,6 +32,7 @@ SETTINGS: dict[str, Any] = {
     "myst_enable_extensions": ["dollarmath", "amsmath", "deflist", "attrs_inline"],
     "myst_heading_anchors": 3,
     "nb_execution_mode": "off",  # they have been run
+    "nb_merge_streams": True,  # what a cell prints is one piece, however often it came
     "nb_ipywidgets_js": {},  # a page of ours opens its widgets itself
     "html_math_renderer": "drawn",
     "html_theme": "theme",
