@@ -30,10 +30,6 @@ def test_equivalent_exposures_have_one_ev_and_one_saturating_luminance(F, T, oth
     )
 
 
-def test_one_second_at_f_1_is_ev_0():
-    assert exposure.ev(1, 1) == 0
-
-
 @pytest.mark.parametrize(
     "name, really",
     [("1/60", 64), ("1/125", 128), ("1/250", 256), ("1/500", 512), ("1/1000", 1024), ("1/15", 16)],

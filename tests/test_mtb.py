@@ -109,24 +109,9 @@ def test_sixteen_bits_are_read_as_the_same_256_codes():
     assert np.array_equal(pyramid.gray(image.astype(np.uint16) * 257), pyramid.gray(image))
 
 
-def test_a_level_is_the_mean_of_four_pixels():
-    Y = np.array([[0, 255, 10, 20, 9], [255, 0, 30, 40, 9], [7, 7, 7, 7, 7]], np.uint8)
-    assert pyramid.shrink(Y).tolist() == [[128, 25]]
-
-
-def test_the_threshold_is_the_median():
-    Y = np.random.default_rng(0).integers(0, 256, (101, 77), dtype=np.uint8)
-    assert mtb.threshold(pyramid.histogram(Y), 0.5) == np.median(Y)
-
-
 def test_the_threshold_of_a_large_picture_is_the_median_to_one_code():
     Y = zoom(camera(), 4, order=1)
     assert abs(int(mtb.threshold(pyramid.histogram(Y), 0.5)) - np.median(Y)) <= 1
-
-
-def test_the_exclusion_bitmap_leaves_out_the_four_codes_on_either_side():
-    excluded = np.flatnonzero(~mtb.exclusion(np.arange(256, dtype=np.uint8), 100))
-    assert excluded.tolist() == list(range(96, 105))
 
 
 def test_half_the_pixels_are_above_the_threshold():
@@ -359,6 +344,15 @@ def test_a_rotation_is_reported(texture, degrees):
     images[1] = rotate(images[1], degrees, axes=(0, 1), reshape=False, order=1, mode="reflect")
     (verdict,) = mtb.verdicts(images)
     assert verdict.informative and not verdict.reliable
+
+
+@pytest.mark.parametrize("period", [8, 2.6666666666666665])
+def test_a_picture_that_repeats_itself_is_reported_in_words_that_are_true(period):
+    y, x = np.indices((208, 308)) * 2 * np.pi / period
+    waves = 120 + 90 * np.sin(x + 0.3) * np.sin(y + 0.7)
+    (verdict,) = mtb.verdicts(np.stack([waves[8:], waves[6:-2]]).astype(np.uint8))
+    assert verdict.informative and not verdict.reliable
+    assert verdict.trouble == "the picture repeats itself: 8 pixels away the photographs fit as well"
 
 
 def test_a_motion_beyond_the_range_is_reported():

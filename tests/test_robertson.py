@@ -31,12 +31,6 @@ def test_irradiance_is_the_weighted_mean_of_the_slide():
         assert np.isclose(E, sum(w[z] * f[z] * t) / sum(w[z] * t**2))
 
 
-def test_the_update_is_a_plain_mean_over_the_samples_of_a_level():
-    Z, t, E = np.array([[7, 9], [9, 7], [7, 7]]), np.array([1.0, 2.0]), np.array([3.0, 5.0, np.nan])
-    f = robertson.update(Z, t, E)
-    assert f[7] == (3 * 1 + 5 * 2) / 2 and f[9] == (3 * 2 + 5 * 1) / 2 and np.isnan(f[8])
-
-
 @given(seed=st.integers(0, 99), P=st.integers(2, 6), N=st.integers(1, 400))
 def test_the_table_makes_the_turn_that_the_loop_over_pixels_makes(seed, P, N):
     Z, t = samples(N, P, seed)
@@ -52,15 +46,6 @@ def test_the_table_is_the_same_in_blocks(monkeypatch):
     monkeypatch.setattr(joint, "BLOCK", 700)
     parts = joint.table(Z, t, WEIGHTS)
     assert np.allclose(parts.S, whole.S) and np.array_equal(parts.pixels, whole.pixels)
-
-
-def test_the_truth_is_where_the_turns_rest():
-    """On a linear camera without noise or rounding to spoil it, the line stays the line."""
-    x = np.arange(1, 63)
-    Z, t = np.stack([x, 2 * x, 4 * x], axis=1), np.array([1.0, 2.0, 4.0])
-    states = list(robertson.recover_steps(Z, t, weights.flat(), smoothness=0, turns=5))
-    shown = np.unique(Z)
-    assert all(np.allclose(state.f[shown], shown / 128) for state in states)
 
 
 @given(n=st.sampled_from([16, 256]), smoothness=st.floats(0.1, 1000))

@@ -25,6 +25,7 @@ from hdrlab.core.arrays import as_stack
 
 NOISE = 4  # codes: closer than this to the threshold, noise decides the bit
 CACHE = 2**18  # pixels
+NEAREST = [4, 1, 3, 5, 7, 0, 2, 6, 8]  # of the nine offsets: the centre, its sides, its corners
 CLIPPED = 12  # codes: a threshold this close to 0 or 255 leaves too little on its other side
 
 
@@ -96,12 +97,13 @@ def cut(Y: Gray, t: int) -> Words:
 
 
 def step(fixed: Words, moving: Words, offset: Offset) -> tuple[NDArray[np.float64], Offset]:
-    """Return the errors (3, 3) of the nine offsets around `offset`, and the best; in a tie the centre stays.
+    """Return the errors (3, 3) of the nine offsets around `offset`, and the best; in a tie the least move.
 
-    A scan that begins in a corner walks off diagonally, a pixel per level, wherever all nine are equal.
+    A scan that begins in a corner walks off diagonally, a pixel per level, wherever all nine are equal; or
+    along the bars of a fence, which tell one direction alone.
     """
     errors = error(around(fixed, moving, offset))
-    i, j = divmod(int(np.argmin(errors)), 3) if errors.min() < errors[1, 1] else (1, 1)
+    i, j = divmod(NEAREST[int(np.argmin(errors.ravel()[NEAREST]))], 3)
     return errors, (offset[0] + i - 1, offset[1] + j - 1)
 
 

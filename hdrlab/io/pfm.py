@@ -33,14 +33,46 @@ def read_header(path: str | Path) -> Header:
     """Return the Header of the PFM file at `path`, or raise a ValueError, also for one that is cut short."""
     with open(path, "rb") as file:
         head = file.read(256)
+    return _header(head, path, Path(path).stat().st_size)
+
+
+def _header(head: bytes, path: str | Path, held: int) -> Header:
     match = HEADER.match(head)
     scale = float(match[4]) if match and match[4].strip(b"+-.eE") else 0.0
     if not match or scale == 0 or not np.isfinite(scale):
         raise ValueError(f"{path}: expected a PFM file (PF or Pf, width, height, scale), got {head[:16]!r}")
     header = Header(int(match[3]), int(match[2]), match[1] == b"PF", scale, match.end())
     size = header.height * header.width * (12 if header.colour else 4)
-    check_size(path, header.height, header.width, size + header.start)
+    check_size(path, header.height, header.width, size + header.start, held=held)
     return header
+
+
+def from_bytes(data: bytes, *, flip: bool = True) -> NDArray[np.float32]:
+    """Return the values (H, W[, 3]) of a PFM file, given as bytes; parameters and errors as of `read`."""
+    header = _header(data[:256], "PFM", len(data))
+    shape = (header.height, header.width, 3) if header.colour else (header.height, header.width)
+    order = "<f4" if header.scale < 0 else ">f4"
+    E = np.frombuffer(data, order, int(np.prod(shape)), header.start).reshape(shape).astype(np.float32)
+    return E[::-1] if flip else E
+
+
+def to_bytes(E: ArrayLike, *, flip: bool = True) -> bytes:
+    """Return the PFM file of radiance (H, W[, 3]), as bytes; parameters and errors as of `write`.
+
+    Examples
+    --------
+    >>> to_bytes([[0.0], [1.0]])  # the lower row first
+    b'Pf\\n1 2\\n-1.0\\n\\x00\\x00\\x80?\\x00\\x00\\x00\\x00'
+    """
+    header, E = _laid_out(E, flip)
+    return header + np.ascontiguousarray(E, dtype="<f4").tobytes()
+
+
+def _laid_out(E: ArrayLike, flip: bool) -> tuple[bytes, NDArray[np.float32]]:
+    """Return the text of the header, and E with its rows in the file's order."""
+    E = as_radiance(E)
+    header = f"{'PF' if E.ndim == 3 else 'Pf'}\n{E.shape[1]} {E.shape[0]}\n-1.0\n".encode()
+    return header, E[::-1] if flip else E
 
 
 def read(path: str | Path, *, flip: bool = True) -> NDArray[np.float32]:
@@ -89,13 +121,9 @@ def write(path: str | Path, E: ArrayLike, *, flip: bool = True) -> None:
     >>> read(file).tolist()
     [[0.25, 1000000.0]]
     """
-    E = as_radiance(E)
-    if flip:
-        E = E[::-1]
-    height, width = E.shape[:2]
-    header = f"{'PF' if E.ndim == 3 else 'Pf'}\n{width} {height}\n-1.0\n".encode()
+    header, E = _laid_out(E, flip)
     with replacing(path) as name, open(name, "wb") as file:
         reserve(file, len(header) + E.nbytes)
         file.write(header)
-        for y in range(0, height, ROWS):
+        for y in range(0, len(E), ROWS):
             file.write(np.ascontiguousarray(E[y : y + ROWS], dtype="<f4").data)

@@ -1,0 +1,154 @@
+"""The course's plan: homeworks, tasks, points and dates, read from plan.toml, and what each student draws.
+
+An instructor changes plan.toml, or gives the path of another. A task is a function of hdrlab: the solution is
+that function, the handout its signature, and the checks are in tests/spec/test_<id>.py.
+"""
+
+import hmac
+import tomllib
+from collections.abc import Callable
+from datetime import datetime
+from importlib import import_module
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+PLAN = Path(__file__).with_name("plan.toml")
+
+
+class Task(NamedTuple):
+    """One function to write: what it is called in the checks, where the library has it, and its points."""
+
+    id: str
+    function: str
+    points: float
+
+    @property
+    def name(self) -> str:
+        """The function's own name."""
+        return self.function.rpartition(".")[2]
+
+
+class ByHand(NamedTuple):
+    """What a person judges."""
+
+    title: str
+    points: float
+
+
+class Homework(NamedTuple):
+    """A sheet of tasks, and when it is due."""
+
+    name: str
+    title: str
+    due: datetime
+    tasks: tuple[Task, ...]
+    by_hand: tuple[ByHand, ...] = ()
+
+    @property
+    def points(self) -> float:
+        """What the checks can give."""
+        return sum(task.points for task in self.tasks)
+
+
+class Late(NamedTuple):
+    """What being late costs: nothing for so many days of the whole course, and then points a day."""
+
+    free_days: int = 0
+    points_a_day: float = 0.0
+
+
+class Plan(NamedTuple):
+    """The course's homeworks by name, and its rule for what comes late."""
+
+    homeworks: dict[str, Homework]
+    late: Late = Late()
+
+    def task(self, id: str) -> Task:
+        """Return the task of that id, or raise a KeyError that lists those there are."""
+        tasks = {task.id: task for homework in self.homeworks.values() for task in homework.tasks}
+        if id not in tasks:
+            raise KeyError(f"expected a task out of {', '.join(tasks)}, got {id!r}")
+        return tasks[id]
+
+
+def read(path: str | Path | None = None) -> Plan:
+    """Return the Plan that stands in the file at `path`; None is the one that comes with hdrlab.
+
+    Raises
+    ------
+    ValueError
+        For a file that is no plan: which homework and what is wrong with it.
+
+    Examples
+    --------
+    >>> plan = read()
+    >>> plan.task("gsolve").function
+    'response.debevec.gsolve'
+    >>> plan.homeworks["hw2"].points
+    100.0
+    """
+    path = PLAN if path is None else Path(path)
+    try:
+        sheets = tomllib.loads(path.read_text(encoding="utf8"))
+    except tomllib.TOMLDecodeError as error:
+        raise ValueError(f"{path}: expected a plan in TOML, {error}") from None
+    late = _late(sheets.pop("late", {}), path)
+    plan = Plan({name: _homework(name, sheet, path) for name, sheet in sheets.items()}, late)
+    ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
+    twice = sorted({id for id in ids if ids.count(id) > 1})
+    if not ids or twice:
+        raise ValueError(f"{path}: expected tasks, each once, got {', '.join(twice) or 'none'}")
+    return plan
+
+
+def _late(table: dict[str, Any], path: Path) -> Late:
+    try:
+        late = Late(**table)
+        if late.free_days >= 0 and late.points_a_day >= 0:
+            return late
+    except TypeError:
+        pass
+    raise ValueError(f"{path}: expected free_days and points_a_day of at least 0 in [late], got {table}")
+
+
+def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
+    try:
+        tasks = tuple(Task(one["id"], one["function"], float(one["points"])) for one in sheet["tasks"])
+        by_hand = tuple(ByHand(one["title"], float(one["points"])) for one in sheet.get("by_hand", ()))
+        homework = Homework(name, sheet["title"], sheet["due"], tasks, by_hand)
+    except (KeyError, TypeError, ValueError) as error:
+        raise ValueError(f"{path}: expected title, due and tasks in [{name}], {error!r}") from None
+    if not isinstance(homework.due, datetime) or homework.due.tzinfo is None:
+        raise ValueError(f"{path}: expected due of [{name}] as a date with time and zone, got {homework.due}")
+    points = [one.points for one in tasks] + [one.points for one in by_hand]
+    if not (points and min(points) >= 0):
+        raise ValueError(f"{path}: expected tasks or work by hand, of at least 0 points each, in [{name}]")
+    return homework
+
+
+def function(task: Task) -> Callable[..., Any]:
+    """Return the library's own function for a task, which is its solution."""
+    module, _, name = task.function.rpartition(".")
+    found: Callable[..., Any] = getattr(import_module(f"hdrlab.{module}"), name)
+    return found
+
+
+def seed(secret: str, student: str, task: str) -> int:
+    """Return what a student's inputs to a task are drawn from: HMAC(course secret, student, task).
+
+    Nobody without the secret can tell another's inputs, and the same three give the same inputs again.
+
+    Examples
+    --------
+    >>> seed("salt", "ada", "gsolve") == seed("salt", "ada", "gsolve") != seed("salt", "ada", "merge")
+    True
+    """
+    drawn = hmac.digest(secret.encode(), f"{student}\0{task}".encode(), "sha256")
+    return int.from_bytes(drawn, "big")
+
+
+def generator(seed: int) -> np.random.Generator:
+    """Return the Generator of one check: every check of a task begins afresh, so their order is free."""
+    return np.random.default_rng(seed)

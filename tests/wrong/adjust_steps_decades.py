@@ -1,0 +1,15 @@
+"""A wrong adjust_steps: decades."""
+
+import numpy as np
+
+from hdrlab.tonemap import ward
+
+TASK = "adjust_steps"
+MISCONCEPTION = (
+    "The display's range is a natural logarithm, like db; you took it for decades, and the ceiling is 2.3 "
+    "times too high or too low."
+)
+
+
+def adjust_steps(f, db, D, *, tolerance=0.025):
+    return ward.adjust_steps(f, db, D / np.log(10), tolerance=tolerance)

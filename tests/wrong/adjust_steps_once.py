@@ -1,0 +1,14 @@
+"""A wrong adjust_steps: once."""
+
+from hdrlab.tonemap import ward
+
+TASK = "adjust_steps"
+MISCONCEPTION = (
+    "You applied the ceiling once. The trim made T less, and the ceiling with it: trim again until hardly "
+    "anything is cut."
+)
+
+
+def adjust_steps(f, db, D, *, tolerance=0.025):
+    yield f, float("inf"), f.sum(), 0.0
+    yield ward.trim(f, db, D)

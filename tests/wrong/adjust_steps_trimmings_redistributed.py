@@ -1,0 +1,21 @@
+"""A wrong adjust_steps: trimmings redistributed."""
+
+import numpy as np
+
+from hdrlab.tonemap import ward
+
+TASK = "adjust_steps"
+MISCONCEPTION = (
+    "You put the trimmings back into other bins: that raises their slopes above 1. What is cut off is gone."
+)
+
+
+def adjust_steps(f, db, D, *, tolerance=0.025):
+    yield f, float("inf"), f.sum(), 0.0
+    for _ in range(40):
+        cut = ward.trim(f, db, D)
+        room = cut.f < cut.ceiling
+        f = cut.f + np.where(room, cut.trimmings / max(room.sum(), 1), 0)
+        yield f, cut.ceiling, cut.T, cut.trimmings
+        if cut.trimmings < tolerance * cut.T:
+            return

@@ -1,0 +1,13 @@
+"""A wrong compressed: dark end at white."""
+
+import numpy as np
+
+TASK = "compressed"
+MISCONCEPTION = (
+    "You anchor the dark end: everything is brighter than white then. The bright end is the one that "
+    "becomes 1."
+)
+
+
+def compressed(base, low, high, *, contrast=50.0):
+    return min(1.0, np.log10(contrast) / (high - low)) * (base - low)

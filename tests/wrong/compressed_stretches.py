@@ -1,0 +1,10 @@
+"""A wrong compressed: stretches."""
+
+import numpy as np
+
+TASK = "compressed"
+MISCONCEPTION = "A scene of less contrast than the display has is stretched: m is at most 1."
+
+
+def compressed(base, low, high, *, contrast=50.0):
+    return np.log10(contrast) / (high - low) * (base - high)

@@ -1,0 +1,10 @@
+"""A wrong count: rounded down."""
+
+import math
+
+TASK = "count"
+MISCONCEPTION = "What is left after the last whole step needs a photograph too: round up, not down."
+
+
+def count(scene, usable, overlap):
+    return max(1 + math.floor((scene - usable) / (usable - overlap)), 1)

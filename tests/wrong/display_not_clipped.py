@@ -1,0 +1,10 @@
+"""A wrong display: not clipped."""
+
+import numpy as np
+
+TASK = "display"
+MISCONCEPTION = "What is brighter than white stays white: clip at 1."
+
+
+def display(Lm, adaptation, white=np.inf):
+    return Lm / (1 + adaptation) * (1 + Lm / white**2)

@@ -1,0 +1,14 @@
+"""A wrong divergence: forward."""
+
+import numpy as np
+
+TASK = "divergence"
+MISCONCEPTION = (
+    "Your differences look forward, like those of the gradient: the divergence looks back, or the picture "
+    "drifts by a pixel."
+)
+
+
+def divergence(G):
+    Gy, Gx = (np.pad(g, ((0, 1), (0, 1))) for g in G)
+    return (Gy[1:] - Gy[:-1])[:, :-1] + (Gx[:, 1:] - Gx[:, :-1])[:-1]

@@ -1,0 +1,13 @@
+"""A wrong ev: aperture once."""
+
+import numpy as np
+
+TASK = "ev"
+MISCONCEPTION = (
+    "The light goes with the area of the aperture, which is 1 / F squared: each f-number counts twice, 2 "
+    "log2 F."
+)
+
+
+def ev(F, T, *, S=100.0):
+    return np.log2(F) - np.log2(T) - np.log2(S / 100)

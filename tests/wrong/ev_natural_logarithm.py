@@ -1,0 +1,10 @@
+"""A wrong ev: natural logarithm."""
+
+import numpy as np
+
+TASK = "ev"
+MISCONCEPTION = "Stops are powers of two: take the logarithm to the base 2, where you took the natural one."
+
+
+def ev(F, T, *, S=100.0):
+    return 2 * np.log(F) - np.log(T) - np.log(S / 100)

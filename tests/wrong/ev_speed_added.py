@@ -1,0 +1,12 @@
+"""A wrong ev: speed added."""
+
+import numpy as np
+
+TASK = "ev"
+MISCONCEPTION = (
+    "A higher ISO speed needs less light, so it lowers the exposure value: subtract log2(S / 100)."
+)
+
+
+def ev(F, T, *, S=100.0):
+    return 2 * np.log2(F) - np.log2(T) + np.log2(S / 100)

@@ -1,0 +1,10 @@
+"""A wrong exclusion: four kept."""
+
+import numpy as np
+
+TASK = "exclusion"
+MISCONCEPTION = "The codes t - 4 and t + 4 are within the noise too: compare with > 4, not >= 4."
+
+
+def exclusion(Y, t):
+    return np.abs(Y.astype(int) - t) >= 4

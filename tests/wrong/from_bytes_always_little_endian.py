@@ -1,0 +1,15 @@
+"""A wrong from_bytes: always little endian."""
+
+from hdrlab.io import pfm
+
+TASK = "from_bytes"
+MISCONCEPTION = (
+    "You read every file as little endian; the sign of the scale says which it is, and positive is big "
+    "endian."
+)
+
+
+def from_bytes(data):
+    head = pfm.from_bytes(data)
+    scale = float(data.split()[3])
+    return head if scale < 0 else head.byteswap()

@@ -1,0 +1,10 @@
+"""A wrong from_bytes: upside down."""
+
+from hdrlab.io import pfm
+
+TASK = "from_bytes"
+MISCONCEPTION = "Your picture is upside down: the first row in the file is the lowest one."
+
+
+def from_bytes(data):
+    return pfm.from_bytes(data, flip=False)

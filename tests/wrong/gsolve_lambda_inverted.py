@@ -1,0 +1,13 @@
+"""A wrong gsolve: lambda inverted."""
+
+from hdrlab.response import debevec
+
+TASK = "gsolve"
+MISCONCEPTION = (
+    "Your curve becomes rougher where lambda grows: the smoothness rows are multiplied by lambda, and you "
+    "divide."
+)
+
+
+def gsolve(Z, B, smoothness, w):
+    return debevec.gsolve(Z, B, 1 / smoothness, w)

@@ -1,0 +1,13 @@
+"""A wrong gsolve: lambda read as 1."""
+
+from hdrlab.response import debevec
+
+TASK = "gsolve"
+MISCONCEPTION = (
+    "The listing's digit 1 is a letter: lambda. Your smoothness rows do not hold it, so the knob does "
+    "nothing."
+)
+
+
+def gsolve(Z, B, smoothness, w):
+    return debevec.gsolve(Z, B, 1.0, w)

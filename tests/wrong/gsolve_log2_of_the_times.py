@@ -1,0 +1,15 @@
+"""A wrong gsolve: log2 of the times."""
+
+import numpy as np
+
+from hdrlab.response import debevec
+
+TASK = "gsolve"
+MISCONCEPTION = (
+    "B is the natural logarithm of the times; you took the one to the base 2, and every stop is 1.44 "
+    "times too long."
+)
+
+
+def gsolve(Z, B, smoothness, w):
+    return debevec.gsolve(Z, B / np.log(2), smoothness, w)

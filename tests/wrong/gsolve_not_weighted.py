@@ -1,0 +1,18 @@
+"""A wrong gsolve: not weighted."""
+
+import numpy as np
+
+from hdrlab.response import debevec
+
+TASK = "gsolve"
+MISCONCEPTION = (
+    "The data rows have no weight: clipped pixels, which say only at least or at most, bend your curve."
+)
+
+
+def gsolve(Z, B, smoothness, w):
+    A, b = debevec.system(Z, B, smoothness, np.ones(len(w)))
+    n = len(w)
+    A[-(n - 2) :] *= np.asarray(w)[1:-1, None]
+    x = np.linalg.lstsq(A, b, rcond=None)[0]
+    return x[:n], x[n:]

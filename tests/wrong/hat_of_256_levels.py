@@ -1,0 +1,11 @@
+"""A wrong hat: of 256 levels."""
+
+import numpy as np
+
+TASK = "hat"
+MISCONCEPTION = "Your table has 256 levels whatever n says; photographs of 16 bits have 65536."
+
+
+def hat(n=256):
+    z = np.arange(n)
+    return np.minimum(z, 255 - z).clip(0) / 127

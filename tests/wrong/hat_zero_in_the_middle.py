@@ -1,0 +1,14 @@
+"""A wrong hat: zero in the middle."""
+
+import numpy as np
+
+TASK = "hat"
+MISCONCEPTION = (
+    "Your hat stands on its head: it is 0 in the middle, where a photograph tells most, and largest where "
+    "it is clipped."
+)
+
+
+def hat(n=256):
+    z = np.arange(n)
+    return np.abs(z - (n - 1) / 2) / ((n - 1) / 2)

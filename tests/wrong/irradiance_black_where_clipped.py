@@ -1,0 +1,14 @@
+"""A wrong irradiance: black where clipped."""
+
+import numpy as np
+
+TASK = "irradiance"
+MISCONCEPTION = (
+    "Where no frame saw the sample well nothing is known of it. You answer 0, which is the darkest there "
+    "is: a dark sun."
+)
+
+
+def irradiance(Z, t, f, w):
+    below = w[Z] @ t**2
+    return np.where(below > 0, (w[Z] * f[Z]) @ t / np.where(below > 0, below, 1), 0.0)

@@ -1,0 +1,8 @@
+"""A wrong irradiance: not weighted."""
+
+TASK = "irradiance"
+MISCONCEPTION = "Without weights clipped pixels count like all others, and pull bright irradiances down."
+
+
+def irradiance(Z, t, f, w):
+    return (f[Z] * t).sum(axis=1) / (t**2).sum() + 0 * w[Z].sum(axis=1)

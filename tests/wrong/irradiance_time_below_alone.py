@@ -1,0 +1,8 @@
+"""A wrong irradiance: time below alone."""
+
+TASK = "irradiance"
+MISCONCEPTION = "The time belongs above the fraction as well: sum w f t over sum w t^2."
+
+
+def irradiance(Z, t, f, w):
+    return (w[Z] * f[Z]).sum(axis=1) / (w[Z] * t**2).sum(axis=1)

@@ -1,0 +1,11 @@
+"""A wrong irradiance: time once."""
+
+TASK = "irradiance"
+MISCONCEPTION = (
+    "Below the fraction the time is squared: sum w t^2. Yours weights frames as if all light were counted "
+    "in one bin."
+)
+
+
+def irradiance(Z, t, f, w):
+    return (w[Z] * f[Z]).sum(axis=1) / (w[Z] * t).sum(axis=1)

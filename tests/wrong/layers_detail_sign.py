@@ -1,0 +1,14 @@
+"""A wrong layers: detail sign."""
+
+from hdrlab.tonemap import durand
+
+TASK = "layers"
+MISCONCEPTION = (
+    "Your detail has the sign reversed, as the overview prints it: detail = lL - base, so that both add "
+    "up to the picture."
+)
+
+
+def layers(lL, *, sigma_s, sigma_r=0.4):
+    base, detail = durand.layers(lL, sigma_s=sigma_s, sigma_r=sigma_r)
+    return base, -detail

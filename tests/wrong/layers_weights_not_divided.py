@@ -1,0 +1,16 @@
+"""A wrong layers: weights not divided."""
+
+import numpy as np
+
+from hdrlab.core import bilateral
+
+TASK = "layers"
+MISCONCEPTION = (
+    "You did not divide by the sum of the weights: where few neighbours are alike the base is too small."
+)
+
+
+def layers(lL, *, sigma_s, sigma_r=0.4):
+    mean, k = bilateral.brute(lL, sigma_s=sigma_s, sigma_r=sigma_r)
+    base = mean * k / (2 * np.pi * sigma_s**2)
+    return base, lL - base

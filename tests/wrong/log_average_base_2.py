@@ -1,0 +1,12 @@
+"""A wrong log_average: base 2."""
+
+import numpy as np
+
+TASK = "log_average"
+MISCONCEPTION = (
+    "You took the logarithm to one base and the power of another: exp belongs to the natural logarithm."
+)
+
+
+def log_average(L, *, delta=1e-6):
+    return float(np.exp(np.log2(L + delta).mean(dtype=float)))

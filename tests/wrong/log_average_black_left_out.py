@@ -1,0 +1,13 @@
+"""A wrong log_average: black left out."""
+
+import numpy as np
+
+TASK = "log_average"
+MISCONCEPTION = (
+    "You take the mean of log L where L is above 0 alone: black pixels are part of the scene, and the "
+    "delta is there for them."
+)
+
+
+def log_average(L, *, delta=1e-6):
+    return float(np.exp(np.log(L[L > 0]).mean(dtype=float)))

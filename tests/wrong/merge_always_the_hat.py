@@ -1,0 +1,12 @@
+"""A wrong merge: always the hat."""
+
+from hdrlab.radiance import merge as merging
+
+TASK = "merge"
+MISCONCEPTION = (
+    "You use the hat whatever w is given; look the weights up in w, and take the hat where it is None."
+)
+
+
+def merge(images, times, g, w=None):
+    return merging.merge(images, times, g)

@@ -1,0 +1,10 @@
+"""A wrong merge: green curve for all."""
+
+from hdrlab.radiance import merge as merging
+
+TASK = "merge"
+MISCONCEPTION = "You read every channel by the curve of green; g[:, c] belongs to channel c."
+
+
+def merge(images, times, g, w=None):
+    return merging.merge(images, times, g[:, 1] if g.ndim == 2 else g, w)

@@ -1,0 +1,15 @@
+"""A wrong merge: times forgotten."""
+
+import numpy as np
+
+from hdrlab.radiance import merge as merging
+
+TASK = "merge"
+MISCONCEPTION = (
+    "exp(g) is the exposure, light times time: you forgot to divide by each frame's time, so frames of "
+    "one scene disagree."
+)
+
+
+def merge(images, times, g, w=None):
+    return merging.merge(images, np.ones(len(times)), g, w)

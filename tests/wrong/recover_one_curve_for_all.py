@@ -1,0 +1,14 @@
+"""A wrong recover: one curve for all."""
+
+from hdrlab.response import mitsunaga
+
+TASK = "recover"
+MISCONCEPTION = (
+    "Each channel has a curve of its own: g of colour photographs is (256, 3), and yours is that of green "
+    "alone."
+)
+
+
+def recover(images, times, *, order=5, eps=1e-3):
+    gray = images[..., 1] if images.ndim == 4 else images
+    return mitsunaga.recover(gray, times, order=order, eps=eps)

@@ -1,0 +1,10 @@
+"""A wrong scale: blur of the inverse."""
+
+from scipy.ndimage import gaussian_filter
+
+TASK = "scale"
+MISCONCEPTION = "You blurred 1 / L: dark pixels count most in that mean. Blur L, and divide then."
+
+
+def scale(L, *, headroom=8.0, sigma=None):
+    return gaussian_filter(1 / L, sigma) / headroom

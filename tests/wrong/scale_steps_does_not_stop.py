@@ -1,0 +1,22 @@
+"""A wrong scale_steps: does not stop."""
+
+import numpy as np
+
+TASK = "scale_steps"
+MISCONCEPTION = (
+    "A pixel stops at the first width that is not even. Yours goes on, and takes a larger one that "
+    "happens to be even again, across the edge."
+)
+
+
+WIDTHS = 1.6 ** np.arange(9)
+
+
+def scale_steps(blurred, *, key=0.18, phi=8.0, threshold=0.05):
+    even, adaptation = np.ones(blurred[0].shape, bool), blurred[0]
+    for i in range(8):
+        V1, V2 = blurred[i], blurred[i + 1]
+        V = (V1 - V2) / (2**phi * key / WIDTHS[i] ** 2 + V1)
+        even = np.abs(V) < threshold
+        adaptation = np.where(even, V1, adaptation)
+        yield WIDTHS[i], V1, V, even, adaptation

@@ -1,0 +1,22 @@
+"""A wrong scale_steps: sign kept."""
+
+import numpy as np
+
+TASK = "scale_steps"
+MISCONCEPTION = (
+    "You compare V itself with the threshold: a dark pixel beside a lamp has a negative V, which is "
+    "always below. Take |V|."
+)
+
+
+WIDTHS = 1.6 ** np.arange(9)
+
+
+def scale_steps(blurred, *, key=0.18, phi=8.0, threshold=0.05):
+    even, adaptation = np.ones(blurred[0].shape, bool), blurred[0]
+    for i in range(8):
+        V1, V2 = blurred[i], blurred[i + 1]
+        V = (V1 - V2) / (2**phi * key / WIDTHS[i] ** 2 + V1)
+        even = even & (V < threshold)
+        adaptation = np.where(even, V1, adaptation)
+        yield WIDTHS[i], V1, V, even, adaptation

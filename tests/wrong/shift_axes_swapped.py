@@ -1,0 +1,10 @@
+"""A wrong shift: axes swapped."""
+
+from hdrlab.align import shift as moving
+
+TASK = "shift"
+MISCONCEPTION = "You took dx for dy: an offset is (dy, dx), rows first, like the axes of the array."
+
+
+def shift(images, offsets):
+    return moving.shift(images, offsets[:, ::-1])

@@ -1,0 +1,17 @@
+"""A wrong solve: periodic."""
+
+import numpy as np
+
+TASK = "solve"
+MISCONCEPTION = (
+    "You solved with a Fourier transform, as if the picture went on at the other side: its edges bend to "
+    "each other. Use cosines."
+)
+
+
+def solve(f):
+    factors = np.add.outer(*(2 * np.cos(2 * np.pi * np.arange(n) / n) - 2 for n in f.shape))
+    factors[0, 0] = 1
+    F = np.fft.fft2(f) / factors
+    F[0, 0] = 0
+    return np.fft.ifft2(F).real

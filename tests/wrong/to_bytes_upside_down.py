@@ -1,0 +1,10 @@
+"""A wrong to_bytes: upside down."""
+
+from hdrlab.io import pfm
+
+TASK = "to_bytes"
+MISCONCEPTION = "Your picture is upside down: the rows of a PFM file run from the bottom to the top."
+
+
+def to_bytes(E):
+    return pfm.to_bytes(E, flip=False)

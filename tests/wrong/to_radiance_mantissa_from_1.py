@@ -1,0 +1,11 @@
+"""A wrong to_radiance: mantissa from 1."""
+
+import numpy as np
+
+TASK = "to_radiance"
+MISCONCEPTION = "You read the mantissa like that of a float, 1 + m / 256; here it is m / 256 itself."
+
+
+def to_radiance(pixels):
+    e = pixels[..., 3:].astype(float)
+    return np.where(e > 0, (1 + pixels[..., :3] / 256) * 2.0 ** (e - 128), 0)

@@ -1,0 +1,14 @@
+"""A wrong to_radiance: not over 256."""
+
+import numpy as np
+
+TASK = "to_radiance"
+MISCONCEPTION = (
+    "A mantissa is a fraction of 256, and you did not divide: your radiance is 256 times too large, like "
+    "the slide's second triple."
+)
+
+
+def to_radiance(pixels):
+    e = pixels[..., 3:].astype(int)
+    return np.where(e > 0, pixels[..., :3] * 2.0 ** (e - 128), 0)

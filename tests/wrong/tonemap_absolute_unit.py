@@ -1,0 +1,14 @@
+"""A wrong tonemap: absolute unit."""
+
+import numpy as np
+
+TASK = "tonemap"
+MISCONCEPTION = (
+    "Your curve takes L for a number without a unit: the same scene in other units gives another picture. "
+    "Scale it by its log average first."
+)
+
+
+def tonemap(L):
+    L = np.asarray(L, float)
+    return L / (1 + L)

@@ -1,0 +1,14 @@
+"""A wrong tonemap: divided by the maximum."""
+
+import numpy as np
+
+TASK = "tonemap"
+MISCONCEPTION = (
+    "You divide by the brightest pixel: one hot pixel darkens the whole picture. Take a percentile, or a "
+    "curve."
+)
+
+
+def tonemap(L):
+    top = max(float(L.max()), 1e-30)
+    return (np.asarray(L, float) / top) ** (1 / 2.2)

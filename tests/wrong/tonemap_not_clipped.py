@@ -1,0 +1,12 @@
+"""A wrong tonemap: not clipped."""
+
+import numpy as np
+
+from hdrlab.tonemap import reinhard
+
+TASK = "tonemap"
+MISCONCEPTION = "Your picture leaves 0 ... 1: a display cannot show that, and files wrap around. Clip it."
+
+
+def tonemap(L):
+    return np.asarray(reinhard.tonemap(L), float) * 1.5

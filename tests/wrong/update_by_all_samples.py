@@ -1,0 +1,14 @@
+"""A wrong update: by all samples."""
+
+import numpy as np
+
+TASK = "update"
+MISCONCEPTION = (
+    "Divide each level's sum by how many pixels have that level, not by the number of all samples."
+)
+
+
+def update(Z, t, E, n=256):
+    known = ~np.isnan(E)
+    f = np.bincount(Z[known].ravel(), (E[known, None] * t).ravel(), n)
+    return np.where(np.bincount(Z[known].ravel(), minlength=n) > 0, f / len(Z), np.nan)
