@@ -1,0 +1,125 @@
+"""What a photograph says of its exposure, kept; where it was taken and by which very camera, left out.
+
+EXIF is a small TIFF file: directories of entries (tag, type, count, value), of which the first names the one
+of the camera's settings. It is written anew from the entries on a list, so that what nobody thought of is
+left out as well: positions, serial numbers, owners, notes that only the maker can read, a small picture.
+"""
+
+import struct
+from typing import NamedTuple
+
+SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # bytes of a type
+POINTER = 0x8769  # to the directory of the camera's settings
+POSITION = 0x8825  # to the directory of where it was taken
+NOTES = 0x927C  # of the maker
+PERSONAL = {0xA430: "owner", 0x013B: "artist", 0x8298: "copyright", 0x9286: "comment", 0x010E: "description"}
+SERIALS = {0xA431, 0xA435, 0xC62F, 0xA420}  # body, lens, camera of a DNG, the picture's own number
+OTHERS = {0x02BC, 0x83BB, 0x8649, 0x9286, 0xA430, 0x9010, 0x9011, 0x9012}  # XMP, IPTC, ... and time zones
+KEPT = {0x010F, 0x0110, 0x0112, 0x011A, 0x011B, 0x0128, 0x0131, 0x0132, 0x0213}  # maker, model, upright, date
+SETTINGS = {
+    *(0x829A, 0x829D, 0x8822, 0x8824, 0x8827, *range(0x8830, 0x8836), 0x9000, 0x9003, 0x9004, 0x9101, 0x9102),
+    *(*range(0x9201, 0x920B), 0x9290, 0x9291, 0x9292, *range(0xA000, 0xA004), 0xA20E, 0xA20F, 0xA210),
+    *(0xA215, 0xA217, 0xA300, 0xA301, *range(0xA401, 0xA40D), 0xA432, 0xA433, 0xA434, 0xA500),
+}
+
+
+class Entry(NamedTuple):
+    """An entry of a directory: `value` is its bytes, and `at` where they are in the file."""
+
+    tag: int
+    type: int
+    count: int
+    value: bytes
+    at: int
+
+
+def order(block: bytes) -> str:
+    """Return "<" or ">" as the file says, or raise a ValueError."""
+    found = {b"II*\0": "<", b"MM\0*": ">"}.get(bytes(block[:4]))
+    if found is None:
+        raise ValueError("expected EXIF or TIFF, its first bytes are others")
+    return found
+
+
+def directory(block: bytes, at: int, sign: str) -> tuple[list[Entry], int]:
+    """Return the entries of the directory at a place, and the place of the next one; 0 is none."""
+    if at < 8 or at + 6 > len(block):
+        raise ValueError("expected a directory within the file")
+    (count,) = struct.unpack_from(f"{sign}H", block, at)
+    if at + 6 + 12 * count > len(block):
+        raise ValueError("expected the entries of a directory within the file")
+    entries = []
+    for k in range(count):
+        place = at + 2 + 12 * k
+        tag, kind, length = struct.unpack_from(f"{sign}HHL", block, place)
+        size = SIZES.get(kind, 0) * length
+        start = place + 8 if size <= 4 else struct.unpack_from(f"{sign}L", block, place + 8)[0]
+        if size and start + size <= len(block):
+            entries.append(Entry(tag, kind, length, bytes(block[start : start + size]), start))
+    return entries, struct.unpack_from(f"{sign}L", block, at + 2 + 12 * count)[0]
+
+
+def first(block: bytes) -> int:
+    """Return the place of a file's first directory."""
+    return int(struct.unpack_from(f"{order(block)}L", block, 4)[0])
+
+
+def pointed(block: bytes, entries: list[Entry], tag: int = POINTER) -> list[Entry]:
+    """Return the directory that an entry points to; an empty one where there is none."""
+    sign = order(block)
+    for entry in entries:
+        if entry.tag == tag and entry.type == 4:
+            return directory(block, struct.unpack(f"{sign}L", entry.value[:4])[0], sign)[0]
+    return []
+
+
+def said(block: bytes) -> set[str]:
+    """Return what a file tells beyond its exposure, in words."""
+    entries, following = directory(block, first(block), order(block))
+    settings = pointed(block, entries)
+    tags = {entry.tag for entry in [*entries, *settings]}
+    told = {name for tag, name in PERSONAL.items() if tag in tags}
+    told |= {"location"} if POSITION in tags else set()
+    told |= {"serial numbers"} if tags & SERIALS else set()
+    told |= {"notes of the maker"} if NOTES in tags else set()
+    return told | ({"a small picture"} if following else set())
+
+
+def cleaned(block: bytes) -> bytes:
+    """Return EXIF with the entries of the lists alone.
+
+    Raises
+    ------
+    ValueError
+        For a block that is none, or is damaged.
+    """
+    sign = order(block)
+    entries, _ = directory(block, first(block), sign)
+    kept = [entry for entry in entries if entry.tag in KEPT]
+    settings = [entry for entry in pointed(block, entries) if entry.tag in SETTINGS]
+    start = 8 + 2 + 12 * (len(kept) + bool(settings)) + 4
+    spill = sum(_spilled(entry) for entry in kept)
+    if settings:
+        kept.append(Entry(POINTER, 4, 1, struct.pack(f"{sign}L", start + spill), 0))
+    head = bytes(block[:4]) + struct.pack(f"{sign}L", 8)
+    body = _written(sorted(kept), 8, sign)
+    return head + body + (_written(sorted(settings), 8 + len(body), sign) if settings else b"")
+
+
+def _spilled(entry: Entry) -> int:
+    """Return how many bytes of an entry's value stand outside it, at an even place."""
+    return 0 if len(entry.value) <= 4 else len(entry.value) + len(entry.value) % 2
+
+
+def _written(entries: list[Entry], at: int, sign: str) -> bytes:
+    """Return a directory that stands at a place, with its values behind it."""
+    table, values = struct.pack(f"{sign}H", len(entries)), b""
+    behind = at + 2 + 12 * len(entries) + 4
+    for tag, kind, count, value, _ in entries:
+        if len(value) <= 4:
+            cell = value.ljust(4, b"\0")
+        else:
+            cell = struct.pack(f"{sign}L", behind + len(values))
+            values += value + b"\0" * (len(value) % 2)
+        table += struct.pack(f"{sign}HHL", tag, kind, count) + cell
+    return table + bytes(4) + values

@@ -1,0 +1,163 @@
+"""The gallery: a class votes, each on one ballot that can be changed, and is told what came of it."""
+
+import csv
+import re
+from contextlib import closing
+from importlib.util import find_spec
+
+import gallery_class as small
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab import cli
+from hdrlab.course.gallery import ballots, collect, counting, export, store, tokens
+
+served = pytest.mark.skipif(
+    any(find_spec(name) is None for name in ("starlette", "uvicorn")),
+    reason='the gallery needs pip install ".[class]"',
+)
+IDS = [f"a{k}" for k in range(6)]
+some_ballots = st.lists(st.frozensets(st.sampled_from(IDS), max_size=3), max_size=12)
+
+
+@given(some_ballots)
+def test_places_count_who_has_more_votes_and_ties_share_one(cast):
+    rows = counting.standings(IDS, cast)
+    assert sorted(row.artifact for row in rows) == IDS
+    for row in rows:
+        assert row.votes == sum(row.artifact in one for one in cast)
+        assert row.place == 1 + sum(other.votes > row.votes for other in rows)
+        assert row.shared == sum(other.votes == row.votes for other in rows) - 1
+
+
+@given(some_ballots, st.randoms(use_true_random=False))
+def test_neither_the_order_of_ballots_nor_of_artifacts_changes_the_places(cast, random):
+    shuffled, ids = list(cast), list(IDS)
+    random.shuffle(shuffled)
+    random.shuffle(ids)
+    assert counting.standings(ids, shuffled) == counting.standings(IDS, cast)
+
+
+@given(some_ballots, st.sampled_from(IDS))
+def test_another_vote_never_lowers_a_place(cast, one):
+    before, after = (
+        {row.artifact: row.place for row in counting.standings(IDS, some)} for some in (cast, [*cast, {one}])
+    )
+    assert after[one] <= before[one]
+
+
+def test_voters_see_the_wall_in_orders_of_their_own():
+    orders = [tuple(tokens.shuffled(IDS, b"secret", f"voter {k}")) for k in range(200)]
+    assert len(set(orders)) > 120  # of 720
+    first = [sum(order[0] == one for order in orders) for one in IDS]
+    assert min(first) > 15  # 33 each, were it even
+
+
+def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
+    room = small.make(tmp_path)
+    eve, fay = room.artifacts["eve"], room.artifacts["fay"]
+    for marked in ([eve], [eve, fay], [fay], []):
+        with store.writing(room.folder) as db:
+            assert ballots.cast(db, "ann", marked, now=room.clock()) == len(marked)
+        with closing(store.connect(room.folder)) as db:
+            assert ballots.chosen(db, "ann")[1] == set(marked)
+    with pytest.raises(ballots.NotAccepted, match="closed"), store.writing(room.folder) as db:
+        ballots.cast(db, "ann", [eve], now=small.CLOSES.timestamp())
+
+
+def test_a_refused_ballot_leaves_the_one_before(tmp_path):
+    room = small.make(tmp_path)
+    with store.writing(room.folder) as db:
+        ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
+        for wrong in ([room.artifacts["team1"]], ["nothing"], list(room.artifacts.values())):
+            with pytest.raises(ballots.NotAccepted):
+                ballots.cast(db, "ann", wrong, now=room.clock())
+    with closing(store.connect(room.folder)) as db:
+        assert ballots.chosen(db, "ann")[1] == {room.artifacts["eve"]}
+
+
+def test_a_new_title_keeps_the_votes_and_a_new_picture_does_not(tmp_path):
+    room = small.make(tmp_path)
+    with store.writing(room.folder) as db:
+        ballots.cast(db, "ann", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
+    with closing(store.connect(room.folder)) as db:
+        collect.hang(db, room.folder, collect.Entry("eve", "New", "", tmp_path / "eve.png"))
+        assert store.artifacts(db)[room.artifacts["eve"]].title == "New"
+        collect.hang(db, room.folder, collect.Entry("fay", "New", "", small.picture(tmp_path / "f.png", 9)))
+        assert ballots.chosen(db, "ann")[1] == {room.artifacts["eve"]}
+        assert len(store.artifacts(db)) == 4
+
+
+def test_the_gradebook_says_who_voted_and_not_for_what(tmp_path):
+    room = small.make(tmp_path)
+    with store.writing(room.folder) as db:
+        ballots.cast(db, "ann", [room.artifacts["eve"]], now=room.clock())
+        ballots.cast(db, "cy", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
+        ballots.cast(db, "dee", [], now=room.clock())
+    with closing(store.connect(room.folder)) as db:
+        rows = {row[0]: dict(zip(export.GRADEBOOK, row, strict=True)) for row in export.gradebook(db)}
+    assert [who for who, row in rows.items() if row["voted"] == "yes"] == ["ann", "cy"]
+    assert [rows[who]["place"] for who in ("eve", "fay", "ann", "ben", "cy")] == [1, 2, 3, 3, 3]
+    assert rows["ann"]["shared with"] == 1 and set(rows["ann"]) == set(export.GRADEBOOK)
+
+
+@pytest.fixture
+def hdrlab(tmp_path, monkeypatch, capsys):
+    """hdrlab(words) -> the exit code of `hdrlab gallery` and all that it said, in an empty folder."""
+    monkeypatch.chdir(tmp_path)
+
+    def command(*words):
+        with pytest.raises(SystemExit) as ended:
+            cli.run(["gallery", *words])
+        return ended.value.code or 0, "".join(capsys.readouterr())
+
+    return command
+
+
+def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
+    (tmp_path / "roster.csv").write_text("student,name,team\nann,Ann,team1\nben,Ben,team1\neve,Eve,\n")
+    art = tmp_path / "art"
+    art.mkdir()
+    small.picture(art / "team1.png")
+    (art / "team1.txt").write_text("Dusk\nSeven frames.")
+    (art / "eve.png").write_text("<svg/>")
+    small.picture(art / "stranger.png")
+    said = [
+        hdrlab("init", "g", "--closes", "2020-01-01T00:00+01:00", "--title", "Spring"),
+        hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00"),
+        hdrlab("add", "g", "--roster", "roster.csv", "art"),
+        hdrlab("links", "g", "-o", "links.csv", "--address", "https://vote.test"),
+        hdrlab("links", "g", "-o", "again.csv", "--address", "https://vote.test"),
+        hdrlab("results", "g", "-o", "results.csv"),
+        hdrlab("close", "g"),
+    ]
+    assert [code for code, _ in said] == [0, 2, 0, 0, 0, 0, 2]
+    assert "3 voters, 1 artifacts hung, 2 refused" in said[2][1] and "eve.png" in said[2][1]
+    assert "stranger" in said[2][1] and "Traceback" not in "".join(text for _, text in said)
+    with open(tmp_path / "links.csv", encoding="utf-8-sig") as file:
+        links = [row["link"] for row in csv.DictReader(file)]
+    assert len(set(links)) == 3 and all(
+        re.fullmatch(r"https://vote.test/enter/[\w-]{55}", one) for one in links
+    )
+    assert "0 personal links" in said[4][1]  # nobody's link is ended by asking twice
+    with open(tmp_path / "results.csv", encoding="utf-8-sig") as file:
+        assert [row["artifact"] for row in csv.DictReader(file)] == ["Dusk", "Dusk", ""]
+
+
+@served
+def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path):
+    from benchmarks import gallery as bench
+
+    found = bench.load(tmp_path, "apart", 24, within=1.0, changes=2)
+    assert (found["ballots lost"], found["ballots double"], found["refused"]) == (0, 0, 0)
+    assert found["voters"] == 24
+
+
+@served
+def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
+    from benchmarks import gallery as bench
+
+    found = bench.killed(tmp_path, 40, 1, after=1.0)
+    assert found["acknowledged ballots lost"] == 0
+    assert found["acknowledged before the kill"] >= 10
