@@ -230,10 +230,21 @@ def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys
     assert list(tmp_path.iterdir()) == []
 
 
-def test_lab_copies_the_notebooks_and_keeps_what_the_reader_changed(tmp_path):
+def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(tmp_path, capsys):
     copy = tmp_path / "mine"
     assert hdrlab("lab", "--folder", copy, "--copy-only") == 0
-    notebook = copy / "04_response_gsolve.ipynb"
-    notebook.write_text("mine")
-    assert hdrlab("lab", "--folder", copy, "--copy-only") == 0
-    assert notebook.read_text() == "mine"
+    mine = [copy / "notebooks/04_response_gsolve.ipynb", copy / "assignments/hw2.ipynb"]
+    for notebook in mine:
+        notebook.write_text("mine")
+    code, said, _ = hdrlab("lab", "--folder", copy, "--copy-only", capsys=capsys)
+    assert code == 0 and "0 new" in said
+    assert [notebook.read_text() for notebook in mine] == ["mine", "mine"]
+
+
+def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
+    called = []
+    monkeypatch.setattr("subprocess.call", lambda command: called.append(command) or 0)
+    assert hdrlab("lab", "--folder", tmp_path / "mine", "--", "--port", "9000") == 0
+    first = next(part for part in called[0] if part.startswith("--LabApp.default_url="))
+    assert (tmp_path / "mine" / first.removeprefix("--LabApp.default_url=/lab/tree/")).is_file()
+    assert called[0][-2:] == ["--port", "9000"]

@@ -1,6 +1,7 @@
 """What every notebook keeps to, read from its file; nbval runs them."""
 
 import ast
+import re
 from pathlib import Path
 
 import nbformat
@@ -89,3 +90,9 @@ def test_a_notebook_unfolds_answers_asks_three_exercises_and_takes_the_readers_p
     exercises = text.split("## Exercises", 1)[1].splitlines()
     assert sum(line[:2] in ("1.", "2.", "3.") for line in exercises) == 3
     assert sum('FOLDER = ""' in cell.source for cell in cells_of(path, "code")) == 1
+
+
+def test_the_exercises_lead_on_to_an_assignment(path):
+    text = "\n".join(cell.source for cell in cells_of(path, "markdown"))
+    links = re.findall(r"\]\((\S+assignments/\S+)\)", text.split("## Exercises", 1)[1])
+    assert links and all((path.parent / link).is_file() for link in links)

@@ -15,6 +15,7 @@ import nbformat
 import pytest
 
 from hdrlab.course.site import live, reference
+from hdrlab.course.site import pages as build
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 pytestmark = pytest.mark.skipif(
@@ -70,6 +71,11 @@ def made(tmp_path_factory):
     ran = run("site", *notebooks, folder=folder)
     assert ran.returncode == 0, ran.stderr
     return folder, folder / "site", notebooks, ran
+
+
+def test_a_link_leads_to_what_the_site_has_and_is_plain_text_otherwise():
+    text = "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) [c](notebooks/05_y.ipynb) [d](../assignments/hw9.ipynb)"
+    assert build._linked(text, {"hw1", "04_x"}) == "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) c d"
 
 
 class Addresses(HTMLParser):

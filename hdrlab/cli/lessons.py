@@ -7,12 +7,14 @@ import click
 
 from hdrlab.cli import common
 
+FIRST = "notebooks/00_welcome.ipynb"
+
 
 @click.command()
 @click.option("--out", type=common.FILE, default="hdrlab-demo", help="Folder for the results.")
 @click.option("--seed", default=1, help="Of noise and hand shake.")
 def demo(out: Path, seed: int) -> None:
-    """Photograph a room with a bright window, and assemble the photographs again."""
+    """Photograph a dark chapel with bright windows, and assemble the photographs again."""
     from hdrlab import demo as room
 
     for line in common.progress(room.demo_steps(out, seed=seed), "demo", room.STEPS):
@@ -20,16 +22,20 @@ def demo(out: Path, seed: int) -> None:
 
 
 @click.command()
-@click.option("--folder", type=common.FILE, default="hdrlab-notebooks", help="Your copy of the notebooks.")
+@click.option("--folder", type=common.FILE, default="hdrlab-course", help="Your copy of the notebooks.")
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks and do not start JupyterLab.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED)
 def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
-    """Open JupyterLab on a copy of the notebooks. What you changed in it stays; OPTIONS go to JupyterLab."""
+    """Open JupyterLab on a copy of the notebooks and the assignments, at the first notebook.
+
+    What you changed in your copy stays. OPTIONS go to JupyterLab.
+    """
     import subprocess
 
     from hdrlab.course import materials
 
-    new = materials.copy_notebooks(folder)
+    new = materials.copy_course(folder)
     click.echo(f"{folder}: {len(new)} new notebooks")
     if not copy_only:
-        sys.exit(subprocess.call([sys.executable, "-m", "jupyterlab", f"--notebook-dir={folder}", *options]))
+        where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
+        sys.exit(subprocess.call([sys.executable, "-m", "jupyterlab", *where, *options]))

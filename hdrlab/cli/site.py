@@ -40,6 +40,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
     from hdrlab.io.terminal import elapsed
 
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
+    handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
     if len({one.stem for one in chosen} | {pages.FRONT.stem}) <= len(chosen):
         raise ValueError(f"expected notebooks of different names, and none called {pages.FRONT.name}")
     cache = pages.claim(out)
@@ -50,7 +51,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
         raise click.ClickException(str(error)) from None
     in_order = sorted(done, key=lambda one: one.source.stem)
     with elapsed("pages"):
-        made = pages.build(out, in_order, {"commands.md": _commands()})
+        made = pages.build(out, in_order, handouts, {"commands.md": _commands()})
     for complaint in made.complaints:
         click.echo(f"note: {complaint}", err=True)
     fresh = sum(one.fresh for one in done)

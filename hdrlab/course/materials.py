@@ -1,11 +1,11 @@
-"""Where the notebooks and the specification are, in an installed package or a clone, and a reader's copy."""
+"""Where notebooks, assignments and specification are, in a package or a clone, and a reader's copy."""
 
 import shutil
 from pathlib import Path
 
 
 def folder(name: str) -> Path:
-    """Return the folder "notebooks" or "tests", as it travels in the wheel or stands at the top of a clone.
+    """Return the folder "notebooks", "assignments" or "tests", as it travels in the wheel or stands at the top of a clone.
 
     Raises
     ------
@@ -19,8 +19,14 @@ def folder(name: str) -> Path:
     raise FileNotFoundError(f"expected the folder {name!r} in {inside} or {beside}; install hdrlab again")
 
 
-def copy_notebooks(target: Path) -> list[Path]:
-    """Copy the notebooks into `target` and return the new files; a notebook that is there stays as it is."""
-    target.mkdir(parents=True, exist_ok=True)
-    missing = [one for one in sorted(folder("notebooks").glob("*.ipynb")) if not (target / one.name).exists()]
-    return [Path(shutil.copyfile(one, target / one.name)) for one in missing]
+def copy_course(target: Path) -> list[Path]:
+    """Copy notebooks and assignments into folders of `target` and return the new files.
+
+    A file that is there stays as it is: it belongs to the reader.
+    """
+    new = []
+    for name in ("notebooks", "assignments"):
+        (target / name).mkdir(parents=True, exist_ok=True)
+        each = [(one, target / name / one.name) for one in sorted(folder(name).glob("*.ipynb"))]
+        new += [Path(shutil.copyfile(one, copy)) for one, copy in each if not copy.exists()]
+    return new

@@ -22,7 +22,7 @@ PAGES = Path(__file__).parent / "pages"
 FRONT = PAGES / "front.ipynb"  # the picture of the first page
 CACHE = ".cache"
 WIDGETS = "_widgets"  # where the pages find them
-OWN = ("notebooks", "reference", "_modules", WIDGETS)  # folders whose files are all ours
+OWN = ("notebooks", "assignments", "reference", "_modules", WIDGETS)  # folders whose files are all ours
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
 THUMBNAIL = 480  # pixels wide
@@ -54,41 +54,45 @@ def claim(out: Path) -> Path:
     return cache
 
 
-def build(out: Path, done: Sequence[Done], more: Mapping[str, str]) -> Site:
-    """Make the site of executed notebooks, FRONT among them, and of more pages by name, such as commands.md.
+def build(out: Path, done: Sequence[Done], handouts: Sequence[Path], more: Mapping[str, str]) -> Site:
+    """Make the site of executed notebooks, FRONT among them, of handouts, and of more pages by name.
 
-    Where nothing has changed since it was made, it is left as it is.
+    A handout is shown as it is, since its tasks are still to be done. Where nothing has changed since the
+    site was made, it is left as it is.
     """
     record = out / CACHE / "made.json"
-    made_of = [library_key(course=True), sorted(one.executed.name for one in done), dict(more)]
+    sheets = {file.stem: file.read_text("utf-8") for file in handouts}
+    made_of = [library_key(course=True), sorted(one.executed.name for one in done), sheets, dict(more)]
     key = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()
     if record.exists() and (out / "index.html").exists():
         before = json.loads(record.read_text("utf-8"))
         if before["key"] == key:
             return Site(out / "index.html", *before["site"])
     record.unlink(missing_ok=True)  # an interrupted build leaves no record
-    site = _build(out, done, more)
+    site = _build(out, done, sheets, more)
     live.write_changed(record, json.dumps({"key": key, "site": site[1:]}).encode())
     return site
 
 
-def _build(out: Path, done: Sequence[Done], more: Mapping[str, str]) -> Site:
+def _build(out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str]) -> Site:
     source, html = out.resolve() / CACHE / "source", out.resolve() / CACHE / "html"
     front = next(one for one in done if one.source == FRONT)
     notebooks = {one.source.stem: _read(one) for one in done if one.source != FRONT}
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
-    known = reference.modules()
-    uses = {name: reference.imported(_code(notebook), known) for name, notebook in notebooks.items()}
+    modules, known = reference.modules(), {*notebooks, *sheets}
+    uses = {name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()}
     texts = dict(reference.pages(titles, uses))
     widgets = 0
     for name, notebook in notebooks.items():
-        texts[f"notebooks/{name}.ipynb"], count = _prepared(notebook, name, set(notebooks), html / WIDGETS)
+        texts[f"notebooks/{name}.ipynb"], count = _prepared(notebook, name, known, html / WIDGETS)
         widgets += count
+    handouts = {name: _handout(text, known) for name, text in sheets.items()}
+    texts |= {f"assignments/{name}.ipynb": text for name, (_, text) in handouts.items()}
     hero = next(one for _, one in live.widgets(_read(front), "front"))
     live.write(hero, html / WIDGETS)
-    texts["index.md"] = _front(hero, titles, html)
+    texts["index.md"] = _front(hero, titles, {name: title for name, (title, _) in handouts.items()}, html)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
-    texts |= {page.name: _linked(page.read_text("utf-8"), set(notebooks)) for page in guides}
+    texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides}
     texts |= more
     for name, text in texts.items():
         live.write_changed(source / name, text.encode())
@@ -142,11 +146,23 @@ def _linked(text: str, known: set[str]) -> str:
     def link(found: re.Match[str]) -> str:
         return found[0] if found[2] in known else found[1]
 
-    return re.sub(r"\[([^\]]+)\]\((?:notebooks/)?(\w+)\.ipynb\)", link, text)
+    return re.sub(r"\[([^\]]+)\]\((?:\.\./)?(?:notebooks/|assignments/)?(\w+)\.ipynb\)", link, text)
 
 
-def _front(hero: live.Live, titles: dict[str, str], html: Path) -> str:
-    """Return the first page: its words, the widget, the notebooks, and what the menu lists."""
+def _handout(text: str, known: set[str]) -> tuple[str, str]:
+    """Return a handout's title, and its notebook with links to what the site has."""
+    import nbformat
+
+    notebook = nbformat.reads(text, as_version=4)
+    for cell in notebook.cells:
+        if cell.cell_type == "markdown":
+            cell.source = _linked(cell.source, known)
+    notebook.metadata.setdefault("language_info", LANGUAGE)
+    return _title(notebook), nbformat.writes(notebook)
+
+
+def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str], html: Path) -> str:
+    """Return the first page: its words, the widget, notebooks and handouts, and what the menu lists."""
     cards = ""
     for name, title in titles.items():
         picture = f"{WIDGETS}/{name}.webp"
@@ -156,6 +172,9 @@ def _front(hero: live.Live, titles: dict[str, str], html: Path) -> str:
     text = (PAGES / "index.md").read_text("utf-8")
     text = text.replace("<!-- front -->", hero.as_html(WIDGETS))
     text = text.replace("<!-- notebooks -->", f'<ul class="cards">\n{cards}</ul>')
+    sheets = [f"- [{title}](assignments/{name}.ipynb)" for name, title in handouts.items()]
+    text = text.replace("<!-- handouts -->", "\n".join(sheets) or "This site has none.")
+    text = text.replace("<!-- sheets -->", "\n".join(f"assignments/{name}" for name in handouts))
     return text.replace("<!-- titles -->", "\n".join(f"notebooks/{name}" for name in titles))
 
 
@@ -190,7 +209,7 @@ def _forget(source: Path, names: set[str]) -> None:
 def _forget_pages(html: Path, names: set[str], notebooks: set[str]) -> None:
     """Remove pages and widgets that belong to nothing any more."""
     pages = {name.rpartition(".")[0] + ".html" for name in names}
-    for folder in ("notebooks", "reference"):
+    for folder in ("notebooks", "assignments", "reference"):
         for file in (html / folder).glob("*.html"):
             if file.relative_to(html).as_posix() not in pages:
                 file.unlink()
