@@ -19,6 +19,8 @@ Which pixels to use                    core.sampling, response.selection
 The radiance map                       radiance.merge.merge, radiance.bounds, radiance.estimates
 Does the map explain its photographs?  radiance.consistency, radiance.contradictions, radiance.times
 Exposure ratios of a linear camera     radiance.ratios.ratio
+What moved, and what the lens did      radiance.ghosts.remove, radiance.flare.remove
+... photographed with the truth        capture.movers.shoot, capture.flare.flare
 PFM, Radiance RGBE, OpenEXR            io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
 One curve for all pixels               tonemap.curves, tonemap.ward, tonemap.brush
 Local scaling, and its halo            tonemap.chiu.tonemap

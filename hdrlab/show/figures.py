@@ -27,6 +27,7 @@ from hdrlab.show.wording import signed
 
 Image = NDArray[np.uint8]
 MISSING = "#808080"
+ORANGE, OUTLINE = (230, 126, 0), (60, 20, 0)  # of a region, and its edge
 # What was not measured, from dark to light, so that the kinds part in gray too.
 KNOWN = {
     Seen.DARK: "#14148C",
@@ -77,6 +78,16 @@ def known(picture: Image, seen: NDArray[np.uint8]) -> Image:
         spots = maximum_filter(seen == flag, size=dot(seen.shape))
         shown[spots] = tuple(bytes.fromhex(colour[1:]))
     return shown
+
+
+def regions(picture: Image, labels: NDArray[np.int32]) -> Image:
+    """Return the picture in pale gray, regions (labels > 0) in orange, each with a dark outline."""
+    gray = picture if picture.ndim == 2 else picture.mean(axis=-1)
+    shown = np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1)
+    inside = labels > 0
+    shown[inside] = 0.5 * shown[inside] + 0.5 * np.array(ORANGE)
+    shown[maximum_filter(labels, size=dot(labels.shape)) != labels] = OUTLINE
+    return shown.astype(np.uint8)
 
 
 def dot(shape: tuple[int, ...]) -> int:

@@ -70,7 +70,7 @@ def write_report(
 def _page(
     assembly: Assembly, picture: np.ndarray, recipe: str | Mapping[str, Any], truth: Truth | None
 ) -> str:
-    stage, bracket, offsets, g, E, seen, medians, notes, doubts = assembly
+    stage, bracket, offsets, g, E, seen, medians, notes, doubts, *_ = assembly
     if g is None or E is None or seen is None or medians is None:
         raise ValueError(f"expected a finished assembly, got one after the stage {stage!r}")
     if picture.dtype != np.uint8 or picture.shape[:2] != seen.shape or picture.shape[2:] not in ((), (3,)):
@@ -84,6 +84,7 @@ def _page(
         response=sections.response(g, truth),
         radiance=sections.radiance(E),
         known=sections.known(seen, picture),
+        moving=sections.moving(assembly.moving, picture),
         agreement=sections.agreement(bracket, medians),
         errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
         recipe=sections.recipe(bracket, recipe),

@@ -96,6 +96,17 @@ def known(seen: Image, picture: Image) -> dict[str, Any]:
     return {"rows": rows, "picture": figures.photograph(figures.known(picture, seen), 1000, alt)}
 
 
+def moving(labels: NDArray[np.int32] | None, picture: Image) -> dict[str, Any] | None:
+    """Return how much moved, and the picture with its regions; None where nobody asked or nothing did."""
+    if labels is None or not labels.any():
+        return None
+    count, part = int(labels.max()), share(labels > 0)
+    regions = "one region" if count == 1 else f"{count} regions"
+    alt = f"The picture in pale gray; what moved lies in {regions}, in orange with dark outlines"
+    shown = figures.photograph(figures.regions(picture, labels), 1000, alt)
+    return {"regions": regions, "share": part, "picture": shown}
+
+
 def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
     """Return how far each frame departs from what all say, as numbers and as bars."""
     shared = np.isfinite(medians[..., consistency.LEVELS])

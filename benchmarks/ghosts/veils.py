@@ -1,0 +1,122 @@
+"""Veiling glare of lenses that are not known: what of the truth comes back, and that clear ones stay alone.
+
+Four scenes through lenses that scatter 5 or 10 % of the light with the power 2, 2.5 or 3 of the distance. The
+affected region is where more than 5 % of a pixel's light was scattered, in a channel; its error there is that
+of E over the truth, the largest of the channels. "photographed" has ten frames of 8 bits between lens and
+map, two stops apart, the shortest of which holds the brightest light; its error counts where a frame measured
+the pixel, with what the merge errs in it. A light that all frames clip scatters more than the map knows of.
+"""
+
+from collections.abc import Callable, Mapping
+from itertools import product
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from benchmarks.experiments import Experiment, along, at_least, at_most
+from benchmarks.ghosts.sequences import CAMERA, SHAPE, STILL, radiance
+from hdrlab.capture import camera
+from hdrlab.capture.flare import veil
+from hdrlab.capture.responses import true_g
+from hdrlab.core import weights
+from hdrlab.core.arrays import Array
+from hdrlab.core.scatter import Spread
+from hdrlab.radiance import flare
+from hdrlab.radiance.merge import merge_seen
+from hdrlab.scenes.places import resample
+
+LENSES = tuple(Spread(share, power) for share, power in product((0.05, 0.1), (2.0, 2.5, 3.0)))
+AFFECTED = 0.05  # of a pixel's light
+CLOSE = 0.05  # of the truth
+
+
+class Left(NamedTuple):
+    """Errors in the affected region: median before and after, and the share of pixels within 5 %."""
+
+    before: float
+    after: float
+    close: float
+
+
+def left(E: Array, F: Array, found: Array, where: Array, lens: Spread) -> Left:
+    """Return what is Left of a veil, where the scene had radiance E and the map F."""
+    region = (1 - (1 - lens.share) * E / F).max(axis=-1) > AFFECTED
+    before, after = (np.abs(one / E - 1).max(axis=-1)[region & where] for one in (F, found))
+    return Left(float(np.median(before)), float(np.median(after)), float(np.mean(after < CLOSE)))
+
+
+def exact(item: tuple[str, Spread]) -> Left:
+    """Return what is left where the map is that of the lens itself."""
+    place, lens = item
+    E = resample(radiance(place), SHAPE)
+    F = veil(E, lens)
+    return left(E, F, flare.remove(F).E, np.ones(SHAPE, bool), lens)
+
+
+def photographed(item: tuple[str, Spread]) -> Left:
+    """Return what is left where the map was merged from photographs."""
+    place, lens = item
+    E = resample(radiance(place), SHAPE)
+    F, seen = through(veil(E, lens))
+    return left(E, F, flare.remove(F).E, seen == 0, lens)
+
+
+def through(F: Array) -> tuple[Array, Array]:
+    """Return a scene as ten photographs show it, in its own unit, and how each pixel is known."""
+    times = 0.9 / F.max() * 4.0 ** np.arange(10)
+    taken = camera.shoot(F, times, rng=1, **CAMERA)  # type: ignore[arg-type]
+    found = merge_seen(taken.images, taken.times, true_g("film"), weights.gaussian())
+    return found.E * np.median(F / found.E), found.seen
+
+
+def figures(what: str, work: Callable[[tuple[str, Spread]], Left]) -> Mapping[str, ArrayLike]:
+    """Return the figures of all scenes and lenses."""
+    items = list(product(STILL, LENSES))
+    found = along(work, items, f"flare, {what}")
+    out: dict[str, ArrayLike] = {}
+    for place in STILL:
+        own = [one for (name, _), one in zip(items, found, strict=True) if name == place]
+        out[f"{place}: worst median before, after"] = tuple(max(one[k] for one in own) for k in (0, 1))
+    out["worst median error"] = max(one.after for one in found)
+    out["least share of pixels within 5 %"] = min(one.close for one in found)
+    out["median share of pixels within 5 %"] = float(np.median([one.close for one in found]))
+    return out
+
+
+def veils(_: Path) -> Mapping[str, ArrayLike]:
+    """Return the figures of maps."""
+    return figures("maps", exact)
+
+
+def bracketed(_: Path) -> Mapping[str, ArrayLike]:
+    """Return the figures of maps that were merged from photographs."""
+    return figures("photographs", photographed)
+
+
+def clear(_: Path) -> Mapping[str, ArrayLike]:
+    """Return how much is changed in what a clear lens shows, of maps and of merged photographs."""
+    changes = []
+    for place in STILL:
+        E = resample(radiance(place), SHAPE)
+        for F in (E, through(E)[0]):
+            changes.append(float(np.abs(flare.remove(F).E / F - 1).max()))
+    return {"maps looked at": len(changes), "most change": max(changes)}
+
+
+ROWS = (
+    Experiment(
+        "flare",
+        "four scenes, six lenses: error where more than 5 % of the light was scattered",
+        veils,
+        (at_most("worst median error", 0.05), at_least("least share of pixels within 5 %", 0.85)),
+    ),
+    Experiment(
+        "flare-photographed",
+        "the same from ten photographs of 8 bits",
+        bracketed,
+        (at_most("worst median error", 0.05),),
+    ),
+    Experiment("flare-clear", "the same scenes through a clear lens", clear, (at_most("most change", 0),)),
+)

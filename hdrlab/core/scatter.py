@@ -1,0 +1,71 @@
+"""Light that a lens scatters: every point of the picture becomes a veil over all of it.
+
+E      radiance         (H, W[, 3]) float32
+r      distance         pixels
+K      point spread     (H', W'), K(r) = 1 / (1 + (r / core)^2)^(power / 2), without its middle, sum 1
+share  of the light that is scattered, 0 to 1
+
+What the sensor gets is (1 - share) E + share (K * E). In a lens of dust, fingerprints and many surfaces K
+falls off with a power of two to three [Talvala07 fig. 3]: slowly, so that a window lifts the darkest corner.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import fft
+
+Float = NDArray[np.float32]
+
+
+class Spread(NamedTuple):
+    """A lens: the share of light that it scatters, the power of its fall, and the core in pixels."""
+
+    share: float
+    power: float = 2.5
+    core: float = 1.0
+
+
+def checked(spread: Spread) -> Spread:
+    """Return the spread, or raise a ValueError where its numbers mean nothing."""
+    share, power, core = spread
+    if not (0 <= share < 1 and 0 < power < np.inf and 0 < core < np.inf):
+        raise ValueError(
+            f"expected a share from 0 to below 1, a positive power and core, got {tuple(spread)}"
+        )
+    return spread
+
+
+def kernel(shape: tuple[int, ...], power: float, core: float = 1.0) -> NDArray[np.complex64]:
+    """Return the transform of K over twice a frame, so that no light comes round its edges.
+
+    K is cut off where it leaves the frame from one side to the other, and its sum is 1 there.
+    """
+    size = [fft.next_fast_len(2 * n, real=True) for n in shape[:2]]
+    y, x = (np.minimum(np.arange(n), n - np.arange(n)).astype(np.float32) for n in size)
+    K = (1 + (y[:, None] ** 2 + x**2) / np.float32(core**2)) ** np.float32(-power / 2)
+    K[0, 0] = 0
+    K[shape[0] : size[0] - shape[0] + 1], K[:, shape[1] : size[1] - shape[1] + 1] = 0, 0
+    return np.asarray(fft.rfft2(K / K.sum(dtype=np.float64).astype(np.float32)), np.complex64)
+
+
+def scattered(E: Float, transform: NDArray[np.complex64]) -> Float:
+    """Return K * E, channel by channel; light from outside the frame is not known, and left out.
+
+    Examples
+    --------
+    >>> E = np.zeros((5, 5), np.float32)
+    >>> E[2, 2] = 100
+    >>> veil = scattered(E, kernel(E.shape, 2.0))
+    >>> float(veil[2, 2].round(3)), bool(veil[2, 3] > veil[2, 4] > 0)
+    (0.0, True)
+    """
+    height, width = E.shape[:2]
+    size = (transform.shape[0], fft.next_fast_len(2 * width, real=True))
+    planes = E.reshape(height, width, -1)
+    out = np.empty_like(planes)
+    for c in range(planes.shape[-1]):
+        spectrum = fft.rfft2(planes[..., c], size)
+        spectrum *= transform
+        out[..., c] = fft.irfft2(spectrum, size)[:height, :width]
+    return np.maximum(out, 0).reshape(E.shape)

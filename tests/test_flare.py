@@ -1,0 +1,149 @@
+"""Flare: the simulated lens does what its formula says, and what it scattered is found in the map."""
+
+import numpy as np
+import pytest
+
+from hdrlab import scenes
+from hdrlab.capture import flare as lens
+from hdrlab.core.scatter import Spread, kernel, scattered
+from hdrlab.radiance import flare
+
+
+@pytest.fixture(scope="module")
+def room():
+    return scenes.room((128, 192))
+
+
+# The lens
+
+
+def test_a_point_of_light_becomes_the_point_spread():
+    E = np.zeros((31, 41), np.float32)
+    E[10, 12] = 1
+    seen = lens.veil(E, Spread(0.1, 2.5, 2.0))
+    y, x = np.indices(E.shape)
+    r = np.hypot(y - 10, x - 12)
+    K = (1 + (r / 2) ** 2) ** -1.25
+    assert seen[10, 12] == pytest.approx(0.9, rel=1e-5)
+    ratio = seen[r > 0] / K[r > 0]
+    assert np.allclose(ratio, ratio[0], rtol=2e-3)  # one constant at all distances: nothing comes round
+
+
+def test_no_light_is_made_and_what_stays_in_the_frame_is_what_was_there():
+    E = np.zeros((81, 81), np.float32)
+    E[40, 40] = 5
+    seen = lens.veil(E, Spread(0.2, 3.0))
+    assert 0.95 * 5 < seen.sum(dtype=float) <= 5.0001 and np.all(seen >= 0)
+
+
+def test_veils_add_and_scale_as_light_does():
+    rng = np.random.default_rng(1)
+    one, two = rng.random((2, 20, 30, 3)).astype(np.float32)
+    both = lens.veil(one + 3 * two)
+    assert np.allclose(both, lens.veil(one) + 3 * lens.veil(two), rtol=1e-4, atol=1e-5)
+
+
+def test_a_clear_lens_changes_nothing(room):
+    assert np.array_equal(lens.veil(room, Spread(0.0)), room)
+
+
+def test_a_reflection_lies_across_the_middle_as_a_disc_with_its_share_of_light():
+    E = np.zeros((121, 161), np.float32)
+    E[30, 50] = 1e6
+    disc = lens.reflection(E, place=-0.5, radius=10, share=1e-3)
+    y, x = np.nonzero(disc > disc.max() / 2)
+    assert (y.mean(), x.mean()) == pytest.approx((60 + 15, 80 + 15), abs=0.6)
+    assert len(y) == pytest.approx(np.pi * (0.5 * 10) ** 2, rel=0.15)  # half as large, as all of its picture
+    inner = disc[(np.hypot(*(np.indices(E.shape) - np.array([75, 95])[:, None, None])) < 3)]
+    assert np.ptp(inner) < 0.02 * inner.max()
+
+
+@pytest.mark.parametrize("spread", [Spread(1.0), Spread(-0.1), Spread(0.1, 0.0), Spread(0.1, 2.0, -1.0)])
+def test_a_lens_without_a_meaning_is_refused(spread):
+    with pytest.raises(ValueError, match="share"):
+        lens.veil(np.ones((4, 4)), spread)
+    with pytest.raises(ValueError, match="share"):
+        flare.remove(np.ones((4, 4)), spread=spread)
+
+
+@pytest.mark.parametrize("wrong", [{"place": 0}, {"radius": 0}, {"share": 1}])
+def test_a_reflection_without_a_meaning_is_refused(wrong):
+    with pytest.raises(ValueError, match="expected a place"):
+        lens.reflection(np.ones((4, 4)), **wrong)
+
+
+# Its removal
+
+
+@pytest.mark.parametrize("power", [2.0, 2.5, 3.0])
+def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
+    F = lens.veil(room, Spread(0.1, power))
+    found = flare.remove(F)
+    affected = (1 - 0.9 * room / F).max(axis=-1) > 0.05
+    before, after = (np.abs(one / room - 1).max(axis=-1)[affected] for one in (F, found.E))
+    assert found.spread.power == power and found.spread.share == pytest.approx(0.1, rel=0.05)
+    assert np.median(before) > 0.04 and np.median(after) < 0.01 and np.mean(after < 0.05) > 0.9
+
+
+def test_a_lens_that_was_measured_is_undone_to_a_per_mille(room):
+    spread = Spread(0.08, 2.25)
+    F = lens.veil(room, spread)
+    found = flare.remove(F, spread=spread, part=1e-6)
+    assert np.quantile(np.abs(found.E / room - 1), 0.99) < 1e-3
+
+
+@pytest.mark.parametrize("name", scenes.PLACES)
+def test_a_scene_through_a_clear_lens_is_left_as_it_is(name):
+    E = scenes.layers(name, (128, 192)).radiance
+    found = flare.remove(E)
+    assert np.array_equal(found.E, E) and not found.region.any() and found.spread.share == 0
+    assert "no veil" in flare.note(found)
+
+
+def test_the_rounds_come_down_to_the_share(room):
+    F = lens.veil(room, Spread(0.1, 2.0))
+    shares = [state.share for state in flare.remove_steps(F, 2.0)]
+    assert abs(shares[-1] - 0.1) < abs(shares[0] - 0.1) and shares[-1] == pytest.approx(0.1, rel=0.03)
+
+
+def test_outside_the_region_the_map_stays_bit_for_bit(room):
+    F = lens.veil(room, Spread(0.1, 3.0))
+    found = flare.remove(F, part=0.2)
+    assert 0 < found.region.mean() < 0.9
+    assert np.array_equal(found.E[~found.region], F[~found.region])
+    assert np.all(found.E[found.region].min(axis=-1) < F[found.region].max(axis=-1))
+    assert f"{100 * found.spread.share:.1f} %" in flare.note(found)
+
+
+def test_the_unit_of_light_does_not_matter(room):
+    F = lens.veil(room, Spread(0.1, 2.5))
+    one, other = flare.remove(F), flare.remove(F * np.float32(1024))
+    assert one.spread.power == other.spread.power and np.allclose(other.E, 1024 * one.E, rtol=1e-3)
+
+
+def test_gray_maps_and_maps_without_light_are_maps(room):
+    gray = flare.remove(lens.veil(room[..., 1], Spread(0.1, 2.5)))
+    assert gray.E.shape == room.shape[:2] and gray.spread.power == 2.5
+    dark = flare.remove(np.zeros((12, 14)))
+    assert not dark.E.any() and dark.spread.share == 0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [({"F": np.full((4, 4), np.nan)}, "NaN"), ({"F": -np.ones((4, 4))}, "negative"), ({"part": 0}, "part")],
+)
+def test_what_is_no_map_is_refused(wrong, said):
+    with pytest.raises(ValueError, match=said):
+        flare.remove(**({"F": np.ones((4, 4))} | wrong))
+
+
+def test_without_powers_there_is_nothing_to_choose():
+    with pytest.raises(ValueError, match="power"):
+        flare.estimate(np.ones((4, 4)), powers=())
+
+
+def test_scattered_light_falls_with_distance():
+    E = np.zeros((9, 60), np.float32)
+    E[4, 5] = 1
+    veil = scattered(E, kernel(E.shape, 2.0))
+    assert np.all(np.diff(veil[4, 6:]) < 0) and veil[4, 5] == pytest.approx(0, abs=1e-6)
