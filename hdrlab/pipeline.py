@@ -11,19 +11,25 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.align import judge, mtb, pairs
+from hdrlab.align import auto, cerman, homography, judge, matches, mtb, pairs
+from hdrlab.align.resample import photographs
 from hdrlab.align.shift import as_offsets, shift
-from hdrlab.core import catalogue, colour, weights
+from hdrlab.core import catalogue, colour, warp, weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.radiance import consistency
+from hdrlab.radiance import flare as glare
+from hdrlab.radiance import ghosts as moving
 from hdrlab.radiance import times as timing
 from hdrlab.radiance.contradictions import contradictions, doubt
-from hdrlab.radiance.merge import METHODS, merge_seen
+from hdrlab.radiance.merge import METHODS, Merged, merge_seen
 
 Method = str | Callable[..., Any]
 Table = NDArray[np.float64]
+Found = pairs.Verdict | matches.Match
 STAGES = ("align", "response", "merge", "compare")
+GHOSTS = ("none", "regions", "reference")
+FLARE = ("none", "veil")
 WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "hat": lambda g: weights.hat(len(g)),
     "gaussian": lambda g: weights.gaussian(len(g)),
@@ -31,7 +37,11 @@ WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "snr": weights.snr,
 }
 CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
-REGISTER = "no shift lays one on the other; leave one out, or bring them to lie on each other by other means"
+BY_LIGHT = {"auto": auto, "cerman": cerman, "homography": homography}  # these want times and a response
+REGISTER = {  # what to do where photographs do not lie on each other, by whether they were turned, too
+    False: 'no shift clearly lays one on the other; align by "auto", which turns them too, or leave one out',
+    True: "no move clearly lays one on the other; leave one out",
+}
 
 
 class Assembly(NamedTuple):
@@ -39,15 +49,19 @@ class Assembly(NamedTuple):
 
     Attributes
     ----------
-    stage : the one of STAGES that was done last, or "times", after "align" where these are estimated
+    stage : the one of STAGES that was done last, or "times", after "align" where these are estimated, or
+        "ghosts" or "flare", after "merge" where these are taken off
     bracket : the photographs, moved and cut to what all of them show
-    offsets : (P, 2) int, (dy, dx) pixels, where each photograph was moved
+    offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
     g : (n,) or (n, 3), response, ln exposure of each level
     E : (h, w) or (h, w, 3) float32, radiance
     seen : (h, w) uint8, how each pixel is known: flags of `radiance.bounds.Seen`
     medians : (P, C, 256), what each frame says of each level: see `radiance.consistency`
     notes : sentences, what to know about this map
     doubts : sentences, reasons not to trust it
+    moves : (P, 3, 3), where each photograph was moved, rotation, scale and fractions of pixels included
+    moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
+    veiled : (h, w) bool, where a veil was taken off; None where nobody asked
     """
 
     stage: str
@@ -59,6 +73,9 @@ class Assembly(NamedTuple):
     medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
+    moves: NDArray[np.float64] = None  # type: ignore[assignment]
+    moving: NDArray[np.int32] | None = None
+    veiled: NDArray[np.bool_] | None = None
 
     @property
     def spread(self) -> float:
@@ -74,6 +91,8 @@ def assemble_steps(
     weight: str = "gaussian",
     method: str = "log",
     times: str = "stated",
+    ghosts: str = "none",
+    flare: str = "none",
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
     _check_exposures(bracket)
@@ -83,7 +102,10 @@ def assemble_steps(
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if times not in ("stated", "estimate"):
         raise ValueError(f"expected times out of stated, estimate, got {times!r}")
-    state = aligned(bracket, align)
+    if ghosts not in GHOSTS or flare not in FLARE:
+        ways = f"ghosts out of {', '.join(GHOSTS)} and flare out of {', '.join(FLARE)}"
+        raise ValueError(f"expected {ways}, got {ghosts!r} and {flare!r}")
+    state = aligned(bracket, align, response)
     yield state
     if response == "auto":
         response = "linear" if bracket.linear else "debevec"
@@ -95,7 +117,36 @@ def assemble_steps(
     yield (state := state._replace(stage="response", g=g))
     E, seen = merge_seen(images, seconds, g, w(g), method=method, valid=valid)
     yield (state := state._replace(stage="merge", E=E, seen=seen))
+    if ghosts != "none":
+        yield (state := unghosted(state, ghosts, w, method))
+    if flare != "none":
+        yield (state := unveiled(state))
     yield compared(state, consistency.level_medians(images, seconds, E, valid=valid))
+
+
+def unghosted(state: Assembly, way: str, w: Callable[[Table], Table], method: str) -> Assembly:
+    """Return the Assembly without the ghosts of what moved; the reference is the middle photograph."""
+    images, times, names, valid, _ = state.bracket
+    found = moving.remove(
+        images,
+        times,
+        state.g,
+        w(state.g),
+        merged=Merged(state.E, state.seen),
+        reference=len(images) // 2 if way == "reference" else None,
+        method=method,
+        valid=valid,
+    )
+    notes = (*state.notes, moving.note(found, names))
+    return state._replace(stage="ghosts", E=found.E, seen=found.seen, moving=found.labels, notes=notes)
+
+
+def unveiled(state: Assembly) -> Assembly:
+    """Return the Assembly without the light that the lens scattered."""
+    found = glare.remove(state.E)
+    return state._replace(
+        stage="flare", E=found.E, veiled=found.region, notes=(*state.notes, glare.note(found))
+    )
 
 
 def _check_exposures(bracket: Bracket) -> None:
@@ -106,33 +157,80 @@ def _check_exposures(bracket: Bracket) -> None:
         raise ValueError(f"expected photographs of at least two different exposures, got {got}")
 
 
-def aligned(bracket: Bracket, align: Method) -> Assembly:
+def aligned(bracket: Bracket, align: Method, response: Method = "auto") -> Assembly:
     """Return the Assembly after alignment: by a method's name, a function, or "none"."""
-    offsets = np.zeros((len(bracket.images), 2), np.int64)
-    verdicts: tuple[pairs.Verdict, ...] = ()
+    by_light = align in BY_LIGHT
+    g = provisional(bracket, response) if by_light else None
+    moves, found, notes = registered(bracket, align, g)
+    if moves.ndim == 3 and not by_light:
+        g = provisional(bracket, response)
+    lost = [one for one in found if one.informative and one.confidence < judge.DOUBT]
+    notes += tuple(_about(one, bracket) for one in found if one.trouble and one not in lost)
+    doubts = tuple(f"{_about(one, bracket)}: {REGISTER[by_light]}" for one in lost)
+    H, middle = warp.as_moves(moves), (np.array(bracket.images.shape[2:0:-1]) - 1) / 2
+    offsets = np.rint(warp.apply(H, [middle])[:, 0] - middle).astype(np.int64)[:, ::-1]
+    return Assembly("align", moved(bracket, moves, g), offsets, notes=notes, doubts=doubts, moves=H)
+
+
+def registered(
+    bracket: Bracket, align: Method, g: NDArray[np.float64] | None
+) -> tuple[NDArray[Any], tuple[Found, ...], tuple[str, ...]]:
+    """Return offsets (P, 2) or moves (P, 3, 3), what was found of each pair, and what to know of it."""
+    images, times = bracket.images, bracket.times
+    if align == "none":
+        return np.zeros((len(images), 2), np.int64), (), ()
     if align == "mtb":
-        verdicts = mtb.verdicts(bracket.images)
-        offsets = pairs.along(verdicts)
-    elif align != "none":
-        offsets = as_offsets(catalogue.method("align", align)(bracket.images), len(bracket.images))
-    lost = [one for one in verdicts if one.informative and one.confidence < judge.DOUBT]
-    notes = tuple(_about(one, bracket) for one in verdicts if one.trouble and one not in lost)
-    doubts = tuple(f"{_about(one, bracket)}: {REGISTER}" for one in lost)
-    return Assembly("align", moved(bracket, offsets), offsets, notes=notes, doubts=doubts)
+        shifts = mtb.verdicts(images)
+        return pairs.along(shifts), shifts, ()
+    if align == "auto":
+        way, errors, turned = auto.choose(images, times=times, g=g)
+        off, still = (100 * np.sqrt(errors[one]) for one in (way, "none"))
+        said = f'aligned by "{way}": light that differs by {off:.1f} %, and by {still:.1f} % if left as it is'
+        return matches.along(turned), turned, (said,)
+    if align in BY_LIGHT:
+        turned = BY_LIGHT[str(align)].verdicts(images, times=times, g=g)
+        return matches.along(turned), turned, ()
+    answer = np.asarray(catalogue.method("align", align)(images))
+    check = warp.as_moves if answer.ndim == 3 else as_offsets
+    return check(answer, len(images)), (), ()
 
 
-def moved(bracket: Bracket, offsets: NDArray[np.int64]) -> Bracket:
-    """Return the bracket with its photographs, and their masks, moved and cut to what all of them show."""
-    valid = bracket.valid
+def provisional(bracket: Bracket, response: Method) -> NDArray[np.float64] | None:
+    """Return a response out of photographs that are not aligned, by histograms [Cerman06 sec. 6], or None.
+
+    A function is asked for its own.
+    """
+    if not callable(response):
+        response = "linear" if response == "linear" or (response == "auto" and bracket.linear) else "debevec"
+    recover = catalogue.method("response", response)
+    try:
+        return np.asarray(recover(bracket.images, bracket.times, valid=bracket.valid), np.float64)
+    except ValueError:  # nothing that two photographs see well: alignment can do without
+        return None
+
+
+def moved(bracket: Bracket, moves: NDArray[Any], g: NDArray[np.float64] | None = None) -> Bracket:
+    """Return the bracket with its photographs, and their masks, moved and cut to what all of them show.
+
+    Offsets shift them as they are; moves resample their light, as g tells it.
+    """
+    images, valid = bracket.images, bracket.valid
+    if moves.ndim == 3:
+        images, valid = photographs(images, moves, g, valid=valid)
+        return bracket._replace(images=images, valid=valid)
     if valid is not None:
-        valid = shift(valid.view(np.uint8), offsets).view(bool)
-    return bracket._replace(images=shift(bracket.images, offsets), valid=valid)
+        valid = shift(valid.view(np.uint8), moves).view(bool)
+    return bracket._replace(images=shift(images, moves), valid=valid)
 
 
-def _about(verdict: pairs.Verdict, bracket: Bracket) -> str:
+def _about(found: Found, bracket: Bracket) -> str:
     """Return the sentence on a pair that is in trouble."""
-    moving, fixed = bracket.names[verdict.moving], bracket.names[verdict.fixed]
-    return f"{moving} against {fixed}, moved by {verdict.offset} pixels: {verdict.trouble}"
+    moving, fixed = bracket.names[found.moving], bracket.names[found.fixed]
+    if isinstance(found, pairs.Verdict):
+        return f"{moving} against {fixed}, moved by {found.offset} pixels: {found.trouble}"
+    dy, dx = found.offset
+    by = f"({dy:.1f}, {dx:.1f}) pixels and turned by {found.degrees:.2f} degrees"
+    return f"{moving} against {fixed}, moved by {by}: {found.trouble}"
 
 
 def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], method: str) -> Assembly:
@@ -178,7 +276,11 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     bracket : Bracket
         At least two photographs of different exposure.
     align : str or function
-        A method of `align`, "none", or your own `align(images) -> offsets (P, 2)`.
+        A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels or moves
+        (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is. "cerman" turns too and
+        "homography" takes scale and tilt; both compare light, and resample it, by a provisional response
+        out of the histograms. "auto" takes whichever lays the photographs on each other best, see
+        `align.auto`.
     response : str or function
         A method of `response`, "auto" (linear where the bracket is, else Debevec), or your own
         `recover(images, times, *, valid) -> g`.
@@ -190,6 +292,12 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     times : {"stated", "estimate"}
         "estimate" corrects rough times by the pixels, where that makes the frames agree better: see
         `radiance.times`.
+
+    ghosts : {"none", "regions", "reference"}
+        What becomes of what moved: it stays half transparent; in each region its best exposure leads, or the
+        middle photograph in all of them: see `radiance.ghosts`.
+    flare : {"none", "veil"}
+        Whether light that the lens scattered is taken off, where the map shows it: see `radiance.flare`.
 
     Returns
     -------

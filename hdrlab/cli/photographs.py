@@ -23,10 +23,24 @@ from hdrlab.core import catalogue
 @click.option(
     "--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture (borders of scans)."
 )
-@click.option("--align", type=click.Choice([*catalogue.names("align"), "none"]), default="mtb")
+@click.option(
+    "--align",
+    type=click.Choice([*catalogue.names("align"), "none"]),
+    default="mtb",
+    help="mtb shifts; cerman turns, too; homography takes scale and tilt; auto takes what fits best.",
+)
 @click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
 @click.option("--weight", type=click.Choice(["gaussian", "hat", "flat", "snr"]), default="gaussian")
 @click.option("--merge", type=click.Choice(["log", "likelihood", "mean", "shot"]), default="log")
+@click.option(
+    "--ghosts",
+    type=click.Choice(["none", "regions", "reference"]),
+    default="none",
+    help="What moved: as it is; each region by its best exposure; all of them by the middle photograph.",
+)
+@click.option(
+    "--flare", type=click.Choice(["none", "veil"]), default="none", help="Take off what the lens scattered."
+)
 @click.option("--tonemap", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
 @click.option(
     "--picture", type=common.FILE, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
@@ -70,7 +84,12 @@ def assemble(
     if estimated:
         methods["times"] = "estimate"
     steps = pipeline.assemble_steps(bracket, response=recover, **methods)
-    assembly = last(common.progress(steps, "assembling", len(pipeline.STAGES) + estimated))
+    asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
+    count = len(pipeline.STAGES) + estimated + asked
+    if methods["align"] in pipeline.BY_LIGHT:  # the first stage takes seconds a photograph
+        assembly = last(common.one_by_one(steps, ["aligning", *["the map"] * (count - 1)]))
+    else:
+        assembly = last(common.progress(steps, "assembling", count))
     for note in assembly.notes:
         click.echo(f"note: {note}", err=True)
     if assembly.doubts and not anyway:

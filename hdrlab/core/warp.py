@@ -63,8 +63,9 @@ def corners(shape: tuple[int, ...]) -> Float:
 def apply(H: ArrayLike, points: ArrayLike) -> Float:
     """Return where points (..., n, 2), (x, y), lie after H (..., 3, 3)."""
     H, points = np.asarray(H, float), np.asarray(points, float)
-    moved = points @ np.swapaxes(H[..., :2], -1, -2) + H[..., None, :, 2]
-    return moved[..., :2] / moved[..., 2:]
+    x, y = points[..., 0], points[..., 1]
+    u, v, w = (H[..., row, :1] * x + H[..., row, 1:2] * y + H[..., row, 2:] for row in range(3))
+    return np.stack([u / w, v / w], axis=-1)
 
 
 def apart(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) -> Float:
@@ -139,22 +140,23 @@ def sample(image: ArrayLike, H: ArrayLike, shape: tuple[int, ...]) -> Array:
         low = np.minimum(low, after)
         after = np.concatenate([high.take(range(1, high.shape[axis]), axis), high.take([-1], axis)], axis)
         high = np.maximum(high, after)
-    found = _read(image, H, shape, order=3)
+    found = read(image, H, shape, order=3)
     return np.clip(found, before(low, H, shape), before(high, H, shape))
 
 
 def nearest(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return the picture (h, w) whose pixel p is the pixel of `image` nearest to H p."""
-    return _read(image, H, shape, order=0)
+    return read(image, H, shape, order=0)
 
 
 def before(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
     """Return the picture (h, w) whose pixel p is the pixel of `image` just above and left of H p."""
     half = np.array([[1, 0, -0.5], [0, 1, -0.5], [0, 0, 1]])
-    return _read(image, half @ np.asarray(H, float), shape, order=0)
+    return read(image, half @ np.asarray(H, float), shape, order=0)
 
 
-def _read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
+def read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
+    """Return the picture (h, w) whose pixel p is `image` (H, W) at H p, interpolated to this order."""
     return np.asarray(
         warp(
             image,

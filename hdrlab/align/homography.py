@@ -1,0 +1,193 @@
+"""Registration by distinct points and a homography (Tomaszewska and Mantiuk, WSCG 2007).
+
+A homography takes shift, rotation, scale and tilt at once, as of a camera that was carried a step.
+
+X   light                 (2, h, w): a fixed and a moving photograph on one scale, see `light`
+D   detail                (h, w) in [0, 1]: the logarithm of light over the mean around it, 1/2 where unknown
+q   matches               (n, 2), (x, y): points of the moving photograph, and of the fixed one
+H   homography            (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
+c   corners               (4, 2): where H puts the corners, pixels; the unknowns of the last stage
+d   differences           see `criterion`
+
+Points are found and described by scikit-image's SIFT, and their homography by its RANSAC, on a small level.
+Then the corners are moved until the light fits, level by level: e as in `cerman`, by least squares, for a
+simplex is slow in eight dimensions.
+"""
+
+from collections.abc import Iterator, Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.optimize import least_squares
+from skimage.feature import SIFT, match_descriptors
+from skimage.measure import ransac
+from skimage.transform import ProjectiveTransform
+
+from hdrlab.align import light
+from hdrlab.align.criterion import differences, error, lattice
+from hdrlab.align.matches import Match, Pair, along, judge, neighbours
+from hdrlab.core import warp
+from hdrlab.core.steps import last
+
+Float = NDArray[np.float64]
+PIXELS = 250_000  # of the level where points are looked for, at most
+INLIER = 1.5  # pixels of that level, between a match and its homography
+ENOUGH = 10  # matches that agree: 4 make a homography out of nothing
+TRIES = 2000
+
+
+class State(NamedTuple):
+    """One level of one pair; first that of the points, then down to full resolution, level 0.
+
+    Image `moving` is laid on image `fixed`; X is their light, H in pixels of this level, e its error.
+    `points` (2, n, 2) are the matches of the first level, of the moving image and of the fixed one, `agree`
+    (n,) those that H explains.
+    """
+
+    moving: int
+    fixed: int
+    level: int
+    X: light.Float
+    points: Float
+    agree: NDArray[np.bool_]
+    H: Float
+    e: float
+
+
+def detail(x: light.Float) -> Float:
+    """Return D of the light x (h, w): a range of 8 to 1 around the mean fills it."""
+    over = np.log2(x / light.around(x), where=x > 0, out=np.zeros(x.shape))
+    return np.clip(np.where(np.isfinite(over), over, 0) / 6 + 0.5, 0, 1)
+
+
+def matched(X: light.Float) -> Float:
+    """Return the matches (2, n, 2), (x, y), of `moving` and of `fixed`: alike, and nothing else as alike."""
+    found = []
+    for x in (X[1], X[0]):
+        sift = SIFT()
+        try:
+            sift.detect_and_extract(detail(x))
+            found.append((np.asarray(sift.keypoints)[:, ::-1].astype(float), sift.descriptors))
+        except RuntimeError:  # scikit-image's word for no point at all
+            return np.empty((2, 0, 2))
+    (q, one), (p, other) = found
+    both = match_descriptors(one, other, max_ratio=0.8, cross_check=True)
+    return np.stack([q[both[:, 0]], p[both[:, 1]]])
+
+
+def consensus(points: Float) -> tuple[Float, NDArray[np.bool_]]:
+    """Return the H that most matches agree with, and which [Fischler and Bolles 1981]; else the identity."""
+    if points.shape[1] < ENOUGH:
+        return np.eye(3), np.zeros(points.shape[1], bool)
+    model, agree = ransac(
+        tuple(points), ProjectiveTransform, 4, INLIER, max_trials=TRIES, rng=np.random.default_rng(0)
+    )
+    if model is None or agree is None or agree.sum() < ENOUGH:
+        return np.eye(3), np.zeros(points.shape[1], bool)
+    return np.asarray(model.params / model.params[2, 2]), agree
+
+
+def refined(X: light.Float, H: Float) -> Float:
+    """Return H with its corners moved to where the sum of d^2 is least; what lies far out counts little."""
+    shape, p = X.shape[1:], lattice(X.shape[1:])
+    start = warp.apply(H, warp.corners(shape))
+
+    def d(c: Float) -> Float:
+        moved = through(shape, start + c.reshape(4, 2))
+        return np.nan_to_num(differences(X, moved, p), nan=0.0)
+
+    options = {"loss": "soft_l1", "f_scale": 0.1, "diff_step": 0.1, "x_scale": 1.0, "max_nfev": 12}
+    found = least_squares(d, np.zeros(8), **options)
+    better = through(shape, start + found.x.reshape(4, 2))
+    return better if error(differences(X, better, p)) < error(differences(X, H, p)) else H
+
+
+def through(shape: tuple[int, ...], c: Float) -> Float:
+    """Return the H that puts the corners of a picture at c (4, 2)."""
+    rows = []
+    for (x, y), (u, v) in zip(warp.corners(shape), c, strict=True):
+        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, u], [0, 0, 0, x, y, 1, -v * x, -v * y, v]]
+    system = np.array(rows)
+    return np.append(np.linalg.solve(system[:, :8], system[:, 8]), 1).reshape(3, 3)
+
+
+def enlarged(H: Float) -> Float:
+    """Return H in pixels half as large: pixel x of a level lies over 2 x + 1/2 of the next finer one."""
+    finer = np.array([[2, 0, 0.5], [0, 2, 0.5], [0, 0, 1]])
+    return np.asarray(finer @ H @ np.linalg.inv(finer))
+
+
+def search(pair: Pair) -> Iterator[State]:
+    """Yield a State per level: points and consensus at the first, then light at each."""
+    small = next(j for j, X in enumerate(pair.X) if X[0].size <= PIXELS or j == len(pair.X) - 1)
+    for first in (small, max(small - 1, 0)):  # twice the size has more points, and takes four times as long
+        points = matched(pair.X[first])
+        H, agree = consensus(points)
+        if agree.any():
+            break
+    for level in range(first, -1, -1):
+        X = pair.X[level]
+        if agree.any():
+            H = refined(X, H)
+        e = error(differences(X, H, lattice(X.shape[1:])))
+        yield State(*pair[:2], level, X.copy(), points.copy(), agree.copy(), H.copy(), e)
+        H = enlarged(H)
+
+
+def align_steps(
+    images: ArrayLike | Sequence[ArrayLike], *, times: ArrayLike | None = None, g: ArrayLike | None = None
+) -> Iterator[State]:
+    """Yield the States of pair after pair, from dark to bright."""
+    for pair in neighbours(images, times, g):
+        yield from search(pair)
+
+
+def verdicts(
+    images: ArrayLike | Sequence[ArrayLike], *, times: ArrayLike | None = None, g: ArrayLike | None = None
+) -> tuple[Match, ...]:
+    """Return the Match of every pair of neighbours in brightness, from dark to bright; knobs of `align`."""
+    return tuple(judge(pair, last(search(pair)).H) for pair in neighbours(images, times, g))
+
+
+def align(
+    images: ArrayLike | Sequence[ArrayLike], *, times: ArrayLike | None = None, g: ArrayLike | None = None
+) -> Float:
+    """Return the moves that lay every image on the one in the middle of their brightness, by homographies.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3), uint8 or uint16
+        Photographs of one scene with different exposures, in any order.
+    times : (P,) seconds, optional
+        Their exposures. Without them the ratios come out of the histograms.
+    g : (n,) or (n, 3), optional
+        The camera's response, ln exposure of each level. Without it the histograms of each pair are matched.
+
+    Returns
+    -------
+    moves : (P, 3, 3)
+        Where pixel (x, y, 1) of each image lies on the one in the middle, whose move is the identity.
+
+    Raises
+    ------
+    ValueError
+        For images that are not a stack of photographs, and for times or a response that do not fit them.
+
+    References
+    ----------
+    Tomaszewska and Mantiuk, "Image Registration for Multi-exposure High Dynamic Range Image Acquisition",
+    WSCG 2007. Lowe, "Distinctive Image Features from Scale-Invariant Keypoints", IJCV 60(2), 2004.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import camera, motion, scenes
+    >>> room = scenes.room((200, 300))
+    >>> tilted = motion.hand(2, room.shape, degrees=3, zoom=0.05, tilt=0.05, rng=3)
+    >>> taken = camera.shoot(room, [0.02, 0.06], offsets=tilted)
+    >>> moves = align(taken.images)
+    >>> truth = motion.frames(tilted, room.shape)
+    >>> bool(warp.apart(moves[0], truth[0], room.shape) < 1)  # pixels at the corners
+    True
+    """
+    return along(verdicts(images, times=times, g=g))
