@@ -74,7 +74,7 @@ def honest():
         waiting = {}
 
         def another(tier):
-            """Return the Subject of a tier, tried out; where it cannot be had, the reason is the machine's."""
+            """Return a tier's, tried out; where it cannot be had, the reason is the machine's."""
             if tier not in waiting:
                 try:
                     subject = Subject({"double": siege.HONEST}, {}, tiers.choose(tier))

@@ -263,7 +263,7 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
     (tmp_path / "python3.11" / "os.py").touch()
     hidden = contents._others(places)
     assert hidden == ["/python/lib/python3.11/site-packages", "/python/lib/python3/dist-packages"]
-    inside = contents.Contents("/usr", "", {"/python/lib": str(tmp_path)}, tuple(hidden), ())
+    inside = contents.Contents("/usr", "", {"/python/lib": str(tmp_path)}, tuple(hidden), {})
     listed, read = inside.readable()
     assert {Path(path).name for path in listed} == {tmp_path.name, "python3.11", "python3"}
     assert {Path(path).name for path in read} == {"json", "os.py"}
@@ -378,7 +378,7 @@ def test_a_user_number_is_given_to_one_sandbox_at_a_time():
     assert again <= first
 
 
-def test_the_grader_that_is_killed_leaves_no_process(adopted):
+def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_path):
     """Whatever tier: with the parent gone, the process of the check and its warden are gone soon."""
     for tier in ("strict", "practice"):
         opened(tier)
@@ -390,7 +390,12 @@ def test_the_grader_that_is_killed_leaves_no_process(adopted):
             "    subject._running.check(); print('begun', flush=True); subject.f()\n"
         )
         before = warden.children()
-        grader = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True)
+        folder = tmp_path / tier
+        folder.mkdir()
+        environment = os.environ | {"TMPDIR": str(folder)}
+        grader = subprocess.Popen(
+            [sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment
+        )
         assert grader.stdout.readline() == "begun\n"
         time.sleep(0.2)
         grader.kill()
@@ -402,6 +407,7 @@ def test_the_grader_that_is_killed_leaves_no_process(adopted):
                 os.waitpid(pid, os.WNOHANG)
             time.sleep(0.02)
         assert not set(warden.children()) - set(before)
+        assert not list(folder.iterdir())
 
 
 def test_root_and_an_ordinary_user_have_the_same_strict_tier():
@@ -427,7 +433,10 @@ def test_root_and_an_ordinary_user_have_the_same_strict_tier():
 
 def as_user(user, code):
     """Return what the system's Python prints as another user, or its error."""
-    paths = [Path(channel.__file__).parents[2], *{os.path.dirname(one) for one in running.packages()}]
+    paths = [
+        Path(channel.__file__).parents[2],
+        *{os.path.dirname(one) for one in running.packages().values()},
+    ]
     told = subprocess.run(
         ["/usr/bin/env", "python3", "-B", "-c", code],
         env={"PYTHONPATH": ":".join(map(str, paths)), "PATH": os.defpath, "OPENBLAS_NUM_THREADS": "1"},
@@ -491,6 +500,21 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
     strict.bubblewrap.cache_clear()
     without.setattr(shutil, "which", lambda name: None)
     assert not doctor.examine("strict").works and "apt install bubblewrap" in doctor.examine("strict").remedy
+
+
+def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_container_tier_serves():
+    """As in most containers: root, without the right to have namespaces."""
+    opened("container")
+    if shutil.which("setpriv") is None:
+        pytest.skip("there is no setpriv, by which root gives a right up")
+    code = (
+        "from hdrlab.course.sandbox import doctor\n"
+        "for finding in doctor.report(): print(finding.tier, finding.works, finding.says)\n"
+    )
+    less = ["setpriv", "--bounding-set=-sys_admin", "--inh-caps=-sys_admin", sys.executable, "-c", code]
+    told = subprocess.run(less, capture_output=True, text=True).stdout.splitlines()
+    assert told[0].startswith("strict False the strict ")
+    assert "container True started in" in told[1] and told[2].startswith("practice True")
 
 
 def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):

@@ -14,6 +14,7 @@ import gc
 import importlib
 import importlib.util
 import os
+import shutil
 import signal
 import socket
 import sys
@@ -183,7 +184,8 @@ def main(number: str, *packages: str) -> None:
     here = os.path.dirname(os.path.abspath(__file__))
     shelf = {name: f"{here}/{name}.py" for name in ("channel", "worker")}
     for package in packages:
-        shelf[os.path.basename(package)] = f"{package}/__init__.py"
+        name, _, folder = package.partition("=")
+        shelf[name] = f"{folder}/__init__.py"
     sys.meta_path.append(Shelf(shelf))
     channel = importlib.import_module("channel")
     _, _, order = channel.receive(control)
@@ -200,6 +202,8 @@ def main(number: str, *packages: str) -> None:
         tend(control, channel, order)
     else:
         begin(control, order)
+    if order["scratch"]:  # the parent may have been killed, and cannot
+        shutil.rmtree(order["scratch"], ignore_errors=True)
     os._exit(0)  # nothing is left that would need an orderly end
 
 

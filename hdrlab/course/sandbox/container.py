@@ -7,7 +7,6 @@ a file holds is kept from them; that there is a file of a certain name is not.
 
 import os
 import sys
-from pathlib import Path
 from socket import socket
 
 from hdrlab.course.sandbox import descent, filters, users
@@ -43,19 +42,20 @@ def sandbox() -> Sandbox:
 
 def launch(control: socket) -> Launched:
     """Start the warden behind the fence, as a spare user who reads what root has opened."""
-    inside = contents()
-    homes = [inside.prefix, *(os.path.dirname(folder) for folder in packages()), str(PROGRAM.parent)]
-    folders = [f"{{{j}}}/{Path(folder).name}" for j, folder in enumerate(packages(), 1)]
+    inside, found = contents(), packages()
+    libraries = [folder for one in found.values() if os.path.isdir(folder := f"{one}.libs")]
+    homes = [inside.prefix, str(PROGRAM.parent), *found.values(), *libraries]
+    folders = {name: f"{{{j}}}" for j, name in enumerate(found, 2)}
     python = "{0}/" + os.path.relpath(inside.places[inside.python], inside.prefix)
-    program = f"{{{len(homes) - 1}}}/{PROGRAM.name}"
+    loaded = ":".join(["{0}/lib", *(f"{{{j}}}" for j in range(2 + len(found), len(homes)))])
     walk, read = inside.readable()
     user, held = users.lease()
     words = users.descend(
         user=user,
         homes=homes,
         fence={"read": read, "walk": walk, "write": [os.devnull]},
-        command=command(python, program, control.fileno(), folders),
-        environment=ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib"},
+        command=command(python, f"{{1}}/{PROGRAM.name}", control.fileno(), folders),
+        environment=ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
     )
     try:
         return Launched(start(words, {}, control.fileno()), held.close)

@@ -34,7 +34,7 @@ class Contents(NamedTuple):
     python: str
     places: dict[str, str]
     hidden: tuple[str, ...]
-    packages: tuple[str, ...]
+    packages: dict[str, str]
 
     @property
     def program(self) -> str:
@@ -65,16 +65,17 @@ def contents() -> Contents:
     binary = os.path.realpath(getattr(sys, "_base_executable", sys.executable))
     python = f"{PYTHON}/bin/python3"
     stdlib = os.path.relpath(os.path.realpath(sysconfig.get_path("stdlib")), prefix)
-    own = (
-        stdlib if prefix == "/usr" else os.path.dirname(stdlib)
-    )  # /usr/lib is everybody's, and is chosen from
-    places = _libraries() | {python: binary, f"{PYTHON}/{own}": f"{prefix}/{own}"}
-    for folder in packages():
+    places = _libraries() | {python: binary, f"{PYTHON}/{stdlib}": f"{prefix}/{stdlib}"}
+    if os.path.isdir(f"{prefix}/conda-meta"):  # it keeps all libraries beside its modules
+        places[f"{PYTHON}/{os.path.dirname(stdlib)}"] = f"{prefix}/{os.path.dirname(stdlib)}"
+    for library in Path(prefix, "lib").glob("libpython*.so*"):
+        places[f"{PYTHON}/lib/{library.name}"] = os.path.realpath(library)
+    for folder in packages().values():
         for path in (folder, f"{folder}.libs"):
             if os.path.isdir(path):
                 places[f"{PACKAGES}/{os.path.basename(path)}"] = path
     places |= {f"{COURSE}/{name}": str(PROGRAM.with_name(name)) for name in OURS}
-    inside = tuple(f"{PACKAGES}/{os.path.basename(folder)}" for folder in packages())
+    inside = {name: f"{PACKAGES}/{os.path.basename(folder)}" for name, folder in packages().items()}
     return Contents(prefix, python, places, tuple(_others(places)), inside)
 
 
@@ -89,10 +90,11 @@ def _libraries() -> dict[str, str]:
 
 def _others(places: dict[str, str]) -> list[str]:
     """Return the folders of packages that lie in what is to be read."""
-    return sorted(
+    found = {
         f"{inside}/{folder.relative_to(outside)}"
         for inside, outside in places.items()
         if os.path.isdir(outside) and not inside.startswith(PACKAGES)
         for pattern in ("*-packages", "python*/*-packages")
         for folder in Path(outside).glob(pattern)
-    )
+    }
+    return sorted(found)

@@ -11,7 +11,6 @@ import sys
 import tempfile
 from functools import partial
 from socket import socket
-from typing import Any
 
 from hdrlab.course.sandbox.running import (
     ENVIRONMENT,
@@ -31,8 +30,6 @@ DOES_NOT_STOP = (
     "using the network",
     "starting programs, and ending or watching your other processes, the grader among them",
 )
-
-
 OWN_LIMITS = {name: most for name, most in LIMITS.items() if name != "NPROC"}  # it would count all of yours
 
 
@@ -52,13 +49,15 @@ def launch(control: socket) -> Launched:
     try:
         if sys.platform == "win32":
             return Launched(_shared(words, environment, control, scratch), after)
-        return Launched(start(words, environment, control.fileno(), folder=scratch), after)
+        return Launched(start(words, environment, control.fileno(), folder=scratch), after, scratch)
     except BaseException:
         after()
         raise
 
 
-def _shared(words: list[str], environment: dict[str, str], control: socket, folder: str) -> Any:
+def _shared(
+    words: list[str], environment: dict[str, str], control: socket, folder: str
+) -> subprocess.Popen[bytes]:
     """Return the process of a command that is told its control on the standard input, as Windows does."""
     process = subprocess.Popen(
         words,

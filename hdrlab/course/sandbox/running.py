@@ -12,7 +12,7 @@ import contextlib
 import socket
 import subprocess
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -49,10 +49,11 @@ class Unavailable(RuntimeError):
 
 
 class Launched(NamedTuple):
-    """A process that was started, and what to do when it has ended."""
+    """A process that was started, what to do when it has ended, and a folder that it removes at its end."""
 
     process: subprocess.Popen[bytes]
     after: Callable[[], object]
+    scratch: str = ""
 
 
 class Sandbox(NamedTuple):
@@ -102,6 +103,7 @@ class Running:
             "credit": self.sandbox.credit,
             "limits": self.sandbox.limits,
             "filter": self.sandbox.program,
+            "scratch": self._launched.scratch,
         }
         with contextlib.suppress(OSError):  # it has ended already: `wait` says why
             channel.send(self._control, "order", order)
@@ -159,20 +161,20 @@ class Running:
         return value
 
     def _last_words(self) -> str:
-        """Return what the process wrote to stderr, when it has ended."""
+        """Return the last line that the process wrote to stderr, when it has ended."""
         process = self._launched.process
         process.kill()
         _, said = process.communicate()
-        return (said or b"").decode(errors="replace").strip()[-2000:]
+        lines = (said or b"").decode(errors="replace").strip().splitlines()
+        return lines[-1][-500:] if lines else ""
 
     def close(self) -> None:
         """End it, and all that runs in it."""
         self._control.close()
         process = self._launched.process
+        patience = CLEAR if self._ready and self.sandbox.forks else 0  # a warden ends its check, then itself
         try:
-            process.wait(
-                CLEAR if self._ready and self.sandbox.forks else 0
-            )  # it ends what it started, then itself
+            process.wait(patience)
         except subprocess.TimeoutExpired:
             process.kill()
             process.wait()
@@ -196,14 +198,14 @@ def start(
     )
 
 
-def command(python: str, program: str, control: int, packages: Sequence[str]) -> list[str]:
+def command(python: str, program: str, control: int, packages: Mapping[str, str]) -> list[str]:
     """Return the command that starts the warden, which knows these packages by their folders."""
-    return [python, *FLAGS, program, str(control), *packages]
+    return [python, *FLAGS, program, str(control), *(f"{name}={at}" for name, at in packages.items())]
 
 
-def packages() -> list[str]:
+def packages() -> dict[str, str]:
     """Return the folders of numpy and of scipy: what a submission may import."""
     import numpy
     import scipy
 
-    return [one.__path__[0] for one in (numpy, scipy)]
+    return {one.__name__: one.__path__[0] for one in (numpy, scipy)}

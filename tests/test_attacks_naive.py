@@ -1,0 +1,88 @@
+"""The attacks of tests/attacks work: a grader as they are often written gives them points, or suffers.
+
+It runs what was handed in within its own process. An attack that succeeds is given points, or leaves a file
+or a process, or never ends. Those in NOT_NAIVE harm something else, or would harm these tests.
+"""
+
+import json
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+import siege
+
+from hdrlab.course import warden
+
+ENDLESS = [name for name in siege.NAMES if name.startswith("a12")]
+NOT_NAIVE = {
+    "a09_kill_parent": "it would end these tests",
+    "a14_threads": "it gains by exhausting the machine, which is not tried",
+    "a19_huge": "it would harm a grader that copies it, and has the memory",
+    "a19_ragged": "no comparison takes it",
+    "a19_strides": "any comparison takes it",
+    "a19_structured": "no comparison takes it",
+    "a20_scripts": "it harms who reads the report",
+    "a26_silence": "there is no channel",
+}
+
+
+@pytest.fixture(scope="module")
+def port():
+    """The port of a server that knows the answer; and what loses its parent is seen meanwhile."""
+    with siege.oracle() as number, siege.adopting():
+        yield number
+
+
+def graded(place, patience):
+    """Return what the naive grader says of a submission, its exit code, and whether it came to an end."""
+    process = subprocess.Popen(
+        [sys.executable, "-B", str(siege.HERE / "naive_grader.py"), "submission.py"],
+        cwd=place,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        encoding="utf8",
+        errors="replace",
+    )
+    try:
+        return process.communicate(timeout=patience)[0], process.returncode, True
+    except subprocess.TimeoutExpired:
+        process.kill()
+        return process.communicate()[0], process.returncode, False
+
+
+def score(place, said, code):
+    """Return the points that whoever ran the naive grader reads off."""
+    points = len(re.findall("^PASS$", said, re.MULTILINE))
+    points += 2 * (code == 0 and "FAIL" not in said)
+    if (place / "results.json").exists():
+        points += json.loads((place / "results.json").read_text())["score"]
+    return points
+
+
+def end(processes):
+    """End processes that were left behind."""
+    for pid in processes:
+        os.kill(pid, 9)
+        os.waitpid(pid, 0)
+
+
+def test_the_naive_grader_knows_right_from_wrong(tmp_path):
+    for answer, points in (("2 * x", 4), ("3 * x", 0), ("None", 0)):
+        (tmp_path / "submission.py").write_text(f"def double(x): return {answer}")
+        said, code, ended = graded(tmp_path, 60)
+        assert ended and score(tmp_path, said, code) == points
+
+
+@pytest.mark.parametrize("name", [name for name in siege.NAMES if name not in NOT_NAIVE])
+def test_on_a_naive_grader_the_attack_succeeds(name, tmp_path, port):
+    place = siege.furnish(tmp_path)
+    (place / "submission.py").write_text(siege.armed(name, place, port))
+    files, processes = siege.listing(place), warden.children()
+    said, code, ended = graded(place, 2 if name in ENDLESS else 60)
+    left = [pid for pid in warden.children() if pid not in processes]
+    end(left)
+    assert ended == (name not in ENDLESS)
+    if ended:
+        assert score(place, said, code) or left or siege.listing(place) != files
