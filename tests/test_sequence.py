@@ -189,14 +189,15 @@ def test_the_command_says_in_one_line_what_is_wrong(arguments, says, folder, tmp
     assert [path.name for path in tmp_path.iterdir()] == ["frames"]
 
 
-def test_ctrl_c_leaves_what_was_there(tmp_path):
+def test_a_bar_shows_the_progress_and_ctrl_c_leaves_what_was_there(tmp_path):
     pty = pytest.importorskip("pty", reason="there are no such terminals here")
     place, out = tmp_path / "frames", tmp_path / "out.gif"
     place.mkdir()
-    for j, frame in enumerate(moving(60, (240, 320))):
+    for j, frame in enumerate(moving(60, (120, 160))):
         write_picture(place / f"{j:02d}.png", frame)
     out.write_bytes(b"precious")
     terminal, its_end = pty.openpty()
+    pytest.importorskip("termios").tcsetwinsize(its_end, (24, 80))  # in one without columns there is no bar
     command = [
         sys.executable,
         "-m",
@@ -219,6 +220,7 @@ def test_ctrl_c_leaves_what_was_there(tmp_path):
         while "merging" not in said and time.monotonic() < deadline:
             if select.select([terminal], [], [], 1)[0]:
                 said += os.read(terminal, 4096).decode()
+        assert "merging" in said
         process.send_signal(signal.SIGINT)
         assert process.wait(PATIENCE) == 130
     finally:

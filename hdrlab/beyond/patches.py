@@ -13,8 +13,9 @@ I_k    (P, H, W, C)        photographs that never were: the reference's moment i
 Where the reference is well exposed, H is the reference. Elsewhere H should look, in every exposure, as if it
 were made of patches of the photographs, and leave none of theirs out: `similarity` has that measure.
 
-It takes long: the time goes with pixels x side^2 x P^2. Three photographs of 96 x 144 pixels take about 5 s
-here, where a compiled program for whole photographs takes minutes. So it is for small pictures.
+It takes long: time and memory go with pixels x side^2 x P, the time with P once more. Three photographs of
+96 x 144 pixels take two to three seconds and some 30 MB, so a megapixel would take minutes and more than two
+gigabytes: this is for small pictures, to see how it works.
 """
 
 from collections.abc import Iterator
@@ -123,7 +124,7 @@ def synthesise_steps(
     generator, state, begun = np.random.default_rng(rng), None, None
     for scale, (shape, count) in enumerate(zip(sizes, schedule(rounds, len(sizes)), strict=True)):
         scene = at_scale(finest, shape)
-        H = guessed(scene) if state is None else blended(resized(state.H, shape), scene)
+        H = resized(guessed(finest), shape) if state is None else blended(resized(state.H, shape), scene)
         state = State(scale, 0, H, extracted(H, scene), np.full(len(scene.t), np.nan))
         yield state
         begun = standing(shape, len(scene.t), side) if begun is None else begun

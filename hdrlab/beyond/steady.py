@@ -7,7 +7,7 @@ Lav_i  log average             of all pixels of the frames i - span ... i + span
 a      key                     what Lav becomes, 0.18
 white  the brightest scaled luminance, a L / Lav, of these frames: what becomes white
 Ld_i   display luminance       (H, W) in [0, 1]
-y_i    mean of a frame as it is shown, in display levels, 0 to 255
+y_i    mean of what stands still in a frame, as it is shown, in display levels, 0 to 255
 
 An operator that adapts to each frame by itself follows its noise, and whatever bright thing comes and goes:
 the room gets darker when a lamp enters. [Kang03 sec. 5] lets the photographic operator adapt to a few frames
@@ -118,18 +118,27 @@ def tonemap_steps(
         yield State(frame.E, Ld, own, average, white)
 
 
-def flicker(Ld: Iterable[ArrayLike]) -> float:
+def flicker(Ld: Iterable[ArrayLike], still: ArrayLike | None = None) -> float:
     """Return the root mean square of (y_(i-1) - 2 y_i + y_(i+1)) / 4, y in levels of 0 to 255.
 
-    A steady change has no second difference. A mean that goes up and down by a level from frame to frame
-    counts one.
+    A steady change has no second difference. What goes up and down by a level from frame to frame counts
+    one.
+
+    Parameters
+    ----------
+    Ld : at least three frames (H, W), display luminance, 0 to 1
+    still : (H, W) bool, where nothing of the scene changes; everywhere by default. An operator that follows
+        each frame keeps the mean of the whole, and changes that of all that did not change.
 
     Examples
     --------
     >>> round(flicker(np.full((2, 2), y) for y in (0.1, 0.2, 0.1, 0.2)), 1)
     17.3
     """
-    y = np.array([255 * float(np.mean(encode_srgb(np.asarray(one, np.float64)))) for one in Ld])
+    shown = [encode_srgb(np.asarray(one, np.float64)) for one in Ld]
+    y = np.array(
+        [255 * float(one[... if still is None else np.asarray(still, bool)].mean()) for one in shown]
+    )
     if len(y) < 3:
         raise ValueError(f"expected at least three frames, got {len(y)}")
     return float(np.sqrt(np.mean((np.diff(y, 2) / 4) ** 2)))

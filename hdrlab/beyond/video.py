@@ -104,16 +104,25 @@ def half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
     return tuple(term._replace(w=term.w * np.maximum(agree, 0.01)) for term in terms)
 
 
+def possible(i: Frame, R: Float) -> tuple[Float, Float]:
+    """Return R kept within what frame i allows, and f_MW (H, W, 1) of how far it had to be moved for that.
+
+    Frame i allows at least R_i where it is clipped, and what lies within a few levels of R_i elsewhere.
+    """
+    kept = np.clip(R, *allowed(i.v, i.noise, i.clipped, i.t, i.full))
+    return kept, consistency(exposed(kept, i.t, i.full), exposed(R, i.t, i.full))
+
+
 def mixed(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> Float:
     """Return (f_W R_i + sum U + (1 - alpha) sum B) / (f_W + ...), each R times its weight [Kang03 sec. 4].
 
-    It is kept within what frame i allows: at least R_i where that is clipped, within a few levels elsewhere.
+    B is asked whether frame i allows it: a badly exposed pixel still says "at least" or "at most".
     """
-    half = [(R, (1 - i.alpha) * np.maximum(w, LEAST)) for R, w in between]
+    half = [(R, (1 - i.alpha) * np.maximum(possible(i, R)[1] * w, LEAST)) for R, w in between]
     terms = [(i.R, i.w), *along, *half]
     total = np.sum([w for _, w in terms], axis=0)
     mean = np.sum([w * R for R, w in terms], axis=0) / np.where(total > 0, total, 1)
-    return np.clip(np.where(total > 0, mean, i.R), *allowed(i.v, i.noise, i.clipped, i.t, i.full))
+    return possible(i, np.where(total > 0, mean, i.R))[0]
 
 
 def merge_steps(
