@@ -46,13 +46,12 @@ def irradiance(Z, t, f, w):
 
 def update(Z, t, E, n=256):
     X = E.astype(f32)[:, None] * t.astype(f32)
-    f = np.full(n, np.nan, f32)
-    for m in range(n):
-        of_level = X[Z == m]
-        of_level = of_level[~np.isnan(of_level)]
-        if of_level.size:
-            f[m] = of_level.mean()
-    return f
+    told = ~np.isnan(X)
+    total, pixels = np.zeros(n, f32), np.zeros(n, f32)
+    np.add.at(total, Z[told], X[told])
+    np.add.at(pixels, Z[told], f32(1))
+    with np.errstate(all="ignore"):
+        return total / pixels
 
 
 # %% task="recover_steps"

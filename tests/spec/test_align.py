@@ -72,11 +72,11 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
 def test_in_a_tie_nothing_moves(subject, rng):
     flat = np.full((2, 96, 128), int(rng.integers(60, 200)), np.uint8)
     same(subject.align(flat), np.zeros((2, 2)), 0, what="the offsets of two even walls")
-    dx, levels = int(rng.choice([-6, 6])), gaussian_filter(rng.standard_normal(240), 3)
+    dx, levels = int(rng.choice([-6, 6])), gaussian_filter(rng.standard_normal(240), 2)
     bars = (128 + 120 * levels / np.abs(levels).max()).astype(np.uint8)
     images = np.stack([np.tile(bars[30 + d : 190 + d], (120, 1)) for d in (0, dx)])
     came = finite(subject.align(images), (2, 2), what="the offsets")
-    same(came[1] - came[0], [0, dx], 0, what="the offset of upright bars, which say nothing of dy")
+    same((came[1] - came[0])[0], 0, 0, what="dy of upright bars, which say nothing of it")
 
 
 @pytest.mark.points(5)

@@ -13,7 +13,7 @@ INNER = (slice(16, -16), slice(16, -16))  # away from the border, where a blur m
 def drawn(rng, shape=(60, 76)):
     """Return luminance without hot pixels: soft light."""
     lL = gaussian_filter(rng.standard_normal(shape), 5)
-    return np.exp(1.5 * lL / lL.std()).astype(np.float32)
+    return np.exp(0.7 * lL / lL.std()).astype(np.float32)
 
 
 @pytest.mark.points(1)
