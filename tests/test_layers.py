@@ -34,7 +34,7 @@ ONLY_IN = {  # package -> rooms
     "pyseccomp": {"course"},  # the sandbox
     **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
     "jinja2": {"show", "course"},
-    **dict.fromkeys(["starlette", "uvicorn", "markupsafe"], {"course"}),  # the gallery
+    **dict.fromkeys(["starlette", "uvicorn", "markupsafe", "markdown_it"], {"course"}),
     "lazy_loader": {"__init__"},
     "threadpoolctl": {"show"},
 }

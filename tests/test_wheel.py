@@ -26,7 +26,8 @@ def wheel(tmp_path_factory):
 
 def test_notebooks_specification_scripts_and_types_travel_in_the_wheel(wheel):
     names = set(zipfile.ZipFile(wheel).namelist())
-    for folder, pattern in [("notebooks", "*.ipynb"), ("tests", "**/*.py")]:
+    assert not any("solutions" in name for name in names)
+    for folder, pattern in [("notebooks", "*.ipynb"), ("assignments", "*.ipynb"), ("tests", "**/*.py")]:
         for file in (ROOT / folder).glob(pattern):
             assert f"hdrlab/course/{folder}/{file.relative_to(ROOT / folder).as_posix()}" in names
     for file in (ROOT / "hdrlab").rglob("*"):

@@ -12,7 +12,18 @@ from collections.abc import Sequence
 import click
 
 from hdrlab import __version__
-from hdrlab.cli import curves, exposures, gallery, lessons, maps, photographs, site, video
+from hdrlab.cli import (
+    curves,
+    exposures,
+    gallery,
+    grading,
+    lessons,
+    maps,
+    photographs,
+    site,
+    submitting,
+    video,
+)
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
@@ -56,6 +67,12 @@ for command in (
     maps.compare,
     maps.convert,
     maps.info,
+    grading.check,
+    grading.grade,
+    grading.doctor,
+    grading.course,
+    submitting.report,
+    submitting.submit,
     gallery.gallery,
     site.site,
 ):

@@ -1,0 +1,233 @@
+"""Commands about assignments: a student's check, an instructor's grade, and the course itself."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import click
+
+from hdrlab.cli import common
+
+if TYPE_CHECKING:
+    from hdrlab.course.grading import Conditions
+    from hdrlab.course.plan import Homework
+    from hdrlab.course.results import Result
+
+FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
+FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
+PLAN = click.option("--plan", type=FILE, help="A plan of your own instead of the package's plan.toml.")
+HOMEWORK = click.option("--homework", metavar="NAME", help="Such as hw2; by default the file's name says it.")
+
+
+@click.command()
+@click.argument("submission", type=click.Path(path_type=Path))
+@HOMEWORK
+@click.option("--task", metavar="NAME", help="Only this one, such as gsolve.")
+@click.option(
+    "--hints", type=click.IntRange(0, 3), default=0, help="How many hints to show of what does not hold."
+)
+@click.option("--page", type=common.FILE, help="The same as a page with pictures: a .html file.")
+@PLAN
+def check(
+    submission: Path, homework: str | None, task: str | None, hints: int, page: Path | None, plan: Path | None
+) -> None:
+    """Check SUBMISSION, a notebook or a Python file, as often as you like. Not for credit.
+
+    Your functions run in a process of their own, which is no sandbox: check what you trust.
+    """
+    from hdrlab.course import feedback
+    from hdrlab.course.grading import Conditions
+
+    asked = _homework(submission, homework, plan)
+    if task is not None:
+        asked = _only(asked, task)
+    result = _graded(submission, asked, Conditions(tier="practice", draw=page is not None))
+    click.echo(feedback.text(result, hints=hints))
+    if page is not None:
+        _write(page, feedback.page(result))
+        click.echo(page)
+
+
+@click.command()
+@click.argument("submission", type=click.Path(path_type=Path))
+@HOMEWORK
+@click.option(
+    "--tier",
+    type=click.Choice(["strict", "container", "practice"]),
+    default="strict",
+    help="How its code is kept apart; see doctor.",
+)
+@click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py.")
+@click.option("-o", "--out", type=common.FILE, default="results", help="Folder for the results.")
+@click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
+@click.option("--secret-file", type=FILE, help="The course's secret: a file with a line nobody else knows.")
+@click.option("--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for one answer.")
+@click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
+@click.option(
+    "--received", type=FILE, help="Of a class: CSV with file and received, instead of files' times."
+)
+@click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
+@click.option("--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable.")
+@click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
+@click.option("--regrade", is_flag=True, help="Of a class, what was graded before, too.")
+@click.option("--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]")
+@PLAN
+def grade(
+    submission: Path,
+    homework: str | None,
+    tier: str,
+    hidden: Path | None,
+    out: Path,
+    student: str,
+    secret_file: Path | None,
+    timeout: float,
+    plan: Path | None,
+    **of_class: Any,
+) -> None:
+    """Grade SUBMISSION, a notebook or a Python file, and write the results in every form.
+
+    Its code never runs in the process that scores it. A tier that this machine cannot give is an error.
+
+    A folder is a class: with --roster, every submission in it is graded, several at a time, and a gradebook
+    and a page about the class are written. Stopped at any moment, the next run finishes the rest.
+    """
+    from hdrlab.course import feedback, gradebook
+    from hdrlab.course.grading import Conditions
+
+    if student and secret_file is None:
+        raise ValueError(
+            "expected --secret-file with --student: without it anybody could draw the same inputs"
+        )
+    secret = secret_file.read_text(encoding="utf8").strip() if secret_file else ""
+    conditions = Conditions(tier, student, secret, hidden, timeout)
+    if submission.is_dir():
+        from hdrlab.cli.classroom import grade_folder
+
+        asked = _homework(submission, homework, plan)
+        grade_folder(submission, out, asked, conditions, plan=plan, **of_class)
+        return
+    result = _graded(submission, _homework(submission, homework, plan), conditions)
+    click.echo(feedback.text(result, private=True))
+    if not result.for_credit:
+        click.echo("note: the practice tier keeps no attack out, so this score is not for credit", err=True)
+    gradebook.write_results(out, result)
+    click.echo(out / "feedback.html")
+
+
+@click.command()
+def doctor() -> None:
+    """Say which tiers of isolation this machine can give, and what is missing for the others."""
+    from hdrlab.course.sandbox import doctor as visiting
+
+    for tier, works, credit, says, remedy in visiting.report():
+        click.echo(
+            f"{tier:<10}{'yes' if works else 'no ':<5}{'for credit' if credit else 'practice':<12}{says}"
+        )
+        if remedy:
+            click.echo(f"{'':<10}{remedy}")
+
+
+@click.group()
+def course() -> None:
+    """The course: its handouts, and other systems' forms of it."""
+
+
+@course.command()
+@click.option("--sources", type=FOLDER, default="solutions", help="The prose, a file for each homework.")
+@click.option("--out", type=common.FILE, default="assignments", help="Folder for the handouts.")
+@click.option("--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it.")
+@click.option("--jobs", type=click.IntRange(1), default=2, help="How many notebooks run at a time.")
+@PLAN
+def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Path | None) -> None:
+    """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates."""
+    from hdrlab.course import handouts
+    from hdrlab.course import plan as plans
+    from hdrlab.course.site import execute
+
+    try:
+        made = handouts.build_steps(plans.read(plan), sources, out, solutions, jobs=jobs)
+        for file in common.progress(made, "handouts"):
+            click.echo(file)
+    except execute.NotebookError as error:
+        raise click.ClickException(str(error)) from None
+    except ImportError as error:
+        raise ValueError(
+            f'expected {error.name}, which reads the prose: pip install "hdrlab[course]"'
+        ) from None
+
+
+@course.command()
+@click.option("--nbgrader", type=common.FILE, metavar="DIR", help="A course for nbgrader, in this folder.")
+@click.option("--gradescope", type=common.FILE, metavar="DIR", help="An autograder zip for each homework.")
+@click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
+@click.option("--secret-file", type=FILE, help="Draws each student's own inputs; for Gradescope.")
+@PLAN
+def export(
+    nbgrader: Path | None,
+    gradescope: Path | None,
+    hidden: Path | None,
+    secret_file: Path | None,
+    plan: Path | None,
+) -> None:
+    """Write the course in the form of another system, whose tests call the same checks."""
+    from hdrlab.course import plan as plans
+    from hdrlab.course.export import gradescope as to_gradescope
+    from hdrlab.course.export import nbgrader as to_nbgrader
+
+    if nbgrader is None and gradescope is None:
+        raise ValueError("expected --nbgrader DIR or --gradescope DIR")
+    read = plans.read(plan)
+    if nbgrader is not None:
+        for file in to_nbgrader.export(read, nbgrader):
+            click.echo(file)
+    if gradescope is not None:
+        secret = secret_file.read_text(encoding="utf8").strip() if secret_file else ""
+        for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
+            click.echo(file)
+
+
+def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homework":
+    """Return the homework that is asked for, or the one whose name stands in the file's."""
+    from hdrlab.course import plan as plans
+
+    homeworks = plans.read(plan).homeworks
+    if name is None:
+        fitting = [one for one in homeworks if one in submission.stem.lower()]
+        if len(fitting) != 1:
+            raise ValueError(
+                f"expected --homework, one of {', '.join(homeworks)}: {submission.name} does not say"
+            )
+        (name,) = fitting
+    if name not in homeworks:
+        raise ValueError(f"expected a homework out of {', '.join(homeworks)}, got {name!r}")
+    return homeworks[name]
+
+
+def _only(homework: "Homework", task: str) -> "Homework":
+    tasks = tuple(one for one in homework.tasks if one.id == task)
+    if not tasks:
+        raise ValueError(
+            f"expected a task out of {', '.join(one.id for one in homework.tasks)}, got {task!r}"
+        )
+    return homework._replace(tasks=tasks)
+
+
+def _graded(submission: Path, homework: "Homework", conditions: "Conditions") -> "Result":
+    """Return the Result, while a terminal shows how many checks have been answered."""
+    from hdrlab.core.steps import last
+    from hdrlab.course import grading
+    from hdrlab.course.sandbox.running import Unavailable
+
+    if not submission.exists():
+        raise FileNotFoundError(2, "no such file", str(submission))
+    try:
+        steps: Any = grading.grade_steps(submission, homework, conditions)
+        return last(common.progress(steps, homework.name))
+    except Unavailable as error:
+        raise ValueError(str(error)) from None
+
+
+def _write(page: Path, text: str) -> None:
+    from hdrlab.io.files import replacing
+
+    with replacing(page) as temporary:
+        temporary.write_text(text, encoding="utf8")

@@ -1,0 +1,211 @@
+"""A task's function with all that it needs of a notebook's other cells, as text that runs by itself.
+
+Names are followed through the statements at the top of the cells: imports, helpers, classes and constants. So
+cells may be renamed, split or moved. Of what the handout gives, our own copy is taken.
+"""
+
+import ast
+import re
+import textwrap
+import warnings
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple
+
+from hdrlab.course import names
+
+TIMED = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")  # magics over plain Python
+
+
+class Cell(NamedTuple):
+    """A code cell: its text, the task that it was handed out for, and whether the handout gives it."""
+
+    text: str
+    task: str = ""
+    given: bool = False
+    where: str = ""
+
+
+class Statement(NamedTuple):
+    """A statement at the top of a cell: its place, its text, the names it binds, and those it needs.
+
+    Of a function, `head` are those needed when it is defined: in its decorators, defaults and annotations.
+    """
+
+    place: int
+    text: str
+    binds: frozenset[str]
+    needs: frozenset[str]
+    head: frozenset[str]
+    cell: Cell
+
+
+def closed(
+    cells: Sequence[Cell], tasks: Sequence[str], given: Sequence[Cell] = ()
+) -> tuple[dict[str, str], list[str]]:
+    """Return the text of each task's function with what it needs, and what is wrong, in words."""
+    problems: list[str] = []
+    statements: list[Statement] = []
+    for cell in [*given, *(one for one in cells if not (one.given and given))]:
+        try:
+            statements += _statements(cell, len(statements))
+        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+            line = f", line {error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
+            said = error.msg if isinstance(error, SyntaxError) else str(error)
+            mine = f", which holds {cell.task}," if cell.task in tasks else ""
+            problems.append(f"{cell.where}{mine} is no Python{line}: {said}")
+    sources = {}
+    for task in tasks:
+        found = [one for one in statements if task in one.binds and not one.cell.given]
+        marked = [one for one in found if one.cell.task == task]
+        if not found:
+            problems.append(f"{task} was not found: no cell defines a function of this name")
+            continue
+        if len({one.cell for one in found}) > 1:
+            which = "that of its own cell" if len({one.cell for one in marked}) == 1 else "the last one"
+            problems.append(f"{task} is defined in several cells; {which} counts")
+        last = (marked or found)[-1]
+        sources[task] = "\n\n".join(one.text for one in _needed(last, task, statements)) + "\n"
+    return sources, problems
+
+
+def _needed(task: Statement, name: str, statements: Sequence[Statement]) -> list[Statement]:
+    """Return a statement and all that it needs, each after what it needs to be run.
+
+    A name that is bound several times counts with all of its bindings by plain statements, which build on
+    each other, but of functions, classes and imports the last one alone.
+    """
+    givers: dict[str, list[Statement]] = {name: [task]}
+    chosen, wanted = {task.place: task}, sorted(task.needs)
+    while wanted:
+        one = wanted.pop()
+        if one not in givers:
+            givers[one] = _givers(one, task.cell, statements)
+            chosen |= {giver.place: giver for giver in givers[one]}
+            wanted += sorted({need for giver in givers[one] for need in giver.needs} - set(givers))
+    order: dict[int, Statement] = {}
+    for place in sorted(chosen, key=lambda place: (not _is_import(chosen[place]), place)):
+        _run_after(chosen[place], givers, order, set(), deep=False)
+    return list(order.values())
+
+
+def _givers(name: str, cell: Cell, statements: Sequence[Statement]) -> list[Statement]:
+    """Return the statements that make what a name stands for; those of the task's own cell come first."""
+    near = [one for one in statements if name in one.binds]
+    whole = [one for one in near if one.cell == cell and _is_whole(one)] or [
+        one for one in near if _is_whole(one)
+    ]
+    if not whole:
+        return near
+    if _is_import(whole[-1]):  # what is done to numpy is not part of a function
+        return [whole[-1]]
+    return [one for one in near if one == whole[-1] or (one.place > whole[-1].place and not _is_whole(one))]
+
+
+def _run_after(
+    one: Statement,
+    givers: dict[str, list[Statement]],
+    order: dict[int, Statement],
+    begun: set[tuple[int, bool]],
+    *,
+    deep: bool,
+) -> None:
+    """Put a statement into the order after what it needs to be run: of a function that is its head alone.
+
+    What runs at once, and a function that such a statement may call, needs all of its names: deep.
+    """
+    deep = deep or not one.text.startswith(("def ", "async def "))
+    if (one.place, deep) in begun:
+        return
+    begun.add((one.place, deep))
+    for name in sorted(one.needs if deep else one.head):
+        for giver in givers.get(name, ()):
+            if giver.place != one.place and not (name in one.binds and giver.place > one.place):
+                _run_after(giver, givers, order, begun, deep=deep)
+    order.setdefault(one.place, one)
+
+
+def _is_whole(one: Statement) -> bool:
+    return _is_import(one) or one.text.startswith(("def ", "class ", "@", "async def "))
+
+
+def _is_import(one: Statement) -> bool:
+    return one.text.startswith(("import ", "from "))
+
+
+def _statements(cell: Cell, first: int) -> list[Statement]:
+    """Return the statements of a cell that bind names; calls, pictures and prints are left out."""
+    text = plain(cell.text)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of odd escapes, which are the student's own business
+        body = ast.parse(text).body
+    lines = text.splitlines(keepends=True)
+    found: list[Statement] = []
+    for node in body:
+        binds = frozenset(names.bound(node))
+        changes = frozenset(name for one in _shallow(node) for name in _changed(one))
+        if not binds | changes:
+            continue
+        start = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
+        needs = frozenset(use.node.id for use in names.free(node))
+        if hasattr(node, "body"):  # a loop's own variable is nothing from another cell
+            needs -= binds
+        needed = (
+            needs | changes,
+            frozenset(use.node.id for one in names.head(node) for use in names.free(one)),
+        )
+        found.append(Statement(first + len(found), _part(lines, start, node), binds | changes, *needed, cell))
+    return found
+
+
+def _part(lines: Sequence[str], start: int, node: ast.stmt) -> str:
+    """Return the text of a statement; of two on one line, separated by a semicolon, its own part."""
+    if start == node.lineno:
+        whole = "".join(lines)
+        return textwrap.dedent(ast.get_source_segment(whole, node) or "")
+    return "".join(lines[start - 1 : node.end_lineno]).rstrip("\n")
+
+
+def _shallow(node: ast.AST) -> Iterable[ast.AST]:
+    """Yield a node and what is in it, without going into functions and classes."""
+    yield node
+    if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
+        for child in ast.iter_child_nodes(node):
+            yield from _shallow(child)
+
+
+def _changed(node: ast.AST) -> Iterable[str]:
+    """Return the names whose things a statement changes: table[0] = 0 and names.append(1) do."""
+    targets: list[ast.expr] = []
+    if isinstance(node, ast.Assign | ast.AugAssign):
+        targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+    elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
+        targets = [node.value.func] if isinstance(node.value.func, ast.Attribute) else []
+    roots = []
+    for one in targets:
+        while isinstance(one, ast.Subscript | ast.Attribute):
+            one = one.value
+        roots += [one.id] if isinstance(one, ast.Name) else []
+    return roots
+
+
+def plain(text: str) -> str:
+    """Return a cell without what only a notebook understands: magics, shell lines, questions.
+
+    Examples
+    --------
+    >>> plain("%matplotlib inline\\nx = 1")
+    'pass\\nx = 1'
+    """
+    text = textwrap.dedent(text)
+    head = text.lstrip()
+    if head.startswith("%%"):
+        if not head.startswith(TIMED):
+            return ""
+        text = head.partition("\n")[2]
+    if not re.search(r"^\s*[%!?]|\?\s*$", text, re.MULTILINE):
+        return text
+    try:
+        ast.parse(text)
+        return text  # such lines stand in a string
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return re.sub(r"^([ \t]*)(?:[%!?].*|.*\?[ \t]*)$", r"\1pass", text, flags=re.MULTILINE)

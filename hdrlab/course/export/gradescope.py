@@ -1,0 +1,100 @@
+"""An autograder for Gradescope: a zip with this very hdrlab, its checks, and scripts to set up and to run.
+
+The zip holds the library as it is installed here, so that what grades is what was tried. The hidden checks
+and the secret in it are for the instructor's eyes: students never see the zip.
+"""
+
+import json
+import zipfile
+from collections.abc import Iterator
+from importlib.metadata import requires
+from pathlib import Path
+
+import hdrlab
+from hdrlab.course import materials
+from hdrlab.course import plan as plans
+from hdrlab.course.plan import Plan
+from hdrlab.io.files import replacing
+
+LIBRARY = Path(hdrlab.__file__).parent
+SKIPPED = (".pyc", ".ipynb")
+LARGE = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")  # no check needs them
+EPOCH = (1980, 1, 1, 0, 0, 0)  # the same course gives the same zip
+SETUP = """#!/usr/bin/env bash
+# Run once by Gradescope when the image is made.
+set -euo pipefail
+apt-get update -qq
+DEBIAN_FRONTEND=noninteractive apt-get install -y -qq python3 python3-venv
+python3 -m venv /autograder/env
+/autograder/env/bin/pip install --quiet -r /autograder/source/requirements.txt
+"""
+RUN = """#!/usr/bin/env bash
+# Run by Gradescope for each submission.
+cd /autograder
+export PYTHONPATH=/autograder/source PYTHONDONTWRITEBYTECODE=1
+/autograder/env/bin/python -m hdrlab.course.export.autograder
+"""
+
+
+def export(
+    plan: Plan, folder: Path, *, hidden: Path | None = None, plan_file: Path | None = None, secret: str = ""
+) -> Iterator[Path]:
+    """Write an autograder zip for each homework, and yield each when it is there.
+
+    Parameters
+    ----------
+    plan : what is in each homework
+    folder : made where it is missing
+    hidden : folder with checks of the instructor's own
+    plan_file : the plan's file, where it is not the package's
+    secret : the course's, from which each student's inputs are drawn; without it all get the same
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    library = dict(_library())
+    for name in plan.homeworks:
+        files = {
+            **library,
+            "setup.sh": SETUP.encode(),
+            "run_autograder": RUN.encode(),
+            "requirements.txt": "\n".join(requirements()).encode() + b"\n",
+            "plan.toml": (plan_file or plans.PLAN).read_bytes(),
+            "settings.json": json.dumps({"homework": name, "secret": secret}).encode(),
+            **(
+                {f"hidden/{one.name}": one.read_bytes() for one in sorted(hidden.glob("*.py"))}
+                if hidden
+                else {}
+            ),
+        }
+        yield _zipped(folder / f"{name}_autograder.zip", files)
+
+
+def requirements() -> list[str]:
+    """Return what hdrlab needs to run, without its extras."""
+    return [one for one in requires("hdrlab") or () if "extra ==" not in one]
+
+
+def _library() -> Iterator[tuple[str, bytes]]:
+    """Yield hdrlab's files as they stand in an installed package: checks and handouts inside of it."""
+    inside = {"tests": materials.folder("tests"), "assignments": materials.folder("assignments")}
+    apart = (*LARGE, *(f"course/{one}/" for one in inside))
+    for file in _files(LIBRARY):
+        name = file.relative_to(LIBRARY).as_posix()
+        if file.suffix not in SKIPPED and not name.startswith(apart):
+            yield f"hdrlab/{name}", file.read_bytes()
+    for folder, home in inside.items():
+        for file in _files(home):
+            if file.suffix != ".pyc":
+                yield f"hdrlab/course/{folder}/{file.relative_to(home).as_posix()}", file.read_bytes()
+
+
+def _files(folder: Path) -> list[Path]:
+    return sorted(one for one in folder.rglob("*") if one.is_file() and "__pycache__" not in one.parts)
+
+
+def _zipped(target: Path, files: dict[str, bytes]) -> Path:
+    with replacing(target) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in sorted(files.items()):
+            entry = zipfile.ZipInfo(name, EPOCH)
+            entry.external_attr = (0o755 if name in ("setup.sh", "run_autograder") else 0o644) << 16
+            archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
+    return target

@@ -1,0 +1,87 @@
+"""What a student reads of a Result: in a notebook, on a page that travels alone, or at a terminal.
+
+Everything that a student wrote, or that their function said, is text here: it is escaped where it is put in,
+and the page forbids scripts besides. Of a hidden check the outcome alone is shown.
+"""
+
+from pathlib import Path
+
+import jinja2
+
+from hdrlab.course import results
+from hdrlab.course.results import Check, Drawing, Result
+from hdrlab.io import web
+
+MARKS = {"holds": "✓", "fails": "✗", "no answer": "✗"}
+
+
+def fragment(result: Result, *, private: bool = False) -> str:
+    """Return a Result as a piece of a page, for a notebook's output.
+
+    Parameters
+    ----------
+    result : Result
+    private : whether the reader is the instructor, who sees what hidden checks say, too
+    """
+    return str(_environment().get_template("feedback.html").module.whole(result, private, True))  # type: ignore[attr-defined]
+
+
+def bar(points: float, whole: float, what: str) -> str:
+    """Return how far something has come, as a piece of a page."""
+    return str(_environment().get_template("feedback.html").module.bar(points, whole, what))  # type: ignore[attr-defined]
+
+
+def page(result: Result, *, private: bool = False) -> str:
+    """Return a Result as a page, complete in itself: it fetches nothing and runs nothing."""
+    return _environment().get_template("feedback_page.html").render(result=result, private=private).lstrip()
+
+
+def text(result: Result, *, hints: int = 0, private: bool = False) -> str:
+    """Return a Result as lines for a terminal, with the first so many hints of what does not hold."""
+    lines = [*result.problems]
+    for task in result.tasks:
+        earned, whole = results.points(result.of(task))
+        lines.append(f"{task}: {number(earned)} of {number(whole)} points")
+        if task in result.misconceptions:
+            lines.append(f"  It looks as if: {result.misconceptions[task]}")
+        for check in result.of(task):
+            lines.append(f"  {MARKS[check.outcome]} {check.promise}")
+            lines += [f"      {line}" for line in _why(check, hints, private)]
+    lines.append(f"{result.homework}: {number(result.score)} of {number(result.max_score)} points")
+    return "\n".join(lines)
+
+
+def _why(check: Check, hints: int, private: bool) -> list[str]:
+    if check.outcome == "holds" or (check.hidden and not private):
+        return []
+    told = [f"Hint {n}: {hint}" for n, hint in enumerate(check.hints[:hints], 1)]
+    return [*check.message.splitlines(), *check.drawing.alts, *told]
+
+
+def number(value: float) -> str:
+    """Return points as a reader wants them: 7, or 7.5.
+
+    Examples
+    --------
+    >>> number(7.0), number(7.3333)
+    ('7', '7.33')
+    """
+    return f"{float(value):.2f}".rstrip("0").rstrip(".")
+
+
+def _pictures(drawing: Drawing) -> list[tuple[str, str, str]]:
+    """Return each picture's address, alt text and caption."""
+    frames = [web.data_uri(frame) for frame in drawing.frames]
+    return list(zip(frames, drawing.alts, drawing.captions, strict=True))
+
+
+def _environment() -> jinja2.Environment:
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    environment.filters |= {"pictures": _pictures, "number": number, "points": results.points}
+    return environment

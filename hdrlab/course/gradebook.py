@@ -1,0 +1,106 @@
+"""A Result in the forms that others read: Gradescope's results.json, JUnit's XML, a table for a spreadsheet.
+
+Whatever a student wrote stays text in them: XML without control characters, cells that are no formula.
+"""
+
+import json
+import re
+from collections.abc import Iterable
+from pathlib import Path
+from xml.etree import ElementTree
+
+from hdrlab.course import feedback, results, sheets
+from hdrlab.course.results import Check, Result
+from hdrlab.io.files import replacing
+
+FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
+COLUMNS = ("student", "homework", "tier", "score", "max_score")
+FILES = ("result.json", "gradescope.json", "junit.xml", "result.csv", "feedback.html")
+
+
+def gradescope(result: Result) -> bytes:
+    """Return results.json as Gradescope's autograder expects it: a test for each promise.
+
+    Of a hidden check, the outcome is shown when grades are published, and why it failed never is.
+    """
+    head = [*result.problems]
+    if not result.for_credit:
+        head.append("For practice: it ran without a sandbox, so this score is not for credit.")
+    whole = {
+        "score": result.score,
+        "output": "\n".join(head),
+        "output_format": "text",
+        "visibility": "visible",
+        "stdout_visibility": "hidden",
+        "tests": [_gradescope_test(one, result) for one in result.checks],
+    }
+    return (json.dumps(whole, indent=1) + "\n").encode()
+
+
+def _gradescope_test(check: Check, result: Result) -> dict[str, object]:
+    earned, whole = results.points((check,))
+    said = "" if check.hidden else check.message
+    if said and check.task in result.misconceptions:
+        said += f"\nIt looks as if: {result.misconceptions[check.task]}"
+    return {
+        "name": f"{check.task}: {check.promise}",
+        "score": earned,
+        "max_score": whole,
+        "status": "passed" if check.outcome == "holds" else "failed",
+        "output": said,
+        "output_format": "text",
+        "visibility": "after_published" if check.hidden else "visible",
+    }
+
+
+def junit(result: Result) -> bytes:
+    """Return JUnit's XML: a suite for each task, a case for each promise."""
+    broken = [one for one in result.checks if one.outcome != "holds"]
+    counts = {"tests": str(len(result.checks)), "failures": str(len(broken)), "errors": "0"}
+    root = ElementTree.Element("testsuites", {"name": _clean(result.homework), **counts})
+    for task in result.tasks:
+        checks = result.of(task)
+        failures = sum(one.outcome != "holds" for one in checks)
+        counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0"}
+        suite = ElementTree.SubElement(root, "testsuite", {"name": _clean(task), **counts})
+        for one in checks:
+            case = ElementTree.SubElement(suite, "testcase", {"classname": task, "name": _clean(one.promise)})
+            if one.outcome != "holds":
+                why = ElementTree.SubElement(case, "failure", {"message": one.outcome})
+                why.text = "" if one.hidden else _clean(one.message)
+    ElementTree.indent(root)
+    return bytes(ElementTree.tostring(root, "utf-8", xml_declaration=True)) + b"\n"
+
+
+def _clean(text: str) -> str:
+    return FORBIDDEN.sub("", text)
+
+
+def table(graded: Iterable[Result]) -> str:
+    """Return Results as CSV, a row for each: who, what, and the points of each task."""
+    each = list(graded)
+    tasks = list(dict.fromkeys(task for one in each for task in one.tasks))
+    rows: list[list[sheets.Cell]] = []
+    for one in each:
+        earned = [results.points(one.of(task))[0] if one.of(task) else None for task in tasks]
+        rows.append([one.student, one.homework, one.tier, one.score, one.max_score, *earned])
+    return sheets.csv_text([*COLUMNS, *tasks], rows)
+
+
+def write_results(folder: Path, result: Result) -> list[Path]:
+    """Write a Result in all forms into a folder, which is made where it is missing; return the files.
+
+    The JSON is written last: where it is, all of it is.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    contents = {
+        "gradescope.json": gradescope(result),
+        "junit.xml": junit(result),
+        "result.csv": table([result]).encode(),
+        "feedback.html": feedback.page(result).encode(),
+        "result.json": results.to_json(result),
+    }
+    for name, data in contents.items():
+        with replacing(folder / name) as temporary:
+            temporary.write_bytes(data)
+    return [folder / name for name in FILES]

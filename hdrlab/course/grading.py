@@ -1,0 +1,213 @@
+"""Checking a submission: its tasks are read, the specification is run on them, and a Result comes of it.
+
+The specification runs under pytest in a process of its own, which the student's code never enters: that one
+answers from a sandbox (`subject`). How far it is kept apart is said in the Result, by the tier's name.
+"""
+
+import base64
+import hashlib
+import json
+import platform
+import tempfile
+from collections.abc import Iterator, Sequence
+from fractions import Fraction
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import scipy
+
+import hdrlab
+from hdrlab.core.steps import last
+from hdrlab.course import handouts, materials, plan, running, submission
+from hdrlab.course.plan import Homework
+from hdrlab.course.results import Check, Drawing, Result
+from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.submission import Submission
+
+PATIENCE = 10.0  # seconds for one answer
+WHOLE = 900.0  # seconds for all checks of a homework
+
+
+class Conditions(NamedTuple):
+    """Under which a submission is checked.
+
+    Attributes
+    ----------
+    tier : "strict", "container" or "practice"
+    student, secret : what the inputs are drawn from; without a student they are the public ones
+    hidden : folder with checks of the instructor's own, test_<task>.py
+    timeout : seconds for one answer
+    whole : seconds for all of it
+    draw : whether differences are drawn
+    """
+
+    tier: str = "strict"
+    student: str = ""
+    secret: str = ""
+    hidden: Path | None = None
+    timeout: float = PATIENCE
+    whole: float = WHOLE
+    draw: bool = True
+
+
+STRICT = Conditions()
+SILENT = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
+
+
+def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Result:
+    """Return what a notebook or a Python file is worth: the last of `grade_steps`.
+
+    Raises
+    ------
+    Unavailable
+        For a tier that this machine cannot give.
+    ValueError
+        For a homework without checks, or a hidden folder that is none.
+    """
+    return last(grade_steps(path, homework, conditions))
+
+
+def grade_steps(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Iterator[Result]:
+    """Yield the Result as it grows: first with all checks unanswered, then after each."""
+    tasks = [task.id for task in homework.tasks]
+    read = submission.tasks_of(path, tasks, handouts.given(homework.name))
+    yield from check_steps(read, homework, conditions)
+
+
+def check_steps(read: Submission, homework: Homework, conditions: Conditions) -> Iterator[Result]:
+    """Yield the Result of tasks that are read already, as it grows."""
+    if conditions.hidden is not None and not conditions.hidden.is_dir():
+        raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
+    tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
+    files = _files(homework, conditions.hidden)
+    with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
+        folder = Path(name)
+        job = _job(folder, read, homework, conditions)
+        lines: list[dict[str, Any]] = []
+        for line in running.run(folder, job, files, conditions.whole):
+            if "unavailable" in line:
+                raise Unavailable(line["unavailable"])
+            lines.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
+            if "ended" in line:
+                yield _result(lines, read, homework, conditions, files)
+    yield _result(lines, read, homework, conditions, files)
+
+
+def _files(homework: Homework, hidden: Path | None) -> list[Path]:
+    """Return the files with the checks of a homework, in its order, the hidden ones after each task's own."""
+    specification = materials.folder("tests") / "spec"
+    folders = [specification, *([] if hidden is None else [hidden.resolve()])]
+    files = [folder / f"test_{task.id}.py" for task in homework.tasks for folder in folders]
+    present = [file for file in files if file.is_file()]
+    if not present:
+        raise ValueError(f"expected checks for {homework.name} in {specification}, got none")
+    return present
+
+
+def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions) -> Path:
+    job = {
+        "sources": read.sources,
+        "tier": conditions.tier,
+        "seeds": _seeds(homework, conditions),
+        "timeout": conditions.timeout,
+        "draw": conditions.draw,
+        "specification": str(materials.folder("tests") / "spec"),
+        "out": str(folder / "lines"),
+    }
+    (folder / "lines").touch()
+    file = folder / "job.json"
+    file.write_text(json.dumps(job), encoding="utf8")
+    return file
+
+
+def _seeds(homework: Homework, conditions: Conditions) -> dict[str, str]:
+    """Return each task's seed, as text: it has more bits than JSON's numbers."""
+    if not conditions.student:
+        return {task.id: "0" for task in homework.tasks}
+    drawn = {t.id: plan.seed(conditions.secret, conditions.student, t.id) for t in homework.tasks}
+    return {task: str(seed) for task, seed in drawn.items()}
+
+
+def _result(
+    lines: Sequence[dict[str, Any]],
+    read: Submission,
+    homework: Homework,
+    conditions: Conditions,
+    files: Sequence[Path],
+) -> Result:
+    return Result(
+        student=conditions.student,
+        homework=homework.name,
+        title=homework.title,
+        tier=conditions.tier,
+        checks=tuple(_checks(lines, homework)),
+        misconceptions={line["recognised"]: line["sentence"] for line in lines if "recognised" in line},
+        problems=read.problems,
+        submission=read.hash,
+        specification=specification(files),
+        seed=hashlib.sha256(json.dumps(_seeds(homework, conditions)).encode()).hexdigest()[:16],
+        versions={
+            "hdrlab": hdrlab.__version__,
+            "numpy": np.__version__,
+            "scipy": scipy.__version__,
+            "python": platform.python_version(),
+        },
+    )
+
+
+def _drawn(line: dict[str, Any]) -> Drawing:
+    """Return the pictures of a difference whose arrays came as text.
+
+    They are drawn here and not beside the checks: a notebook has matplotlib at hand, which takes its time.
+    """
+    from hdrlab.show import differences
+
+    differs, task = line["differs"], Path(line["ended"].partition("::")[0]).stem.removeprefix("test_")
+    both = [np.frombuffer(base64.b64decode(differs[name]), "<f8") for name in ("expected", "came")]
+    draw = differences.image if differs["kind"] == "image" else differences.curve
+    try:
+        return Drawing(*draw(*(one.reshape(differs["shape"]) for one in both), what=task)[:3])
+    except ValueError:  # neither an image nor a curve after all
+        return Drawing()
+
+
+def specification(files: Sequence[Path]) -> str:
+    """Return a digest of the checks."""
+    digest = hashlib.sha256()
+    for file in files:
+        digest.update(file.name.encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()
+
+
+def _checks(lines: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Check]:
+    """Yield each promise: it holds where it holds for all of its cases."""
+    cases: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
+    for line in lines:
+        if "check" in line:
+            cases.setdefault((line["task"], line["name"], line["hidden"]), []).append(line)
+    ended = {line["ended"]: line for line in lines if "ended" in line and line["outcome"] == "holds"}
+    ended |= {line["ended"]: line for line in lines if "ended" in line and line["outcome"] != "holds"}
+    worth = {task.id: Fraction(str(task.points)) for task in homework.tasks}
+    shares = {
+        task: sum(Fraction(one[0]["points"]) for key, one in cases.items() if key[0] == task)
+        for task in worth
+    }
+    for (task, name, hidden), each in cases.items():
+        endings = [ended.get(one["check"], SILENT) for one in each]
+        broken = [one for one in endings if one["outcome"] != "holds"]
+        whole = Fraction(each[0]["points"]) * worth[task] / (shares[task] or 1)
+        yield Check(
+            task=task,
+            name=name,
+            promise=each[0]["promise"],
+            points=Fraction() if broken else whole,
+            max_points=whole,
+            outcome=broken[0]["outcome"] if broken else "holds",
+            message=broken[0]["message"] if broken else "",
+            hints=tuple(each[0]["hints"]),
+            drawing=broken[0].get("drawing", Drawing()) if broken else Drawing(),
+            said=(broken or endings)[0]["said"],
+            hidden=hidden,
+        )

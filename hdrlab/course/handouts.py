@@ -1,0 +1,206 @@
+"""Handouts out of one source: the prose stands in solutions/*.py, the functions stand in the library.
+
+A source is a Python file in the percent form. Its cells say by their metadata what they are:
+
+task="gsolve"   becomes the function's signature and docstring over a stub, or, in the solution, the library's
+                own source; comment lines in the cell take the place of the docstring's beginning. What the
+                function yields or returns by name is given before it, and `check("gsolve")` follows.
+about="gsolve hat"  is left out where the plan leaves one of these tasks out; a picture shows what they do
+{points}, {due}, {total}, {late}, {hand}   in the prose stand for what the plan says
+"""
+
+import json
+import shutil
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hdrlab.course import inline, materials, stubs
+from hdrlab.course.closure import Cell
+from hdrlab.course.plan import Homework, Plan, Task
+from hdrlab.course.submission import cells_of
+from hdrlab.io.files import replacing
+
+KERNEL = {
+    "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
+    "language_info": {"name": "python"},
+}
+
+
+class Handout(NamedTuple):
+    """A homework's two notebooks, as JSON holds them: to be filled in, and filled in."""
+
+    homework: str
+    assignment: dict[str, Any]
+    solution: dict[str, Any]
+
+
+def handout(source: str, homework: Homework, late: str = "") -> Handout:
+    """Return both notebooks of a homework.
+
+    Parameters
+    ----------
+    source : text of its file in solutions/
+    homework : what the plan says of it
+    late : what being late costs, in words
+    """
+    import jupytext
+
+    read = jupytext.reads(source, fmt="py:percent").cells
+    tasks = {task.id: task for task in homework.tasks}
+    blocks = inline.inlined({task.id: task.function for task in homework.tasks})
+    both: tuple[list[dict[str, Any]], list[dict[str, Any]]] = ([], [])
+    for cell in read:
+        about = (cell.metadata.get("about") or cell.metadata.get("task") or "").split()
+        if not set(about) <= set(tasks):
+            continue
+        task = tasks[about[0]] if about else None
+        if cell.cell_type == "markdown":
+            text = _filled(cell.source, homework, task, late)
+            made = [(_markdown(text), _markdown(text))]
+        elif "task" in cell.metadata and task is not None:
+            made = list(_task_cells(task, cell.source, blocks))
+        elif about:  # a picture of what the task does: nothing to see before it is written
+            made = [(_code(cell.source, tags=["raises-exception"]), _code(cell.source))]
+        else:
+            made = [(_code(cell.source, given=True), _code(cell.source, given=True))]
+        for notebook, column in zip(both, zip(*made, strict=True), strict=True):
+            notebook += column
+    return Handout(homework.name, *(_notebook(cells, homework.name) for cells in both))
+
+
+def _task_cells(
+    task: Task, opening: str, blocks: Mapping[str, inline.Block]
+) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
+    """Yield the cells of a task, each for the assignment and for the solution."""
+    for dotted in stubs.classes(task.function):
+        yield (_code(stubs.bare_class(dotted), given=True),) * 2
+    said = "\n".join(line.removeprefix("#").removeprefix(" ") for line in opening.splitlines())
+    name = f"task-{task.id}"
+    yield (
+        _code(stubs.stub(task, said.strip()), task=task.id, id=name),
+        _code(blocks[task.id].text, task=task.id, id=name),
+    )
+    yield (_code(f'check("{task.id}")', id=f"check-{task.id}"),) * 2
+
+
+def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
+    """Return prose with what the plan says in place of its names in braces."""
+    said = {
+        "points": f"{task.points:g} points" if task else "",
+        "total": f"{homework.points + sum(one.points for one in homework.by_hand):g}",
+        "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
+        "late": late,
+        "hand": "\n".join(f"- {one.title}: {one.points:g} points" for one in homework.by_hand),
+    }
+    for name, value in said.items():
+        text = text.replace(f"{{{name}}}", value)
+    return text
+
+
+def lateness(plan: Plan) -> str:
+    """Return what being late costs, in words."""
+    free, cost = plan.late.free_days, plan.late.points_a_day
+    return (
+        f"Of late days you have {free:g} in the whole course; each further one costs {cost:g} of the points."
+    )
+
+
+def _markdown(text: str) -> dict[str, Any]:
+    return {"cell_type": "markdown", "metadata": {}, "source": text}
+
+
+def _code(text: str, *, id: str = "", tags: Sequence[str] = (), **marks: Any) -> dict[str, Any]:
+    metadata = {**({"hdrlab": marks} if marks else {}), **({"tags": list(tags)} if tags else {})}
+    cell: dict[str, Any] = {
+        "cell_type": "code",
+        "execution_count": None,
+        "outputs": [],
+        "metadata": metadata,
+        "source": text,
+    }
+    return {**cell, "id": id} if id else cell
+
+
+def _notebook(cells: Sequence[dict[str, Any]], name: str) -> dict[str, Any]:
+    named = [{"id": f"{name}-{n:02d}", **cell} for n, cell in enumerate(cells, 1)]
+    return {"cells": named, "metadata": KERNEL, "nbformat": 4, "nbformat_minor": 5}
+
+
+def to_text(notebook: dict[str, Any]) -> str:
+    """Return a notebook as its file holds it: source in lines, so that a difference can be read."""
+    split = [{**cell, "source": cell["source"].splitlines(keepends=True)} for cell in notebook["cells"]]
+    return json.dumps({**notebook, "cells": split}, indent=1, ensure_ascii=False, sort_keys=True) + "\n"
+
+
+def build_steps(
+    plan: Plan, sources: Path, assignments: Path, solutions: Path | None, *, jobs: int = 2
+) -> Iterator[Path]:
+    """Write the notebooks of all homeworks, and yield each file when it is there.
+
+    Parameters
+    ----------
+    plan : what is in each homework
+    sources : folder with the prose, a file <homework>.py for each
+    assignments, solutions : folders for the notebooks; without the second none is run
+    jobs : how many solutions run at a time
+
+    Raises
+    ------
+    ValueError
+        For a homework without a source, or a task the library does not have.
+    """
+    made = []
+    for name, homework in plan.homeworks.items():
+        source = sources / f"{name}.py"
+        if not source.is_file():
+            raise ValueError(
+                f"expected the prose of {name} in {source}; it is in a clone of hdrlab, in solutions/"
+            )
+        made.append(handout(source.read_text(encoding="utf8"), homework, lateness(plan)))
+    assignments.mkdir(parents=True, exist_ok=True)
+    for one in made:
+        yield _written(assignments / f"{one.homework}.ipynb", to_text(one.assignment))
+    if solutions is not None:
+        yield from _solved(made, solutions, jobs)
+
+
+def _solved(made: Sequence[Handout], solutions: Path, jobs: int) -> Iterator[Path]:
+    """Run the solutions, and yield each file when it is written."""
+    from hdrlab.course.site import execute
+
+    solutions.mkdir(parents=True, exist_ok=True)
+    scratch = Path(tempfile.mkdtemp(prefix="hdrlab-solutions-"))
+    try:
+        sources = [_written(scratch / f"{one.homework}.ipynb", to_text(one.solution)) for one in made]
+        for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
+            ran = json.loads(done.executed.read_text(encoding="utf8"))
+            yield _written(solutions / done.source.name, to_text(_tidy(ran)))
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+
+
+def _tidy(ran: dict[str, Any]) -> dict[str, Any]:
+    """Return a notebook that was run without when it was, and by what."""
+    cells = []
+    for cell in ran["cells"]:
+        metadata = {name: value for name, value in cell["metadata"].items() if name != "execution"}
+        cells.append({**cell, "metadata": metadata, "source": "".join(cell["source"])})
+    return {**ran, "cells": cells, "metadata": KERNEL}
+
+
+def _written(file: Path, text: str) -> Path:
+    with replacing(file) as temporary:
+        temporary.write_text(text, encoding="utf8")
+    return file
+
+
+@cache
+def given(homework: str) -> tuple[Cell, ...]:
+    """Return the cells that a homework's handout gives, out of our own copy of it."""
+    file = materials.folder("assignments") / f"{homework}.ipynb"
+    if not file.is_file():
+        return ()
+    return tuple(cell for cell in cells_of(file.read_bytes(), file.name)[0] if cell.given)

@@ -1,0 +1,168 @@
+"""A function of the library with all that it needs of it, as text that runs with numpy and scipy alone.
+
+A solution is the library's own function. In a notebook it must stand by itself, and so must what it calls:
+definitions are copied as they are written, comments and all, those that are needed before those that need
+them. Two definitions of one name, from two modules, part by the module's name.
+"""
+
+import ast
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import NamedTuple
+
+from hdrlab.course.source import Key, key_of, module, statements, targets
+
+
+class Block(NamedTuple):
+    """What one function adds to a notebook: its imports, what it needs, and itself; whose it is."""
+
+    key: Key
+    imports: tuple[str, ...]
+    needs: str
+    source: str
+
+    @property
+    def text(self) -> str:
+        """All of it, as one cell."""
+        return "\n\n\n".join(filter(None, ("\n".join(self.imports), self.needs, self.source)))
+
+
+def inlined(functions: Mapping[str, str]) -> dict[str, Block]:
+    """Return a Block for each function, in order; what an earlier one has brought is not brought again.
+
+    Parameters
+    ----------
+    functions : mapping
+        The name that each is to have, and what it is: {"gsolve": "response.debevec.gsolve"}, under hdrlab.
+
+    Raises
+    ------
+    ValueError
+        For a function that the library does not have, or one that cannot stand alone.
+
+    Examples
+    --------
+    >>> block = inlined({"tent": "core.weights.hat"})["tent"]
+    >>> scope = {}
+    >>> exec(block.text, scope)
+    >>> "hdrlab" in block.text, float(scope["tent"]()[0])
+    (False, 0.0)
+    """
+    wanted = {key_of(function): name for name, function in functions.items()}
+    orders = [_in_order(key) for key in wanted]
+    names = _names(wanted, [key for order in orders for key in order])
+    done: set[str] = set()
+    return {wanted[order[-1]]: _block(order, names, done) for order in orders}
+
+
+def _block(order: Sequence[Key], names: dict[Key, str], done: set[str]) -> Block:
+    """Return the Block of an order whose last key is the function; `done` holds what is there so far."""
+    imports, texts = set(), []
+    for key in order:
+        imports |= set(_imports(key)) - done
+        text = _text(key, names)
+        if (
+            text not in done or key == order[-1]
+        ):  # what is asked for is there, though an earlier one needed it
+            texts.append(text)
+            done.add(text)
+    done |= imports
+    return Block(
+        order[-1], tuple(sorted(imports, key=_rank)), _joined(texts[:-1]), texts[-1] if texts else ""
+    )
+
+
+def _rank(line: str) -> tuple[bool, bool, str]:
+    """Return where an import stands: the standard library's first, `import` before `from`."""
+    outside = any(package in line for package in ("numpy", "scipy", "skimage"))
+    return outside, line.startswith("from"), line
+
+
+def _joined(texts: Iterable[str]) -> str:
+    """Return definitions below each other: functions and classes two lines apart, constants close."""
+    text, before = "", False
+    for one in texts:
+        long = one.lstrip("@#").startswith(("def ", "class ")) or "\ndef " in one or "\nclass " in one
+        text += ("" if not text else "\n\n\n" if long or before else "\n") + one
+        before = long
+    return text
+
+
+def _imports(key: Key) -> Iterator[str]:
+    return (one.target for one in targets(key) if isinstance(one.target, str))
+
+
+def _in_order(key: Key, seen: set[Key] | None = None) -> list[Key]:
+    """Return all that a definition needs, itself last: each after what it needs."""
+    seen = set() if seen is None else seen
+    if key in seen:
+        return []
+    seen.add(key)
+    needed = [one.target for one in targets(key) if isinstance(one.target, Key)]
+    return [*(one for target in needed for one in _in_order(target, seen)), key]
+
+
+def _names(wanted: dict[Key, str], needed: Sequence[Key]) -> dict[Key, str]:
+    """Return the name that each definition gets: its own, or with its module's where that one is taken."""
+    names = dict(wanted)
+    taken = {name: _text(key, {}) for key, name in wanted.items()}
+    local: dict[Key, set[str]] = {}  # names that would hide a definition where it is used
+    for key in needed:
+        for target, node in targets(key):
+            if isinstance(target, Key) and ast.unparse(node) != target.name:
+                hidden = {name for one in statements(key) for name in _all_bound(one)}
+                local.setdefault(target, set()).update(hidden)
+    for key in needed:
+        if key in names:
+            continue
+        source = _text(key, {})
+        home = key.module.rsplit(".", 1)[-1]
+        for name in (key.name, f"{key.name}_{home}", f"{key.name}_{key.module.replace('.', '_')}"):
+            if name not in local.get(key, ()) and taken.setdefault(name, source) == source:
+                names[key] = name
+                break
+    return names
+
+
+def _text(key: Key, names: dict[Key, str]) -> str:
+    """Return a definition as it is written, with the comment above it, under the names given."""
+    lines = module(key.module).lines
+    edits: dict[int, list[tuple[int, int, str]]] = {}
+    renamed = names.get(key, key.name)
+    for target, node in targets(key):
+        if isinstance(target, Key) and names.get(target, target.name) != ast.unparse(node):
+            if node.lineno != node.end_lineno:
+                raise ValueError(f"{key.module}, line {node.lineno}: expected the name on one line")
+            edit = (node.col_offset, node.end_col_offset or 0, names.get(target, target.name))
+            edits.setdefault(node.lineno, []).append(edit)
+    own = [within for one in statements(key) for within in ast.walk(one)]
+    for inner in own if renamed != key.name else ():
+        if isinstance(inner, ast.Name) and inner.id == key.name:
+            place = (inner.col_offset, inner.end_col_offset or 0, renamed)
+            edits.setdefault(inner.lineno, []).append(place)
+    texts = []
+    for statement in statements(key):
+        first = min([statement.lineno, *(one.lineno for one in getattr(statement, "decorator_list", ()))])
+        while first > 1 and lines[first - 2].startswith("#"):
+            first -= 1
+        written = [
+            _edited(lines[n - 1], edits.get(n, [])) for n in range(first, (statement.end_lineno or 0) + 1)
+        ]
+        at = statement.lineno - first
+        if renamed != key.name and isinstance(statement, ast.FunctionDef | ast.ClassDef):
+            written[at] = written[at].replace(f" {key.name}", f" {renamed}", 1)
+        texts.append("\n".join(written))
+    return "\n".join(texts)
+
+
+def _edited(line: str, edits: Iterable[tuple[int, int, str]]) -> str:
+    data = line.encode()  # columns are counted in bytes
+    for start, end, text in sorted(set(edits), reverse=True):
+        data = data[:start] + text.encode() + data[end:]
+    return data.decode()
+
+
+def _all_bound(node: ast.AST) -> set[str]:
+    """Return every name that is bound anywhere within a statement."""
+    inner = list(ast.walk(node))
+    stored = {one.id for one in inner if isinstance(one, ast.Name) and isinstance(one.ctx, ast.Store)}
+    return stored | {one.arg for one in inner if isinstance(one, ast.arg)}

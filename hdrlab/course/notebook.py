@@ -1,0 +1,117 @@
+"""check("gsolve") in a notebook: what of the specification a function keeps that was just written.
+
+The text of what was run is taken, with the helpers it needs, and called in a process of its own; what is in
+the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and its points are no grade yet.
+"""
+
+from collections.abc import Sequence
+from typing import Any
+
+from hdrlab.course import closure, feedback, grading, handouts, plan, results
+from hdrlab.course.closure import Cell
+from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Homework
+from hdrlab.course.results import Result
+from hdrlab.course.submission import Submission
+
+PRACTICE = Conditions(tier="practice")
+_latest: dict[str, Result] = {}  # of each task in this kernel, for the homework's bar
+
+
+class Feedback:
+    """A Result as a notebook shows it; as text, what a terminal would show."""
+
+    def __init__(self, result: Result, homework: Homework) -> None:
+        self.result, self.homework = result, homework
+
+    @property
+    def points(self) -> float:
+        """Points earned by what was checked."""
+        return self.result.score
+
+    def __repr__(self) -> str:
+        return feedback.text(self.result)
+
+    def _repr_html_(self) -> str:
+        whole = self.homework.points
+        earned = sum(_latest[task.id].score for task in self.homework.tasks if task.id in _latest)
+        below = feedback.bar(earned, whole, f"{self.homework.name} so far")
+        return f'<div class="hdrlab-check">{feedback.fragment(self.result)}{below}</div>'
+
+
+def check(name: str, *, worth: float | None = None) -> Feedback:
+    """Return what a task's function keeps of its promises, or all functions of a homework.
+
+    Parameters
+    ----------
+    name : str
+        A task, "gsolve", or a homework, "hw2".
+    worth : float, optional
+        Points of the task, where a course has a plan of its own.
+
+    Raises
+    ------
+    ValueError
+        For a name that is neither.
+    RuntimeError
+        Outside of a notebook; there, `hdrlab check FILE` does the same.
+    """
+    homework, tasks = asked(name)
+    sources, _ = closure.closed(_history(), tasks, handouts.given(homework.name))
+    missing = tuple(
+        f"{task} is not there yet: run the cell that defines it" for task in tasks if task not in sources
+    )
+    read = Submission(sources, missing, "")
+    of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
+    if worth is not None:
+        of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
+    shown = None
+    result = None
+    for result in grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE):
+        if len(tasks) > 1:
+            shown = _show(feedback.bar(*_done(result), f"{homework.name}, checking"), shown)
+    assert result is not None  # the last one always comes
+    if shown is not None:
+        _show("", shown)
+    for task in tasks:
+        _latest[task] = result._replace(checks=result.of(task), problems=())
+    return Feedback(result, homework)
+
+
+def asked(name: str) -> tuple[Homework, list[str]]:
+    """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
+    homeworks = plan.read().homeworks
+    if name in homeworks:
+        return homeworks[name], [task.id for task in homeworks[name].tasks]
+    for homework in homeworks.values():
+        if name in [task.id for task in homework.tasks]:
+            return homework, [name]
+    tasks = [task.id for homework in homeworks.values() for task in homework.tasks]
+    raise ValueError(
+        f"expected a homework ({', '.join(homeworks)}) or a task ({', '.join(tasks)}), got {name!r}"
+    )
+
+
+def _done(result: Result) -> tuple[float, float]:
+    return results.points(result.checks)
+
+
+def _history() -> Sequence[Cell]:
+    """Return what was run in this kernel, in order; what was no Python has told so already."""
+    from IPython.core.getipython import get_ipython
+
+    shell = get_ipython()
+    if shell is None:
+        raise RuntimeError("check works in a notebook; at a terminal, use: hdrlab check FILE")
+    entered: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
+    return [Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()]
+
+
+def _show(html: str, shown: Any) -> Any:
+    """Show something below the cell, or in the place of what was shown."""
+    from IPython.display import HTML, display
+
+    if shown is None:
+        return display(HTML(html), display_id=True)
+    shown.update(HTML(html))
+    return shown

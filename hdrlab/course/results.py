@@ -1,0 +1,181 @@
+"""What checking a submission comes to: promise by promise, and as JSON, which is the source of all reports.
+
+The JSON of one submission under the same checks is the same to the byte: no times of day, no durations.
+"""
+
+import base64
+import json
+from fractions import Fraction
+from typing import Any, Literal, NamedTuple
+
+VERSION = 1
+CREDIT = ("strict", "container")  # tiers that count
+Outcome = Literal["holds", "fails", "no answer"]
+
+
+class Drawing(NamedTuple):
+    """Pictures of a difference: bytes of WebP, what they show in words, and what stands below them."""
+
+    frames: tuple[bytes, ...] = ()
+    alts: tuple[str, ...] = ()
+    captions: tuple[str, ...] = ()
+
+
+class Check(NamedTuple):
+    """One promise of a task, and whether it holds.
+
+    Attributes
+    ----------
+    task : id of the task
+    name : of the test function
+    promise : the same in words
+    points, max_points : earned, and to be earned
+    outcome : "holds", "fails", or "no answer" where the function raised, took too long or is missing
+    message : why not, in words
+    hints : from vague to plain
+    drawing : expected, came, difference
+    said : what the function printed meanwhile
+    hidden : whether it is one of the instructor's own, of which a student sees the outcome alone
+    """
+
+    task: str
+    name: str
+    promise: str
+    points: Fraction
+    max_points: Fraction
+    outcome: Outcome
+    message: str = ""
+    hints: tuple[str, ...] = ()
+    drawing: Drawing = Drawing()
+    said: str = ""
+    hidden: bool = False
+
+
+class Result(NamedTuple):
+    """A submission's checks, in the order of the homework, and what one must know to run them again."""
+
+    student: str
+    homework: str
+    title: str
+    tier: str
+    checks: tuple[Check, ...]
+    misconceptions: dict[str, str]
+    problems: tuple[str, ...]
+    submission: str
+    specification: str
+    seed: str
+    versions: dict[str, str]
+
+    @property
+    def score(self) -> float:
+        """Points earned."""
+        return _number(sum((one.points for one in self.checks), Fraction()))
+
+    @property
+    def max_score(self) -> float:
+        """Points to be earned."""
+        return _number(sum((one.max_points for one in self.checks), Fraction()))
+
+    @property
+    def for_credit(self) -> bool:
+        """Whether the tier keeps a hostile submission from its own score."""
+        return self.tier in CREDIT
+
+    def of(self, task: str) -> tuple[Check, ...]:
+        """Return the checks of one task."""
+        return tuple(one for one in self.checks if one.task == task)
+
+    @property
+    def tasks(self) -> tuple[str, ...]:
+        """The ids of the tasks, in order."""
+        return tuple(dict.fromkeys(one.task for one in self.checks))
+
+
+def points(checks: tuple[Check, ...]) -> tuple[float, float]:
+    """Return what some checks earned, and what they could."""
+    earned = sum((one.points for one in checks), Fraction())
+    return _number(earned), _number(sum((one.max_points for one in checks), Fraction()))
+
+
+def _number(value: Fraction) -> float:
+    return round(float(value), 4)
+
+
+def to_json(result: Result) -> bytes:
+    """Return a Result as JSON: the score, the tier and every check; pictures as base64.
+
+    Examples
+    --------
+    >>> result = Result("ada", "hw2", "The response curve", "strict", (), {}, (), "", "", "", {})
+    >>> from_json(to_json(result)) == result
+    True
+    """
+    whole = {
+        "version": VERSION,
+        "student": result.student,
+        "homework": result.homework,
+        "title": result.title,
+        "tier": result.tier,
+        "for_credit": result.for_credit,
+        "score": result.score,
+        "max_score": result.max_score,
+        "problems": list(result.problems),
+        "misconceptions": result.misconceptions,
+        "checks": [_check_to_json(one) for one in result.checks],
+        "submission": result.submission,
+        "specification": result.specification,
+        "seed": result.seed,
+        "versions": result.versions,
+    }
+    return (json.dumps(whole, indent=1, ensure_ascii=True) + "\n").encode()
+
+
+def _check_to_json(check: Check) -> dict[str, Any]:
+    exact = {"points": str(check.points), "max_points": str(check.max_points)}
+    return {
+        **check._asdict(),
+        "points": _number(check.points),
+        "max_points": _number(check.max_points),
+        "exact": exact,
+        "hints": list(check.hints),
+        "drawing": drawing_to_json(check.drawing),
+    }
+
+
+def drawing_to_json(drawing: Drawing) -> list[dict[str, str]]:
+    """Return pictures as JSON holds them."""
+    return [
+        {"webp": base64.b64encode(frame).decode(), "alt": alt, "caption": caption}
+        for frame, alt, caption in zip(*drawing, strict=True)
+    ]
+
+
+def drawing_from_json(read: list[dict[str, str]]) -> Drawing:
+    """Return the pictures that `drawing_to_json` wrote."""
+    frames = tuple(base64.b64decode(one["webp"]) for one in read)
+    return Drawing(frames, tuple(one["alt"] for one in read), tuple(one["caption"] for one in read))
+
+
+def from_json(data: bytes) -> Result:
+    """Return the Result that `to_json` wrote.
+
+    Raises
+    ------
+    ValueError
+        For anything else, and for a version of another hdrlab.
+    """
+    read = json.loads(data)
+    if not isinstance(read, dict) or read.get("version") != VERSION:
+        raise ValueError(f"expected a result of version {VERSION}, written by hdrlab grade")
+    try:
+        checks = tuple(_check_from_json(one) for one in read["checks"])
+        rest = {name: read[name] for name in Result._fields if name not in ("checks", "problems")}
+        return Result(checks=checks, problems=tuple(read["problems"]), **rest)
+    except (KeyError, TypeError) as error:
+        raise ValueError(f"expected a result written by hdrlab grade, {error!r} is wrong") from None
+
+
+def _check_from_json(read: dict[str, Any]) -> Check:
+    own = {name: read[name] for name in Check._fields}
+    own |= {name: Fraction(read["exact"][name]) for name in ("points", "max_points")}
+    return Check(**{**own, "hints": tuple(read["hints"]), "drawing": drawing_from_json(read["drawing"])})

@@ -1,0 +1,94 @@
+"""What a student gets of a function of the library: its signature, its docstring, its answers' classes."""
+
+import ast
+import re
+from functools import cache
+
+from hdrlab.course import source
+from hdrlab.course.plan import Task
+
+SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,}\n)")  # of a docstring
+
+
+@cache
+def classes(function: str) -> tuple[str, ...]:
+    """Return the classes of the library that a function says it returns or yields, dotted under hdrlab.
+
+    Examples
+    --------
+    >>> classes("response.debevec.gsolve")
+    ('response.debevec.Solution',)
+    """
+    key = source.key_of(function)
+    returns = definition(function).returns
+    keys = source.definitions_in(key.module, returns) if returns is not None else []
+    found = [one for one in keys if isinstance(source.statements(one)[-1], ast.ClassDef)]
+    return tuple(f"{one.module}.{one.name}".partition(".")[2] for one in found)
+
+
+def definition(function: str) -> ast.FunctionDef:
+    """Return the library's definition of a function, or raise a ValueError."""
+    node = source.statements(source.key_of(function))[-1]
+    if not isinstance(node, ast.FunctionDef):
+        raise ValueError(f"expected a function of the library, got {function}")
+    return node
+
+
+def stub(task: Task, opening: str = "") -> str:
+    """Return a function's signature and docstring, and a body that says that it is not written yet.
+
+    Examples
+    --------
+    >>> print(stub(Task("tent", "core.weights.hat", 10), "Return the hat weight."))
+    def tent(n=256):
+        \"\"\"Return the hat weight.\"\"\"
+        raise NotImplementedError("tent is yours to write")
+    """
+    node = definition(task.function)
+    arguments = ast.unparse(_bare(node.args))
+    beginning, *sections = SECTION.split(ast.get_docstring(node) or "")
+    kept = [one for one in sections if not one.startswith("Examples")]
+    text = "\n\n".join([opening or beginning, *kept]).rstrip()
+    lines = text.splitlines()
+    body = "\n".join(f"    {line}".rstrip() for line in lines[1:])
+    doc = f'    """{lines[0]}"""' if len(lines) == 1 else f'    """{lines[0]}\n{body}\n    """'
+    return f'def {task.id}({arguments}):\n{doc}\n    raise NotImplementedError("{task.id} is yours to write")'
+
+
+def bare_class(dotted: str) -> str:
+    """Return a class of states as a student meets it: its fields are arrays, or plain numbers.
+
+    Examples
+    --------
+    >>> print(bare_class("tonemap.durand.Layers"))
+    from typing import NamedTuple
+    <BLANKLINE>
+    <BLANKLINE>
+    class Layers(NamedTuple):
+        \"\"\"The two layers of lL = base + detail, each (H, W), decades.\"\"\"
+    <BLANKLINE>
+        base: np.ndarray
+        detail: np.ndarray
+    """
+    node = source.statements(source.key_of(dotted))[-1]
+    assert isinstance(node, ast.ClassDef)
+    fields = [one for one in node.body if isinstance(one, ast.AnnAssign)]
+    lines = (ast.get_docstring(node) or "").splitlines()
+    body = [f'"""{lines[0]}"""'] if len(lines) == 1 else [f'"""{lines[0]}', *lines[1:], '"""']
+    typed = [f"{ast.unparse(one.target)}: {_plain_type(one.annotation)}" for one in fields]
+    inside = "\n".join(f"    {line}".rstrip() for line in [*body, "", *typed])
+    return f"from typing import NamedTuple\n\n\nclass {node.name}(NamedTuple):\n{inside}"
+
+
+def _plain_type(annotation: ast.expr) -> str:
+    return written if (written := ast.unparse(annotation)) in ("int", "float") else "np.ndarray"
+
+
+def _bare(arguments: ast.arguments) -> ast.arguments:
+    """Return arguments without their types: names and defaults."""
+    copy = ast.parse(f"def f({ast.unparse(arguments)}): ...").body[0]
+    assert isinstance(copy, ast.FunctionDef)
+    for one in ast.walk(copy.args):
+        if isinstance(one, ast.arg):
+            one.annotation = None
+    return copy.args

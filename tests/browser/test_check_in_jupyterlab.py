@@ -1,0 +1,86 @@
+"""A student at work: a handout in JupyterLab, a cell that is edited, a check that goes from red to green."""
+
+import shutil
+
+import pytest
+
+from hdrlab.course import materials
+
+WRONG = """def hat(n=256):
+z = np.arange(n)
+return np.abs(z - n // 2) / (n // 2)"""
+RIGHT = """def hat(n=256):
+z = np.arange(n)
+return np.minimum(z, n - 1 - z) / ((n - 2) // 2)"""
+AT = "[...window.jupyterapp.shell.currentWidget.content.widgets]"
+ANSWER = 60_000  # ms until a check has answered: a limit for errors
+
+
+@pytest.fixture(scope="module")
+def handout(lab):
+    """The name of a student's copy of a handout."""
+    shutil.copy(materials.folder("assignments") / "hw2.ipynb", lab.folder / "mine.ipynb")
+    return "mine.ipynb"
+
+
+def cell(page, name):
+    """Return the cell with this id, as a locator."""
+    index = page.evaluate(f"(name) => {AT}.findIndex((cell) => cell.model.id === name)", name)
+    assert index >= 0, f"no cell {name}"
+    return page.locator(".jp-Notebook .jp-Cell").nth(index)
+
+
+def write(page, name, text):
+    """Put text into a cell as a student does, by the keyboard, and run it and the check below it.
+
+    The editor indents what follows a colon by itself, so the lines come without their indents.
+    """
+    cell(page, name).locator(".cm-content").click()
+    page.keyboard.press("Control+a")
+    page.keyboard.press("Delete")
+    for k, line in enumerate(text.splitlines()):
+        if k:
+            page.keyboard.press("Enter")
+        page.keyboard.insert_text(line)
+    for _ in range(2):
+        page.keyboard.press("Shift+Enter")
+
+
+def answered(page, name, word):
+    """Return the check's output when it says a word."""
+    output = cell(page, f"check-{name}").locator(".hdrlab-check")
+    output.get_by_text(word).first.wait_for(timeout=ANSWER)
+    return output
+
+
+def test_a_check_goes_from_red_to_green_as_a_cell_is_edited(lab, page, axe, handout):
+    try:
+        lab.open(page, handout)
+        page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
+        blank = answered(page, "hat", "no answer")
+        assert "hat is yours to write" in blank.inner_text() and "0 of 10 points" in blank.inner_text()
+        lab.until_done(page)
+
+        write(page, "task-hat", WRONG)
+        red = answered(page, "hat", "It looks as if")
+        assert "✗ fails" in red.inner_text()
+        picture = red.locator("img").first
+        assert "they differ by" in picture.get_attribute("alt")
+        assert picture.evaluate("(image) => image.complete && image.naturalWidth") > 100
+        hint = red.locator("details", has_text="A hint").first
+        second = hint.locator("details", has_text="Another hint").first
+        assert not second.is_visible()
+        hint.locator("summary").first.click()
+        assert second.is_visible()
+        page.evaluate(
+            "() => document.querySelectorAll('.hdrlab-check').forEach((one, k) => { one.id = `c${k}`; })"
+        )
+        assert axe(page, f"#{red.get_attribute('id')}") == []
+
+        write(page, "task-hat", RIGHT)
+        green = answered(page, "hat", "10 of 10 points")
+        assert "✗" not in green.inner_text() and green.inner_text().count("✓ holds") >= 3
+        assert "hw2 so far: 10 of 100 points" in green.inner_text()
+        assert [url for url in page.requests if not url.startswith((lab.address, "data:", "blob:"))] == []
+    finally:
+        lab.close()

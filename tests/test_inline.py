@@ -1,0 +1,68 @@
+"""Functions of the library, with all that they need of it, as text."""
+
+import ast
+
+import numpy as np
+import pytest
+
+from hdrlab.core import weights
+from hdrlab.course import inline, names, plan
+from hdrlab.response import debevec
+
+TASKS = [task for homework in plan.read().homeworks.values() for task in homework.tasks]
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_every_task_stands_alone_with_numpy_and_scipy(task):
+    block = inline.inlined({task.id: task.function})[task.id]
+    scope = {}
+    exec(block.text, scope)
+    assert callable(scope[task.id])
+    roots = set()
+    for node in ast.walk(ast.parse(block.text)):
+        if isinstance(node, ast.Import):
+            roots |= {alias.name.split(".")[0] for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            roots.add(node.module.split(".")[0])
+    assert not roots & {"hdrlab", "skimage", "matplotlib", "PIL"}
+    defined = {name for name in scope if not name.startswith("__")}
+    unknown = [use.node.id for node in ast.parse(block.text).body for use in names.free(node)]
+    assert not set(unknown) - defined - set(dir(__builtins__)) - set(__builtins__)
+
+
+def test_what_is_copied_computes_what_the_library_does():
+    scope = {}
+    exec(inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text, scope)
+    Z, B = np.random.default_rng(0).integers(0, 256, (80, 4)), np.log([1, 2, 4, 8])
+    for ours, copied in zip(
+        debevec.gsolve(Z, B, 10, weights.hat()), scope["gsolve"](Z, B, 10, weights.hat()), strict=True
+    ):
+        assert np.array_equal(ours, copied)
+
+
+def test_what_one_function_brings_is_not_brought_again():
+    both = inline.inlined({"hat": "core.weights.hat", "gsolve": "response.debevec.gsolve"})
+    assert not set(both["hat"].imports) & set(both["gsolve"].imports)
+    alone = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"]
+    assert len(both["gsolve"].text) < len(alone.text)
+
+
+def test_two_definitions_of_one_name_part_by_their_modules():
+    """Both operators are called tonemap, and each has a Float of its own or shares it."""
+    both = inline.inlined({"photo": "tonemap.reinhard.tonemap", "slow": "tonemap.chiu.tonemap"})
+    scope = {}
+    exec("\n\n".join(block.text for block in both.values()), scope)
+    L = np.geomspace(0.01, 100, 3000).reshape(50, 60).astype(np.float32)
+    assert not np.allclose(scope["photo"](L), scope["slow"](L))
+
+
+def test_a_name_in_a_string_stays_and_a_comment_too():
+    block = inline.inlined({"tent": "core.weights.hat"})["tent"]
+    assert "def tent(" in block.source and ">>> hat()" in block.source
+
+
+def test_a_function_that_is_not_there_is_an_error():
+    with pytest.raises(ValueError, match="expected a function of the library"):
+        inline.inlined({"x": "response.debevec.nothing"})
+    with pytest.raises(ValueError, match="expected a module of the library"):
+        inline.inlined({"x": "response.nothing.x"})

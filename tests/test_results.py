@@ -1,0 +1,141 @@
+"""Results in every form, of a submission that means harm."""
+
+import csv
+import io
+import json
+from fractions import Fraction
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from hdrlab.course import feedback, gradebook, results
+from hdrlab.course.results import Check, Drawing, Result
+from hdrlab.io import web
+
+HOSTILE = '<script>alert("x")</script><img src=x onerror=alert(1)>\x1b[31m\x00 =cmd|"/c calc"!A1 ]]> & \ud7ff'
+CHECK = Check("gsolve", "test_a", "It holds", Fraction(1, 3), Fraction(1, 3), "holds")
+
+
+@pytest.fixture
+def hostile():
+    """A Result in which everything that a student can write is hostile."""
+    picture = Drawing((web.webp(np.zeros((4, 4), np.uint8)),), (HOSTILE,), (HOSTILE,))
+    bad = Check(
+        "gsolve",
+        "test_b",
+        "It does not",
+        Fraction(),
+        Fraction(2, 3),
+        "fails",
+        HOSTILE,
+        (HOSTILE,) * 3,
+        picture,
+        HOSTILE,
+    )
+    hidden = bad._replace(name="test_c", promise="The hidden one", hidden=True, message="the secret", said="")
+    return Result(
+        student=HOSTILE,
+        homework="hw2",
+        title="The response curve",
+        tier="strict",
+        checks=(CHECK, bad, hidden._replace(drawing=Drawing(), hints=())),
+        misconceptions={"gsolve": HOSTILE},
+        problems=(HOSTILE,),
+        submission="0" * 64,
+        specification="1" * 64,
+        seed="2" * 16,
+        versions={"hdrlab": "1"},
+    )
+
+
+def test_the_json_is_read_again_as_it_was(hostile):
+    data = results.to_json(hostile)
+    assert results.from_json(data) == hostile
+    read = json.loads(data)
+    assert {"score", "max_score", "tier", "checks"} <= set(read) and read["version"] == results.VERSION
+    assert data.isascii()
+
+
+@pytest.mark.parametrize("data", [b"{}", b"[]", b'{"version": 99}', b'{"version": 1}', b"no json"])
+def test_anything_else_is_no_result(data):
+    with pytest.raises(ValueError):
+        results.from_json(data)
+
+
+def test_thirds_of_a_point_sum_to_a_point():
+    three = tuple(CHECK._replace(name=str(k)) for k in range(3))
+    assert results.points(three) == (1.0, 1.0)
+
+
+def test_a_practice_score_is_never_for_credit(hostile):
+    assert hostile.for_credit and not hostile._replace(tier="practice").for_credit
+    assert hostile._replace(tier="container").for_credit
+    practice = hostile._replace(tier="practice")
+    assert "not for credit" in feedback.page(practice)
+    assert "not for credit" in gradebook.gradescope(practice).decode()
+    assert json.loads(results.to_json(practice))["for_credit"] is False
+
+
+def test_gradescope_gets_what_its_schema_asks(hostile):
+    """The keys, types and words of its specification of results.json."""
+    read = json.loads(gradebook.gradescope(hostile))
+    assert {"score", "output", "visibility", "stdout_visibility", "tests"} <= set(read)
+    visibilities = {"hidden", "after_due_date", "after_published", "visible"}
+    assert read["visibility"] in visibilities and read["stdout_visibility"] in visibilities
+    assert read["output_format"] in {"text", "html", "simple_format", "md", "ansi"}
+    assert 0 <= read["score"] <= sum(one["max_score"] for one in read["tests"])
+    for one in read["tests"]:
+        assert isinstance(one["score"], float) and isinstance(one["max_score"], float)
+        assert one["status"] in {"passed", "failed"} and one["visibility"] in visibilities
+        assert (
+            isinstance(one["name"], str) and isinstance(one["output"], str) and one["output_format"] == "text"
+        )
+    assert sum(one["score"] for one in read["tests"]) == pytest.approx(read["score"])
+    assert "the secret" not in json.dumps(read)
+
+
+def test_junit_is_xml_whatever_was_written(hostile):
+    root = ElementTree.fromstring(gradebook.junit(hostile))
+    assert root.get("tests") == "3" and root.get("failures") == "2"
+    failures = [one.text or "" for one in root.iter("failure")]
+    assert "<script>" in failures[0] and "\x00" not in failures[0] and failures[1] == ""
+
+
+def test_no_cell_of_the_table_is_a_formula(hostile):
+    table = gradebook.table(
+        [hostile._replace(student='=HYPERLINK("http://x")'), hostile._replace(student="ada")]
+    )
+    rows = list(csv.DictReader(io.StringIO(table)))
+    assert [row["score"] for row in rows] == ["0.3333", "0.3333"] and "gsolve" in rows[0]
+    assert not any(cell.startswith(("=", "+", "@", "\t")) for row in rows for cell in row.values())
+
+
+def test_a_page_holds_hostile_text_as_text(hostile):
+    page = feedback.page(hostile)
+    assert "<script" not in page and "<img src=x" not in page and "default-src 'none'" in page
+    assert "&lt;script&gt;" in page and "the secret" not in page
+    assert "the secret" in feedback.page(hostile, private=True)
+
+
+def test_the_hints_are_three_steps_each_within_the_one_before(hostile):
+    check = hostile.checks[1]._replace(hints=("first", "second", "third"))
+    page = feedback.fragment(hostile._replace(checks=(check,)))
+    assert (
+        page.index("first") < page.index("Another hint") < page.index("second") < page.index("The last hint")
+    )
+    assert page.count("<details") == page.count("</details>")
+
+
+def test_all_forms_are_written_whole_into_one_folder(hostile, tmp_path):
+    files = gradebook.write_results(tmp_path / "out", hostile)
+    assert sorted(one.name for one in (tmp_path / "out").iterdir()) == sorted(gradebook.FILES)
+    assert all(one.stat().st_size for one in files)
+
+
+def test_a_terminal_sees_hints_only_when_it_asks(hostile):
+    check = hostile.checks[1]._replace(hints=("first", "second", "third"))
+    result = hostile._replace(checks=(check,))
+    assert "first" not in feedback.text(result)
+    assert "first" in feedback.text(result, hints=1) and "second" not in feedback.text(result, hints=1)
+    assert "third" in feedback.text(result, hints=3)

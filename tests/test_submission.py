@@ -1,0 +1,195 @@
+"""Reading what a student handed in: text that is parsed, and never run."""
+
+import ast
+import json
+
+import numpy as np
+import pytest
+
+from hdrlab.course import names, submission
+from hdrlab.course.closure import Cell
+
+TASKS = ["gsolve", "merge"]
+
+
+def notebook(*cells, **more):
+    """Return a notebook as text; a cell is its source, (source, task), or (source, None) for a given one."""
+    listed = []
+    for cell in cells:
+        source, task = cell if isinstance(cell, tuple) else (cell, "")
+        marks = {"given": True} if task is None else {"task": task} if task else {}
+        listed.append({"cell_type": "code", "source": source, "metadata": {"hdrlab": marks}})
+    return json.dumps({"cells": listed, "metadata": {}, "nbformat": 4, **more})
+
+
+@pytest.fixture
+def read(tmp_path):
+    """read(text) -> the Submission of a file that holds it."""
+
+    def read(text, name="hw.ipynb", given=()):
+        file = tmp_path / name
+        file.write_bytes(text if isinstance(text, bytes) else text.encode())
+        return submission.tasks_of(file, TASKS, given)
+
+    return read
+
+
+def run(source, name="gsolve"):
+    scope = {}
+    exec(source, scope)
+    return scope[name]
+
+
+def test_a_function_comes_with_what_it_needs_of_other_cells_and_with_nothing_else(read):
+    found = read(
+        notebook(
+            "import numpy as np\nfrom hdrlab.capture import scenes\nroom = scenes.room()",
+            ("def gsolve(Z):\n    return helper(Z) + K", "gsolve"),
+            "def helper(Z):\n    return np.sum(Z) * T[0]\nT = np.zeros(3)\nT[0] = 5",
+            "K = 4\nprint(gsolve([1]))\nraise SystemExit",
+        )
+    )
+    source = found.sources["gsolve"]
+    assert run(source)([1, 2]) == 19
+    assert "room" not in source and "print" not in source and "SystemExit" not in source
+
+
+def test_reordered_cells_are_put_in_the_order_in_which_they_run(read):
+    found = read(
+        notebook(
+            "def gsolve(x=WIDTH):\n    return x", "WIDTH = double(4)", "def double(x):\n    return 2 * x"
+        )
+    )
+    assert run(found.sources["gsolve"])() == 8
+
+
+def test_a_name_that_is_local_to_a_function_brings_nothing_along(read):
+    found = read(
+        notebook(
+            "Z = load('photographs')", "def gsolve(Z):\n    E = [z for z in Z]\n    return E", "E = merge()"
+        )
+    )
+    assert "load" not in found.sources["gsolve"] and "merge" not in found.sources["gsolve"]
+
+
+def test_a_task_is_found_by_its_cell_and_else_by_its_name(read):
+    found = read(
+        notebook(
+            "def gsolve():\n    return 1",
+            ("def gsolve():\n    return 2", "gsolve"),
+            "def merge():\n    return 3",
+        )
+    )
+    assert run(found.sources["gsolve"])() == 2 and run(found.sources["merge"], "merge")() == 3
+    assert any("several cells" in problem for problem in found.problems)
+
+
+def test_what_the_sheet_gives_is_taken_from_our_copy(read):
+    given = [Cell("def given():\n    return 'ours'", given=True)]
+    found = read(
+        notebook(("def given():\n    return 'theirs'", None), "def gsolve():\n    return given()"),
+        given=given,
+    )
+    assert run(found.sources["gsolve"])() == "ours"
+
+
+def test_a_helper_of_the_students_own_may_have_a_given_name(read):
+    given = [Cell("def given():\n    return 'ours'", given=True)]
+    found = read(notebook("def given():\n    return 'own'\ndef gsolve():\n    return given()"), given=given)
+    assert run(found.sources["gsolve"])() == "own"
+
+
+def test_a_broken_cell_costs_what_is_in_it_alone(read):
+    found = read(notebook(("def gsolve(:\n    pass", "gsolve"), "def merge():\n    return 1"))
+    assert set(found.sources) == {"merge"}
+    assert any("cell 1, which holds gsolve, is no Python, line 1" in problem for problem in found.problems)
+    assert any("gsolve was not found" in problem for problem in found.problems)
+
+
+@pytest.mark.parametrize(
+    "cell",
+    [
+        "%matplotlib inline\nimport numpy as np",
+        "!pip install something\nimport numpy as np",
+        "%%time\nimport numpy as np",
+        "import numpy as np\nnp.mean?",
+        "import numpy as np; x = 1",
+        "try:\n    import numpy as np\nexcept ImportError:\n    np = None",
+    ],
+)
+def test_what_only_a_notebook_understands_is_no_error(read, cell):
+    found = read(notebook(cell, "def gsolve():\n    return np.arange(3)"))
+    assert (
+        run(found.sources["gsolve"])().tolist() == [0, 1, 2]
+        and found.problems == read(notebook("def gsolve():\n    return 1")).problems
+    )
+
+
+@pytest.mark.parametrize(
+    ("data", "said"),
+    [
+        (b"", "is empty"),
+        (b"\xff\xfe\x00binary", "neither a notebook nor Python text"),
+        (b'{"cells": [', "cut short or damaged"),
+        (b'{"cells": 7}', "has no cells"),
+        (b"[" * 100_000, "not a notebook"),
+        (b'{"cells": ' + b"[" * 100_000, "cut short or damaged"),
+        (b'{"cells": [{"cell_type": "code", "source": 7, "metadata": []}, 5, null]}', "gsolve was not found"),
+        (
+            b'{"cells": [{"cell_type": "code", "source": ["x = ", 7, "1"], "metadata": {"hdrlab": 3}}]}',
+            "not found",
+        ),
+    ],
+)
+def test_a_file_that_is_no_notebook_is_told_in_words(read, data, said):
+    found = read(data)
+    assert not found.sources and any(said in problem for problem in found.problems)
+
+
+def test_a_folder_and_a_missing_file_are_told_in_words(tmp_path):
+    for path in (tmp_path, tmp_path / "missing.ipynb"):
+        found = submission.tasks_of(path, TASKS)
+        assert not found.sources and "is not a file" in found.problems[0]
+
+
+def test_deeply_nested_code_costs_its_cell_alone(read):
+    found = read(
+        notebook("x = " + "(" * 5000 + ")" * 5000, "y = " + "-" * 50_000 + "1", "def gsolve():\n    return 1")
+    )
+    assert set(found.sources) == {"gsolve"}
+
+
+def test_a_python_file_is_read_as_well_with_cells_and_without(read):
+    plain = "import math\ndef gsolve():\n    return math.pi\n"
+    assert run(read(plain, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
+    percent = '# %% [markdown]\n# gsolve\n# %%\nimport math\n# %% task="gsolve"\n' + plain.partition("\n")[2]
+    assert run(read(percent, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
+
+
+def test_nothing_of_the_file_is_run(read, tmp_path):
+    mark = tmp_path / "mark"
+    read(notebook(f"open({str(mark)!r}, 'w')\nx = open({str(mark)!r}, 'w')\ndef gsolve(): return x"))
+    assert not mark.exists()
+
+
+def test_the_same_file_has_the_same_hash_and_another_another(read):
+    first, again, other = (read(notebook(f"x = {n}")).hash for n in (1, 1, 2))
+    assert first == again != other
+
+
+@pytest.mark.parametrize(
+    ("code", "free"),
+    [
+        ("def f(x):\n    global y\n    y = x\n    return y", ["y"]),
+        ("def f():\n    for i in a:\n        b = i\n    return b", ["a"]),
+        ("def f(x):\n    def g():\n        return x + h\n    return g", ["h"]),
+        ("f = lambda x, y=a: x + y", ["a"]),
+        ("def f():\n    try:\n        pass\n    except E as e:\n        raise e", ["E"]),
+        ("def f(x):\n    match x:\n        case [a, *b]:\n            return a, b, c", ["c"]),
+        ("def f(xs):\n    return [y := x for x in xs], y", []),
+        ("@a\ndef f(x: b) -> c:\n    return f(x)", ["a", "b", "c", "f"]),
+        ("class C(B):\n    x = a", ["B", "a"]),
+    ],
+)
+def test_the_names_that_a_piece_takes_from_outside_are_found(code, free):
+    assert [use.node.id for use in names.free(ast.parse(code).body[0])] == free
