@@ -2,6 +2,7 @@
 
 import asyncio
 import re
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import closing
 from datetime import UTC, datetime, timedelta
 from http.cookies import SimpleCookie
@@ -103,7 +104,8 @@ class Browser:
             **{"query_string": query.encode(), "client": ("192.0.2.1", 5000), "root_path": ""},
             "headers": [(name.encode(), value.encode("latin-1")) for name, value in sent.items()],
         }
-        answer = asyncio.run(asked(self.application, scope, pieces))
+        with ThreadPoolExecutor(1) as apart:  # a browser test before may have left a loop running in this one
+            answer = apart.submit(asyncio.run, asked(self.application, scope, pieces)).result()
         for made in SimpleCookie(answer.headers.get("set-cookie", "")).values():
             self.cookies[made.key] = made.value
         return answer

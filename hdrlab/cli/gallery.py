@@ -26,7 +26,7 @@ def gallery() -> None:
 @click.option("--marks", type=click.IntRange(1, 20), default=3, help="Votes on a ballot, at most.")
 def init(folder: Path, title: str, closes: str, marks: int) -> None:
     """Make a gallery in FOLDER."""
-    from hdrlab.course.gallery import app, store
+    from hdrlab.course.gallery import store
     from hdrlab.course.wording import plain
 
     try:
@@ -36,7 +36,7 @@ def init(folder: Path, title: str, closes: str, marks: int) -> None:
             f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
         ) from None
     store.create(folder, plain(title, 80), end, marks)
-    click.echo(f"{folder}: a gallery, open until {app.said(end)}, {marks} votes on a ballot")
+    click.echo(f"{folder}: a gallery, open until {store.said(end)}, {marks} votes on a ballot")
 
 
 @gallery.command()

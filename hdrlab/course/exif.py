@@ -28,7 +28,7 @@ class Entry(NamedTuple):
 
     tag: int
     type: int
-    count: int
+    length: int
     value: bytes
     at: int
 

@@ -4,7 +4,7 @@ store, ballots, bearers   the database: what hangs, who marked what, who may
 writer                    ballots that arrive together are written together, and then acknowledged
 counting                  from ballots to places
 collect, pictures         what students hand in, decoded and encoded again
-guard, app, serve         the pages, and what stands before them
+guard, front, app, serve  the pages, and what stands before them
 export                    links for the class, columns for the gradebook
 
 What somebody may try, what stops it, and the promise in tests/test_gallery_attacks.py that it does:

@@ -5,99 +5,37 @@ and voters come by the command line. Addresses hold no state, pages no inline sc
 """
 
 import sqlite3
-import time
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from contextlib import asynccontextmanager
 from datetime import datetime
-from functools import lru_cache
-from pathlib import Path
 from typing import Any
-from urllib.parse import urlsplit
 
-import jinja2
 from markupsafe import Markup
 from starlette.applications import Starlette
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
-from starlette.responses import HTMLResponse, JSONResponse, RedirectResponse, Response
+from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 from starlette.types import ASGIApp
 
 from hdrlab.course.gallery import ballots, bearers, counting, pictures, store, tokens
-from hdrlab.course.gallery.guard import Guard, Rate, Rates, Refusal, form, same_origin
-from hdrlab.course.gallery.writer import Writer
+from hdrlab.course.gallery.front import HERE, HINTS, Front
+from hdrlab.course.gallery.guard import Guard, Rate, Refusal, form, same_origin
 
-HERE = Path(__file__).parent
 STATIC = {
     "icon.svg": "image/svg+xml",
     "gallery.css": "text/css",
     "wall.js": "text/javascript",
     "look.js": "text/javascript",
 }
-KEPT_FILES, KEPT_CARDS = 400, 4000  # in memory: what a class looks at again and again
 KEPT = 60 * 60 * 24 * 180  # seconds for which a browser stays signed in
 FOREVER = "private, max-age=31536000, immutable"
-REQUESTS = Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
 BALLOTS = Rate(30, 1)  # of a voter
-FAILURES = Rate(30, 0.5)  # of an address, with links or sessions that are none
 SPENT = "This link has been used. It works once; ask your course for a new one if you lost your way in."
-HINTS = {404: "There is nothing here.", 405: "This page does not take that."}
 
 
-class Gallery:
-    """The pages, over one folder's gallery at one address."""
-
-    def __init__(self, folder: str | Path, address: str, clock: Callable[[], float] = time.time) -> None:
-        parts = urlsplit(address)
-        if parts.scheme not in ("http", "https") or not parts.netloc or parts.path not in ("", "/"):
-            raise ValueError(f"expected an address such as https://vote.example.edu, got {address!r}")
-        self.host, self.secure = parts.netloc, parts.scheme == "https"
-        self.origin = f"{parts.scheme}://{parts.netloc}"
-        self.cookie = "__Host-gallery" if self.secure else "gallery"
-        self.folder, self.clock, self.rates = Path(folder), clock, Rates()
-        self.db, self.writer = store.connect(folder), Writer(folder)
-        loader = jinja2.FileSystemLoader(HERE / "templates")
-        self.pages = jinja2.Environment(
-            loader=loader,
-            autoescape=True,
-            undefined=jinja2.StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-
-        self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
-        self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
-
-    def close(self) -> None:
-        """Write what waits, and let go of the database."""
-        self.writer.close()
-        self.db.close()
-
-    def page(self, name: str, status: int = 200, **words: Any) -> HTMLResponse:
-        """Return a page."""
-        set_up = store.settings(self.db)
-        known = {"title": set_up.title, "open": set_up.is_open(self.clock()), "closes": said(set_up.closes)}
-        return HTMLResponse(self.pages.get_template(name).render(known | words), status)
-
-    def voter(self, request: Request) -> tuple[store.Voter, tokens.Shown]:
-        """Return who asks, or raise a Refusal."""
-        text = request.cookies.get(self.cookie, "")
-        shown, voter = tokens.read(text), bearers.whose(self.db, text)
-        if voter is None or shown is None:
-            if text:
-                self.failed(request)
-            raise Refusal(401, "To see the gallery, open the personal link that your course sent you.")
-        if not self.rates.take("requests", voter.id, REQUESTS):
-            raise Refusal(429, "That was a lot at once. Wait a moment, and try again.")
-        return voter, shown
-
-    def failed(self, request: Request) -> None:
-        """Count a link or session that is none; after many of them raise another Refusal.
-
-        What is good passes always: a class behind one address is not locked out by one of it.
-        """
-        if not self.rates.take("failures", request.client.host if request.client else "", FAILURES):
-            raise Refusal(429, "Too many tries from this address. Wait a minute, and try again.")
+class Gallery(Front):
+    """The pages."""
 
     async def wall(self, request: Request) -> Response:
         """Show all artifacts, in the voter's own order, with the voter's ballot."""
@@ -116,7 +54,7 @@ class Gallery:
             ],
             marks=set_up.marks,
             chosen=len(chosen),
-            when=None if when is None else said(datetime.fromtimestamp(when, set_up.closes.tzinfo)),
+            when=None if when is None else store.said(datetime.fromtimestamp(when, set_up.closes.tzinfo)),
             key=tokens.form_key(shown),
         )
 
@@ -203,7 +141,9 @@ class Gallery:
         self.voter(request)
         set_up, hung = store.settings(self.db), store.artifacts(self.db)
         if set_up.is_open(self.clock()):
-            raise Refusal(403, f"The results are shown when the vote has closed: {said(set_up.closes)}.")
+            raise Refusal(
+                403, f"The results are shown when the vote has closed: {store.said(set_up.closes)}."
+            )
         cast = [one for one in ballots.every(self.db).values() if one]
         authors: dict[str, list[str]] = {}
         for voter in store.voters(self.db):
@@ -224,22 +164,6 @@ class Gallery:
             raise Refusal(404, HINTS[404])
         data = self.bytes_of(HERE / "static" / name)
         return Response(data, media_type=STATIC[name], headers={"Cache-Control": "max-age=300"})
-
-    async def refused(self, request: Request, error: Exception) -> Response:
-        """Say why, in a page or in JSON."""
-        if isinstance(error, Refusal):
-            status, why = error.status, error.said
-        else:
-            status = error.status_code if isinstance(error, HTTPException) else 500
-            why = HINTS.get(status, "Something went wrong here. Your ballot of before counts.")
-        if "application/json" in request.headers.get("accept", ""):
-            return JSONResponse({"error": why}, status)
-        return self.page("word.html", status, why=why, known=status != 401)
-
-
-def said(when: datetime) -> str:
-    """Return a time as a sentence has it, with its zone."""
-    return f"{when:%A} {when.day} {when:%B %Y}, {when:%H:%M} ({when.tzname()})"
 
 
 def application(gallery: Gallery) -> ASGIApp:

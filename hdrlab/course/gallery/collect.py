@@ -15,11 +15,11 @@ from typing import Any, NamedTuple
 
 from hdrlab.course import unpack
 from hdrlab.course.gallery import pictures, store
+from hdrlab.course.project import MANIFEST
 from hdrlab.course.roster import Roster
 from hdrlab.course.wording import plain
 
 TITLE, CAPTION = 60, 280  # characters
-MANIFEST = "submission.json"
 SMALL = 1_000_000  # bytes of a text
 ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
 NOT_THESE = (".txt", ".csv")

@@ -176,3 +176,8 @@ def admit(db: sqlite3.Connection, voter: Voter) -> None:
     """Let somebody vote; who is there already gets the new name and team."""
     update = "ON CONFLICT (id) DO UPDATE SET name = excluded.name, team = excluded.team"
     db.execute(f"INSERT INTO voters (id, name, team) VALUES (?, ?, ?) {update}", voter)
+
+
+def said(when: datetime) -> str:
+    """Return a time as a sentence has it, with its zone."""
+    return f"{when:%A} {when.day} {when:%B %Y}, {when:%H:%M} ({when.tzname()})"
