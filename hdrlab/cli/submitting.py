@@ -1,0 +1,72 @@
+"""The commands with which a student hands in a project: its report, and the archive."""
+
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common
+
+PROJECT = click.argument("project", type=common.FILE, default=".")
+
+
+@click.command()
+@PROJECT
+@click.option("--example", is_flag=True, help="Write report.md with the headings that are asked for.")
+def report(project: Path, example: bool) -> None:
+    """Make report.html of PROJECT's report.md or report.ipynb.
+
+    The artifact (artifact.jpg), the bracket (photographs/), the response (response.csv) and the radiance map
+    (map.hdr) are placed by themselves. The page travels alone.
+    """
+    from hdrlab.course import project as projects
+    from hdrlab.course import report as reports
+    from hdrlab.io.terminal import elapsed
+
+    words = project / projects.WORDS[0]
+    if example:
+        if words.exists():
+            raise ValueError(f"{words}: expected no report yet, it is there")
+        words.write_text(reports.example(), encoding="utf8")
+        click.echo(words)
+        return
+    with elapsed("report"):
+        written = reports.write_report(projects.look(project))
+    for note in written.notes:
+        click.echo(f"note: {note}", err=True)
+    click.echo(f"{written.page}: with {', '.join(written.placed) or 'words alone'}")
+
+
+@click.command()
+@PROJECT
+@click.option("-o", "--out", type=common.FILE, default="submission.zip", help="The archive.")
+@click.option("--keep-metadata", is_flag=True, help="Leave location and serial numbers in the photographs.")
+@click.option("--anyway", is_flag=True, help="Make the archive though something is missing.")
+def submit(project: Path, out: Path, keep_metadata: bool, anyway: bool) -> None:
+    """Look at PROJECT, say what is missing, and make one archive of it.
+
+    Pictures go in without location, serial numbers and the notes of their makers; their pixels and exposures
+    stay as they are.
+    """
+    from hdrlab.course import project as projects
+    from hdrlab.course import review
+    from hdrlab.course import submit as handing
+
+    found = projects.look(project)
+    found = found._replace(files=tuple(one for one in found.files if one.resolve() != out.resolve()))
+    findings = review.review(found)
+    for part, good, said in findings:
+        click.echo(
+            f"{'  ok     ' if good else '  MISSING'}  {part:<12} "
+            + said.replace("\n", "\n" + " " * 24).rstrip()
+        )
+    missing = sum(not one.good for one in findings)
+    if missing and not (anyway and found.artifact):
+        raise ValueError(f"{missing} to mend; nothing was written (--anyway makes the archive as it is)")
+    files = list(common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files)))
+    digest = handing.write(found, out, files)
+    told = handing.summary(files)
+    if told["cleaned"]:
+        click.echo(f"left out of {told['cleaned']} pictures: {', '.join(told['removed'])}")
+    for one in told["remains"]:
+        click.echo(f"warning: {one}", err=True)
+    click.echo(f"{out}: {len(files)} files, {out.stat().st_size / 1e6:.1f} MB, {digest[:12]}")

@@ -1,0 +1,128 @@
+"""A student's project as it lies in its folder: what the assignment asks for, and where it is.
+
+project/
+  project.toml      students, title and caption of the artifact
+  report.md         the words (or report.ipynb), of which `hdrlab report` makes report.html
+  photographs/      the bracket as it came from the camera
+  map.hdr           the radiance map, or .exr or .pfm
+  response.csv      the response curve, as `hdrlab calibrate` or `io.curves` writes it
+  artifact.jpg      the picture for the wall, or .png or .tif
+  *.py, *.ipynb     the source, also in folders
+"""
+
+import os
+import tomllib
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from hdrlab.course.wording import plain
+from hdrlab.io import curves, photos
+
+ALBUMS = ("photographs", "photos", "bracket", "pictures")
+MAPS = (".hdr", ".exr", ".pfm", ".pic", ".rgbe")
+ARTIFACTS = (".jpg", ".jpeg", ".png", ".tif", ".tiff")
+SOURCES = {
+    *(".py", ".ipynb", ".m", ".jl", ".c", ".cc", ".cpp", ".cxx", ".h", ".hpp", ".cu", ".rs", ".java", ".go"),
+    *(".js", ".ts", ".cs", ".swift", ".kt", ".pyx", ".f90", ".r"),
+}
+LEFT_OUT = {"__pycache__", "node_modules", "venv", "env", "build", "dist"}  # and all that begins with a dot
+ABOUT, PAGE, WORDS = "project.toml", "report.html", ("report.md", "report.ipynb")
+MANIFEST = "submission.json"  # of an archive
+EXAMPLE = 'students = ["b0123", "b0456"]\ntitle = "Dusk at the harbour"\ncaption = "Seven frames, by hand."\n'
+
+
+class About(NamedTuple):
+    """Whose project it is, and what stands under the artifact."""
+
+    students: tuple[str, ...] = ()
+    title: str = ""
+    caption: str = ""
+
+
+class Project(NamedTuple):
+    """What was found, by its paths; None or empty where there is none."""
+
+    folder: Path
+    about: About
+    files: tuple[Path, ...]
+    photographs: tuple[Path, ...]
+    map: Path | None
+    curve: Path | None
+    artifact: Path | None
+    words: Path | None
+    page: Path | None
+    sources: tuple[Path, ...]
+
+    def name(self, path: Path) -> str:
+        """Return a file's name within the project."""
+        return path.relative_to(self.folder).as_posix()
+
+
+def look(folder: str | Path) -> Project:
+    """Return what a project's folder holds.
+
+    Raises
+    ------
+    ValueError
+        For what is no folder, and a `project.toml` that cannot be read.
+    """
+    folder = Path(folder)
+    if not folder.is_dir():
+        raise ValueError(f"{folder}: expected the folder of a project")
+    files = tuple(sorted(_files(folder)))
+    top = [path for path in files if path.parent == folder]
+    album = next((folder / name for name in ALBUMS if (folder / name).is_dir()), None)
+    words = next((folder / name for name in WORDS if (folder / name) in files), None)
+    return Project(
+        folder,
+        _about(folder / ABOUT),
+        files,
+        tuple(path for path in files if path.parent == album and path.suffix.lower() in photos.SUFFIXES),
+        _one(top, ("map", "radiance", "hdr"), MAPS),
+        _one(top, ("response", "curve", "response.luminance"), tuple(curves.FORMS)),
+        _one(top, ("artifact",), ARTIFACTS, strict=True),
+        words,
+        folder / PAGE if folder / PAGE in files else None,
+        tuple(path for path in files if path.suffix.lower() in SOURCES and path != words),
+    )
+
+
+def _files(folder: Path) -> Iterator[Path]:
+    """Yield the plain files of a folder and those below, without caches, hidden ones and links."""
+    for home, folders, names in os.walk(folder):
+        folders[:] = [one for one in folders if one not in LEFT_OUT and one[0] != "."]
+        for name in names:
+            path = Path(home, name)
+            if name[0] != "." and not path.is_symlink() and path.is_file() and not name.endswith(".pyc"):
+                yield path
+
+
+def _one(
+    files: list[Path], stems: tuple[str, ...], suffixes: tuple[str, ...], *, strict: bool = False
+) -> Path | None:
+    """Return the file of one of these names; without one, the only file of these suffixes unless `strict`."""
+    fitting = [path for path in files if path.name.lower().endswith(suffixes)]
+    for stem in stems:
+        for path in fitting:
+            if path.name.lower().split(".")[0] == stem.split(".")[0]:
+                return path
+    return fitting[0] if len(fitting) == 1 and not strict and suffixes == MAPS else None
+
+
+def _about(path: Path) -> About:
+    if not path.is_file():
+        return About()
+    try:
+        said: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf8"))
+    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+        raise ValueError(f"{path}: {error}; expected something like\n{EXAMPLE}") from None
+    students = said.get("students", ())
+    if isinstance(students, str):
+        students = (students,)
+    if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
+        raise ValueError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
+    title, caption = (
+        plain(str(said.get(name, "")), most) for name, most in (("title", 60), ("caption", 280))
+    )
+    return About(tuple(plain(one, 80) for one in students), title, caption)

@@ -1,0 +1,165 @@
+"""The report on a student's project: their words, and bracket, curves, map and artifact where they belong.
+
+The artifact opens the page. The bracket follows the description, the curves the algorithm, the map the
+results; where such a section is missing the figure gets one of its own. Nothing on the page is fetched, and
+nothing on it runs.
+"""
+
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import jinja2
+import numpy as np
+from markupsafe import Markup
+
+from hdrlab.core.arrays import Array
+from hdrlab.course import words
+from hdrlab.course.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
+from hdrlab.io import curves, photos, radiance
+from hdrlab.io.decode import look
+from hdrlab.io.exposure import Exposure
+from hdrlab.io.files import replacing
+from hdrlab.show import figures, plots, sections
+
+AFTER = {"bracket": "description", "curves": "algorithm", "map": "results"}  # figure -> section
+ALONE = {"bracket": "The bracket", "curves": "The response", "map": "The radiance map"}
+TEMPLATE = "project_report.html"
+
+
+class Part(NamedTuple):
+    """A section of the page: its words and the figures that were placed in it, by name."""
+
+    heading: str
+    html: Markup
+    figures: dict[str, Any]
+
+
+class Written(NamedTuple):
+    """The page, what was placed on it, and what is missing or could not be shown, in words."""
+
+    page: Path
+    placed: tuple[str, ...]
+    notes: tuple[str, ...]
+
+
+def write_report(project: Project) -> Written:
+    """Write `report.html` into a project's folder.
+
+    Parameters
+    ----------
+    project : Project
+        What `project.look` found.
+
+    Raises
+    ------
+    ValueError
+        Where there are no words to make a page of.
+    """
+    if project.words is None:
+        raise ValueError(f"{project.folder}: expected words for the report, in {' or '.join(WORDS)}")
+    said = words.read(project.words)
+    notes = list(said.notes)
+    found = {name: figure for name, figure in _figures(project, notes)}
+    parts = tuple(_parts(said, {name: found[name] for name in AFTER if name in found}))
+    notes += [f"the words have no section about: {name}" for name in said.missing()]
+    title = said.title or project.about.title or project.folder.resolve().name
+    text = _template().render(
+        title=title, about=project.about, hero=found.get("artifact"), parts=parts, lang="en"
+    )
+    page = project.folder / PAGE
+    with replacing(page) as temporary:
+        temporary.write_text(text, encoding="utf8")
+    return Written(page, tuple(found), tuple(notes))
+
+
+def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
+    """Yield what can be shown, by name; what cannot is noted."""
+    makers: tuple[tuple[str, Any, Callable[[Any], Any], str], ...] = (
+        ("artifact", project.artifact, _artifact, "artifact.jpg, the picture that you made of the map"),
+        ("bracket", project.photographs, _bracket, f"photographs in the folder {ALBUMS[0]}"),
+        ("curves", project.curve, _curves, "response.csv, the curve that you found"),
+        ("map", project.map, _map, "map.hdr, your radiance map"),
+    )
+    for name, source, make, wanted in makers:
+        if not source:
+            notes.append(f"there is no {wanted}")
+            continue
+        try:
+            yield name, make(source)
+        except (ValueError, OSError) as error:
+            notes.append(f"the {name} cannot be shown: {error}")
+
+
+def _artifact(path: Path) -> figures.Illustration:
+    return figures.photograph(
+        _eight_bits(photos.read_photo(path)), 1600, "The artifact: the map as a picture"
+    )
+
+
+def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
+    """Return the photographs from the shortest exposure to the longest, one in memory at a time."""
+    frames = []
+    for path in paths:
+        header = look(path)
+        small = figures.fit(_eight_bits(photos.read_photo(path)), 400)
+        time = header.exposure.seconds
+        alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")
+        shown = figures.photograph(small, 400, alt)
+        light = _light(header.exposure)
+        frames.append({"name": path.name, "light": light, "said": _said(header.exposure), "picture": shown})
+    return sorted(frames, key=lambda one: (one["light"], one["name"]))
+
+
+def _light(exposure: Exposure) -> float:
+    seconds, f_number, iso = exposure
+    return (seconds or 0.0) * (iso or 100.0) / (f_number or 1.0) ** 2
+
+
+def _said(exposure: Exposure) -> list[str]:
+    """Return an exposure as a photographer says it."""
+    seconds, f_number, iso = exposure
+    said = [plots.seconds(seconds)] if seconds else ["exposure unknown"]
+    said += [f"f/{f_number:g}"] if f_number else []
+    return said + ([f"ISO {iso:g}"] if iso else [])
+
+
+def _curves(path: Path) -> dict[str, Any]:
+    return sections.response(curves.read_curve(path), None)
+
+
+def _map(path: Path) -> dict[str, Any]:
+    E = radiance.read_radiance(path, clean=True)
+    return sections.radiance(E) | {"size": f"{E.shape[1]} x {E.shape[0]}", "name": path.name}
+
+
+def _eight_bits(image: Array) -> figures.Image:
+    return (image // 257).astype(np.uint8) if image.dtype == np.uint16 else image
+
+
+def _parts(said: words.Words, found: dict[str, Any]) -> Iterator[Part]:
+    """Yield the sections with their figures, then the figures whose section is missing."""
+    waiting = dict(found)
+    for section in said.sections:
+        mine = {name: waiting.pop(name) for name in list(waiting) if AFTER[name] == section.asked}
+        yield Part(section.heading, section.html, mine)
+    for name, figure in waiting.items():
+        yield Part(ALONE[name], Markup(), {name: figure})
+
+
+def _template() -> jinja2.Template:
+    """Return the page's template, in which everything but the rendered words is escaped."""
+    environment = jinja2.Environment(
+        loader=jinja2.FileSystemLoader(Path(__file__).parent),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+    return environment.get_template(TEMPLATE)
+
+
+def example() -> str:
+    """Return words to begin a report with, and what goes into `project.toml`."""
+    heads = "\n\n".join(f"## {name.capitalize()}\n\n..." for name in words.ASKED)
+    return f"# The title of your project\n\n{heads}\n\n<!-- project.toml:\n{EXAMPLE}-->\n"

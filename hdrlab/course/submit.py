@@ -1,0 +1,93 @@
+"""A project is handed in: its files, its pictures cleaned, in one archive with a description."""
+
+import hashlib
+import json
+import zipfile
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import hdrlab
+from hdrlab.course import privacy
+from hdrlab.course.project import MANIFEST, Project
+from hdrlab.io.files import replacing
+
+VERSION = 1
+PACKED = {".jpg", ".jpeg", ".png", ".zip", ".gz", ".webp", ".exr"}  # which another compression only slows
+ZERO = (1980, 1, 1, 0, 0, 0)  # the same files make the same archive
+
+
+class Packed(NamedTuple):
+    """A file as it goes into the archive, what was left out of it, and what it may still tell."""
+
+    name: str
+    data: bytes
+    removed: frozenset[str] = frozenset()
+    remains: str = ""
+
+
+def pack(project: Project, *, keep: bool = False) -> Iterator[Packed]:
+    """Yield every file of a project, pictures without location and serial numbers unless those are kept.
+
+    Raises
+    ------
+    ValueError
+        For a picture that cannot be cleaned.
+    """
+    for path in project.files:
+        data, name = path.read_bytes(), project.name(path)
+        suffix = path.suffix.lower()
+        if keep or not (suffix in privacy.PICTURES or path in project.photographs):
+            yield Packed(name, data)
+        else:
+            yield Packed(name, *privacy.clean(name, data))
+
+
+def write(project: Project, archive: Path, files: list[Packed], *, now: datetime | None = None) -> str:
+    """Write the archive of a project, with a description of it, and return its digest.
+
+    Parameters
+    ----------
+    project : Project
+    archive : the .zip; what it held is replaced
+    files : what `pack` yields
+    now : the time of handing in that the description states; the course goes by the time of arrival
+
+    Raises
+    ------
+    ValueError
+        For a project without an artifact.
+    """
+    if project.artifact is None:
+        raise ValueError("expected an artifact, there is none")
+    described = {
+        "version": VERSION,
+        "made": (now or datetime.now(UTC)).isoformat(timespec="seconds"),
+        "hdrlab": hdrlab.__version__,
+        **project.about._asdict(),
+        "artifact": project.name(project.artifact),
+        "map": project.name(project.map) if project.map else None,
+        "photographs": [project.name(path) for path in project.photographs],
+        "files": {one.name: hashlib.sha256(one.data).hexdigest() for one in files},
+    }
+    manifest = Packed(MANIFEST, (json.dumps(described, indent=1, ensure_ascii=False) + "\n").encode())
+    with replacing(archive) as temporary:
+        with zipfile.ZipFile(temporary, "w") as opened:
+            for one in [manifest, *files]:
+                stored = Path(one.name).suffix.lower() in PACKED
+                info = zipfile.ZipInfo(one.name, ZERO)
+                info.external_attr = 0o100644 << 16
+                opened.writestr(info, one.data, zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED)
+        digest = hashlib.sha256(temporary.read_bytes()).hexdigest()
+    return digest
+
+
+def summary(files: list[Packed]) -> dict[str, Any]:
+    """Return how many files told something that was left out, what, and which may still tell."""
+    told = [one for one in files if one.removed]
+    return {
+        "cleaned": len(told),
+        "removed": sorted(set().union(*(one.removed for one in told))),
+        "remains": [f"{one.name}: {one.remains}" for one in files if one.remains],
+    }
