@@ -1,0 +1,112 @@
+"""From results to a gradebook: what each student of a team earned, and what being late took off.
+
+A row of the gradebook holds what the next homework's needs, so gradebooks add up over a term.
+"""
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from hdrlab.course import sheets
+from hdrlab.course.handins import Handin
+from hdrlab.course.late import Handed, accounts, lateness
+from hdrlab.course.plan import Homework, Late
+from hdrlab.course.roster import Roster
+
+COLUMNS = (
+    *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),
+    *("grace left", "note"),
+)
+
+
+class Mark(NamedTuple):
+    """A student's row: `work` are the points before the penalty, `score` those after it."""
+
+    student: str
+    name: str
+    team: str
+    homework: str
+    received: str
+    late: int
+    excused: int
+    work: float
+    of: float
+    penalty: float
+    score: float
+    left: int
+    note: str = ""
+
+
+def marks(
+    roster: Roster,
+    homework: Homework,
+    handins: Mapping[str, Handin],
+    points: Mapping[str, float],
+    late: Late,
+    before: Iterable[Handed] = (),
+) -> list[Mark]:
+    """Return a row for each student of the roster.
+
+    Parameters
+    ----------
+    roster, homework : of whom, and of what
+    handins : what counts of each team
+    points : of the work, by team; a team without is noted
+    late : the course's rule
+    before : what was handed in for earlier homeworks, in the order they were due
+    """
+    handed = [*before]
+    for team, one in handins.items():
+        days = lateness(homework.due, one.received)
+        handed.append(Handed(homework.name, days, one.students, points.get(team, 0.0)))
+    bills = list(accounts(handed, grace=late.free_days, per_day=late.points_a_day))
+    left = {bill.student: bill.left for bill in bills}
+    mine = {bill.student: bill for bill in bills if bill.project == homework.name}
+    rows = []
+    for id, name, team, _ in roster.students:
+        if id not in mine:
+            row = Mark(
+                id,
+                name,
+                team,
+                homework.name,
+                "",
+                0,
+                0,
+                0.0,
+                homework.points,
+                0.0,
+                0.0,
+                left.get(id, late.free_days),
+            )
+            rows.append(row._replace(note="not handed in"))
+            continue
+        kept, work = mine[id], points.get(team, 0.0)
+        received = handins[team].received.isoformat(timespec="minutes")
+        worth = (work, homework.points, kept.penalty, kept.score, kept.left)
+        note = "" if team in points else "not graded"
+        rows.append(Mark(id, name, team, homework.name, received, kept.late, kept.excused, *worth, note))
+    return rows
+
+
+def read(paths: Sequence[Path]) -> list[Handed]:
+    """Return what gradebooks of earlier homeworks tell, in the order of the files."""
+    handed = []
+    for path in paths:
+        for row in sheets.read_csv(path):
+            try:
+                if not row["note"]:
+                    student = (row["student"].removeprefix("'"),)
+                    handed.append(Handed(row["homework"], int(row["late"]), student, float(row["work"])))
+            except (KeyError, ValueError):
+                raise ValueError(f"{path}: expected a gradebook that `hdrlab grade` has written") from None
+    return handed
+
+
+def canvas(rows: Sequence[Mark], homework: Homework) -> tuple[list[str], list[list[sheets.Cell]]]:
+    """Return header and rows of the table that Canvas imports: the second line holds the points possible."""
+    title = f"{homework.name}: {homework.title}"
+    header = ["Student", "ID", "SIS User ID", "SIS Login ID", "Section", title]
+    possible: list[sheets.Cell] = ["    Points Possible", "", "", "", "", homework.points]
+    lines: list[list[sheets.Cell]] = [[one.name, "", one.student, one.student, "", one.score] for one in rows]
+    return header, [possible, *lines]

@@ -1,0 +1,163 @@
+"""A class's gradebook and page, and a whole run of `hdrlab grade` on a folder."""
+
+import csv
+import pickle
+import zipfile
+from datetime import UTC, datetime, timedelta
+from fractions import Fraction
+from html.parser import HTMLParser
+
+import pytest
+
+from hdrlab import cli
+from hdrlab.course import classroom, marks, sheets
+from hdrlab.course.grading import Conditions
+from hdrlab.course.handins import Handin
+from hdrlab.course.late import Handed
+from hdrlab.course.plan import Homework, Late, Task
+from hdrlab.course.results import Check, Result
+from hdrlab.course.roster import Roster, Student
+
+DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
+HOMEWORK = Homework(
+    "hw2", "The response curve", DUE, (Task("hat", "core.weights.hat", 50), Task("g", "x.g", 50))
+)
+ROSTER = Roster((Student("b1", "=Ada", "t"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
+RULE = Late(10, 1.0)
+
+
+def handin(team, students, days, path=None):
+    return Handin(team, students, path, DUE + timedelta(days=days), "digest")
+
+
+def result(student, holds, misconceptions=None):
+    checks = tuple(
+        Check(
+            "hat",
+            f"test_{k}",
+            f"promise {k}",
+            Fraction(25 * good),
+            Fraction(25),
+            "holds" if good else "fails",
+        )
+        for k, good in enumerate(holds)
+    )
+    return Result(student, "hw2", "T", "strict", checks, misconceptions or {}, (), "", "", "", {})
+
+
+def test_each_member_of_a_team_pays_with_their_own_days():
+    before = [Handed("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 3))]
+    rows = marks.marks(ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0}, RULE, before)
+    assert [(row.late, row.excused, row.penalty, row.score, row.left) for row in rows[:2]] == [
+        (4, 2, 2.0, 78.0, 0),
+        (4, 4, 0.0, 80.0, 6),
+    ]
+    assert (rows[2].note, rows[2].score, rows[2].left) == ("not handed in", 0.0, 7)
+
+
+def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
+    rows = marks.marks(ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 7)}, {"t": 80.0}, RULE)
+    sheets.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, rows)
+    assert marks.read([tmp_path / "gradebook.csv"]) == [
+        Handed("hw2", 7, ("b1",), 80.0),
+        Handed("hw2", 7, ("b2",), 80.0),
+    ]
+    (tmp_path / "other.csv").write_text("a,b\n1,2\n")
+    with pytest.raises(ValueError, match="gradebook"):
+        marks.read([tmp_path / "other.csv"])
+
+
+def test_canvas_gets_a_line_of_points_and_no_formula():
+    rows = marks.marks(ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0}, RULE)
+    lines = list(csv.reader(sheets.csv_text(*marks.canvas(rows, HOMEWORK)).splitlines()))
+    assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][5].startswith("hw2")
+    assert lines[1][0] == "Points Possible" and float(lines[1][5]) == 100
+    assert lines[2][0] == "'=Ada" and float(lines[2][5]) == 80
+
+
+def test_the_class_page_counts_promises_and_misconceptions_and_escapes_them():
+    script = "<script>alert(1)</script>"
+    each = [result("t", (1, 0), {"hat": script}), result("b3", (1, 1), {"hat": script}), result("x", (0, 0))]
+    text = classroom.page(HOMEWORK, each, [f"{script} came late"])
+    assert "script" not in {tag for tag, _ in tags(text)} and text.count("&lt;script&gt;") == 2
+    assert "<b>2</b> in <b>hat</b>" in text and "2 of 3" in text and "1 of 3" in text
+
+
+def tags(text):
+    found = []
+    reader = HTMLParser()
+    reader.handle_starttag = lambda tag, attrs: found.append((tag, attrs))
+    reader.feed(text)
+    return found
+
+
+def test_what_a_result_rests_on_is_in_its_key(tmp_path):
+    def keys(conditions, digest="digest"):
+        one = handin("t", ("b1",), 0)._replace(digest=digest)
+        homework = HOMEWORK._replace(tasks=HOMEWORK.tasks[:1])
+        return classroom.pieces({"t": one}, homework, conditions)[0].key
+
+    (tmp_path / "test_hat.py").write_text("def test_hidden(subject): pass\n")
+    different = [
+        keys(Conditions()),
+        keys(Conditions(), "other"),
+        keys(Conditions(secret="s")),
+        keys(Conditions(tier="practice")),
+        keys(Conditions(hidden=tmp_path)),
+    ]
+    assert len(set(different)) == 5 and keys(Conditions()) == different[0]
+
+
+@pytest.mark.parametrize(
+    "members, said",
+    [
+        ({"../hw2.py": b""}, "refused"),
+        ({"a.py": b"", "b.py": b""}, "one notebook"),
+        ({"notes.txt": b""}, "none"),
+        ({"hw2.py": b"x", "helpers.py": b""}, ""),
+    ],
+)
+def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        for name, data in members.items():
+            archive.writestr(name, data)
+    (tmp_path / "scratch").mkdir()
+    path, refused = classroom._opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
+    assert said in refused and bool(refused) == bool(said) and "\n" not in refused
+    assert path.read_bytes() == (b"" if said else b"x")
+
+
+def test_a_grader_can_be_sent_to_another_process():
+    grader = classroom.Grader("hw2", None, Conditions())
+    assert pickle.loads(pickle.dumps(grader.result)).__self__ == grader
+
+
+def test_a_class_is_graded_once_with_a_gradebook_and_a_page(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "in").mkdir()
+    (tmp_path / "roster.csv").write_text("student,name,team\nb1,Ada,t\nb2,Bo,t\nb3,Cy,\nb4,Di,\n")
+    (tmp_path / "plan.toml").write_text(
+        '[late]\nfree_days = 10\npoints_a_day = 1\n[hw2]\ntitle = "T"\ndue = 2026-10-23T23:59:00Z\n'
+        'tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]\n'
+    )
+    good = "import numpy as np\n\ndef hat(*a, **k):\n    return 127.5 - abs(np.arange(256) - 127.5)\n"
+    (tmp_path / "in" / "t_hw2.py").write_text(good)
+    (tmp_path / "in" / "b3.zip").write_bytes(b"PK\3\4 no archive")
+    (tmp_path / "times.csv").write_text(
+        "file,received\nt_hw2.py,2026-10-23T12:00Z\nb3.zip,2026-10-26T12:00Z\n"
+    )
+    words = ["grade", "in", "--homework", "hw2", "--tier", "practice", "--plan", "plan.toml", "-o", "out"]
+    words += ["--roster", "roster.csv", "--received", "times.csv", "--jobs", "2"]
+    said = []
+    for _ in range(2):
+        with pytest.raises(SystemExit) as ended:
+            cli.run(words)
+        assert not ended.value.code
+        said.append(capsys.readouterr().out)
+    assert "2 of 2 graded, 2 of them now" in said[0] and "2 of 2 graded, 0 of them now" in said[1]
+    rows = {row["student"]: row for row in sheets.read_csv(tmp_path / "out" / "gradebook.csv")}
+    assert float(rows["b1"]["work"]) > 0 and rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
+    assert (rows["b3"]["late"], rows["b3"]["grace left"], float(rows["b3"]["work"])) == ("3", "7", 0)
+    assert rows["b4"]["note"] == "not handed in"
+    assert "refused" in (tmp_path / "out" / "feedback" / "b3" / "feedback.html").read_text()
+    assert (tmp_path / "out" / "class.html").is_file() and (tmp_path / "out" / "canvas.csv").is_file()

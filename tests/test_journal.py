@@ -1,0 +1,139 @@
+"""A class is graded once, whoever is killed meanwhile, and files find their owners."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import pytest
+
+from hdrlab.course import handins, journal
+from hdrlab.course.roster import Roster, Student
+
+RUN = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+import test_journal
+test_journal.graded(Path({folder!r}))
+"""
+
+
+def grade(piece):
+    """Stand in for the grading of a submission: slow enough to be killed, noted each time it begins."""
+    path = piece.path
+    with open(path.parent / "begun", "a") as file:
+        file.write(f"{path.stem}\n")
+    time.sleep(0.02)
+    return (f'{{"of": "{path.stem}", "bytes": {path.stat().st_size}}}' * 2000).encode()
+
+
+def fatal(piece):
+    """Die as under the memory limit, if it is the hostile one."""
+    if piece.owner == "s3":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return grade(piece)
+
+
+def endless(piece):
+    time.sleep(60)
+    return b""
+
+
+def pieces(folder, count=5):
+    folder.mkdir(exist_ok=True)
+    made = []
+    for k in range(count):
+        path = folder / f"s{k}.py"
+        if not path.exists():
+            path.write_text("x" * k)
+        made.append(journal.Piece(f"s{k}", path, journal.key(path.read_text())))
+    return made
+
+
+def graded(home, work=grade, **knobs):
+    """Grade the class of a folder, and return what was done now and what the results are."""
+    done = list(journal.done_steps(pieces(home / "class"), work, home / "results", jobs=2, **knobs))
+    return done, {path.name: path.read_bytes() for path in sorted((home / "results").iterdir())}
+
+
+def test_nothing_is_graded_twice(tmp_path):
+    first, results = graded(tmp_path)
+    again, same = graded(tmp_path)
+    assert all(one.fresh for one in first) and not any(one.fresh for one in again) and results == same
+    assert (tmp_path / "class" / "begun").read_text().count("\n") == len(results) == 5
+
+
+def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
+    graded(tmp_path)
+    (tmp_path / "class" / "s4.py").write_text("other")
+    again, results = graded(tmp_path)
+    assert [one.piece.owner for one in again if one.fresh] == ["s4"] and len(results) == 5
+    assert sum(one.fresh for one in graded(tmp_path, again=True)[0]) == 5
+
+
+def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_graded(tmp_path):
+    (tmp_path / "alone").mkdir()
+    _, alone = graded(tmp_path / "alone")
+    done, results = graded(tmp_path, fatal)
+    lost = [one for one in done if one.result is None]
+    assert [one.piece.owner for one in lost] == ["s3"] and "3 times" in lost[0].why
+    assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
+
+
+def test_a_submission_that_never_ends_is_ended(tmp_path):
+    one = pieces(tmp_path / "class", 1)
+    (done,) = journal.done_steps(one, endless, tmp_path / "results", patience=0.5)
+    assert done.result is None and list((tmp_path / "results").iterdir()) == []
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="kills a group of processes")
+def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
+    (tmp_path / "whole").mkdir()
+    _, whole = graded(tmp_path / "whole")
+    rng, home = random.Random(5), tmp_path / "killed"
+    home.mkdir()
+    script = RUN.format(tests=str(Path(__file__).parent), folder=str(home))
+    for kill in range(4):
+        run = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
+        time.sleep(rng.uniform(0.3, 2.0))
+        if kill % 2:
+            run.kill()  # the run alone: what it started may write its result or not
+            run.wait()
+            time.sleep(0.3)
+        os.killpg(run.pid, signal.SIGKILL)
+        run.wait()
+    done, results = graded(home)
+    assert {name: data for name, data in results.items() if name[0] != "."} == whole
+    assert len(done) == 5 and all(one.result for one in done)
+
+
+def test_files_find_their_owners(tmp_path):
+    roster = Roster(
+        (
+            Student("b1", "A", "team1"),
+            Student("b2", "B", "team1"),
+            Student("b12", "C", "b12"),
+            Student("b3", "D", "b3"),
+        )
+    )
+    for name in ("B2_hw2.ipynb", "b12.py", "b123.py", "stranger.zip", "notes.txt"):
+        (tmp_path / name).write_text(name)
+    (tmp_path / "b3").mkdir()
+    (tmp_path / "b3" / "hw2.ipynb").write_text("x")
+    (tmp_path / "team1-late.ipynb").write_text("later")
+    (tmp_path / "b3" / "link.py").symlink_to("/etc/passwd")
+    noon = datetime(2026, 3, 1, 12, tzinfo=UTC)
+    times = {"B2_hw2.ipynb": noon, "team1-late.ipynb": noon + timedelta(hours=1)}
+    found = handins.find(tmp_path, roster, times)
+    assert {team: one.path.name for team, one in found.handins.items()} == {
+        "team1": "team1-late.ipynb",
+        "b12": "b12.py",
+        "b3": "hw2.ipynb",
+    }
+    assert found.handins["team1"].students == ("b1", "b2")
+    assert len(found.notes) == 3 and any("B2_hw2" in note for note in found.notes)
