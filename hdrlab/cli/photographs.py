@@ -70,6 +70,7 @@ def assemble(
     from hdrlab.core.steps import last
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
+    from hdrlab.pipeline.registration import BY_LIGHT
 
     recover = curves.given(response)
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
@@ -86,7 +87,7 @@ def assemble(
     steps = pipeline.assemble_steps(bracket, response=recover, **methods)
     asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
     count = len(pipeline.STAGES) + estimated + asked
-    if methods["align"] in pipeline.BY_LIGHT:  # the first stage takes seconds a photograph
+    if methods["align"] in BY_LIGHT:  # the first stage takes seconds a photograph
         assembly = last(common.one_by_one(steps, ["aligning", *["the map"] * (count - 1)]))
     else:
         assembly = last(common.progress(steps, "assembling", count))

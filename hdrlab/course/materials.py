@@ -5,7 +5,7 @@ from pathlib import Path
 
 
 def folder(name: str) -> Path:
-    """Return the folder "notebooks", "assignments" or "tests", as it travels in the wheel or stands at the top of a clone.
+    """Return the folder "notebooks", "assignments" or "tests", in the wheel or at the top of a clone.
 
     Raises
     ------

@@ -1,0 +1,52 @@
+"""What is known of a bracket, stage after stage."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from hdrlab.core.bracket import Bracket
+from hdrlab.radiance import consistency
+
+Method = str | Callable[..., Any]
+Table = NDArray[np.float64]
+
+
+class Assembly(NamedTuple):
+    """What is known of a bracket after a stage; what is not known yet is None.
+
+    Attributes
+    ----------
+    stage : the one of STAGES that was done last, or "times", after "align" where these are estimated, or
+        "ghosts" or "flare", after "merge" where these are taken off
+    bracket : the photographs, moved and cut to what all of them show
+    offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
+    g : (n,) or (n, 3), response, ln exposure of each level
+    E : (h, w) or (h, w, 3) float32, radiance
+    seen : (h, w) uint8, how each pixel is known: flags of `radiance.bounds.Seen`
+    medians : (P, C, 256), what each frame says of each level: see `radiance.consistency`
+    notes : sentences, what to know about this map
+    doubts : sentences, reasons not to trust it
+    moves : (P, 3, 3), where each photograph was moved, rotation, scale and fractions of pixels included
+    moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
+    veiled : (h, w) bool, where a veil was taken off; None where nobody asked
+    """
+
+    stage: str
+    bracket: Bracket
+    offsets: NDArray[np.int64]
+    g: NDArray[np.float64] = None  # type: ignore[assignment]  # typed as what each stage makes of it
+    E: NDArray[np.float32] = None  # type: ignore[assignment]
+    seen: NDArray[np.uint8] = None  # type: ignore[assignment]
+    medians: NDArray[np.float64] = None  # type: ignore[assignment]
+    notes: tuple[str, ...] = ()
+    doubts: tuple[str, ...] = ()
+    moves: NDArray[np.float64] = None  # type: ignore[assignment]
+    moving: NDArray[np.int32] | None = None
+    veiled: NDArray[np.bool_] | None = None
+
+    @property
+    def spread(self) -> float:
+        """How far the frames contradict each other, in stops; NaN before the last stage."""
+        return consistency.spread(self.medians) if self.medians is not None else float("nan")
