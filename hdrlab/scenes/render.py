@@ -5,7 +5,6 @@ rendered once per light, in two halves whose difference tells the noise, which `
 out.
 
 E      radiance (H, W, 3), cd/m^2
-rho    reflectance (H, W, 3)
 """
 
 import argparse
@@ -16,7 +15,6 @@ from functools import lru_cache
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
-from typing import Any
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -25,26 +23,11 @@ from hdrlab.core.colour import luminance
 from hdrlab.io.exr import LARGEST_HALF
 from hdrlab.io.layers import write_layers
 from hdrlab.io.terminal import elapsed
-from hdrlab.scenes.denoise import DARKEST, denoise, finer
+from hdrlab.scenes.lighting import SMOOTH, radiance
 from hdrlab.scenes.models.place import Light, Place
-from hdrlab.scenes.models.shapes import Parts
 from hdrlab.scenes.places import PLACES
-from hdrlab.scenes.relay import relayed
-from hdrlab.scenes.tracer import (
-    Float,
-    Frame,
-    Guides,
-    halved,
-    mitsuba,
-    scene,
-    seen,
-    sensor,
-    sharp,
-    stacked,
-    traced,
-)
+from hdrlab.scenes.tracer import Float, Frame, mitsuba, scene, sensor, sharp
 
-SMOOTH = 144  # samples per pixel, at most, of what has but its edges to smooth
 FAR = 1000.0  # metres: where a line of sight meets nothing
 APART = 10_000_019  # between the seeds of two rounds: passes and lights count on from theirs
 DIMMEST = 2.0**-14  # cd/m^2, the smallest half float of full precision
@@ -57,79 +40,6 @@ def model(name: str) -> Place:
         raise ValueError(f"expected one of {', '.join(PLACES)}, got {name!r}")
     place: Place = import_module(f"hdrlab.scenes.models.{name}").place()
     return place
-
-
-def shining(
-    mi: ModuleType, place: Place, parts: Parts, light: Light, frame: Frame, samples: int, seed: int
-) -> Float:
-    """Return E of what shines into the camera, and of what a projector lights: no path of it is chance."""
-    if light.hidden:
-        rows, columns = (len(range(n)[part]) for n, part in zip(frame[:2], frame[2:], strict=True))
-        return np.zeros((rows, columns, 3), np.float32)
-    lengths = 2 if light.bounces == 1 else 1
-    path = {"type": "path", "max_depth": lengths, "hide_emitters": light.hidden}
-    with tempfile.TemporaryDirectory() as folder:
-        made = scene(mi, place, parts, light, Path(folder), sensor(mi, place.camera, frame))
-        return sharp(mi, made, place.camera, frame, path, min(samples, SMOOTH), seed)
-
-
-def scattered(
-    mi: ModuleType,
-    place: Place,
-    parts: Parts,
-    light: Light,
-    frame: Frame,
-    known: Guides,
-    samples: int,
-    seed: int,
-) -> Float:
-    """Return the light on what is seen, E over rho, (H, W, 3), without the noise of its paths."""
-    path = {"type": "path", "max_depth": light.bounces + 1, "hide_emitters": True, "rr_depth": 3}
-    half = max(round(samples * light.share / 2), 1)
-    with tempfile.TemporaryDirectory() as folder:
-        made = scene(mi, place, parts, light, Path(folder), sensor(mi, place.camera, frame))
-        A, B = (traced(mi, made, path, half, each) for each in (seed, seed + 1_000_003))
-    return denoise(A, B, known.rho, stacked(known), radius=5 if light.detailed else 10)
-
-
-def lit(
-    mi: ModuleType,
-    place: Place,
-    parts: Parts,
-    light: Light,
-    frame: Frame,
-    known: tuple[Guides, Guides],
-    samples: int,
-    seed: int,
-) -> Float:
-    """Return E of a place in one light; `known` is what is seen in the frame, and in one half as fine.
-
-    Light varies less than the surface that it falls on: what other surfaces and lights of some size give is
-    found on the coarser grid, unless it is detailed.
-    """
-    E = shining(mi, place, parts, light, frame, samples, seed)
-    if light.bounces == 1:
-        return E
-    fine, blunt = known
-    if light.detailed:
-        light_on = scattered(mi, place, parts, light, frame, fine, samples, seed)
-    else:
-        coarse = scattered(mi, place, parts, light, halved(frame), blunt, samples, seed)
-        light_on = finer(coarse, stacked(blunt)[..., :4], stacked(fine)[..., :4])
-    return E + np.maximum(fine.rho, np.float32(DARKEST)) * light_on
-
-
-def radiance(mi: ModuleType, place: Place, parts: Parts, frame: Frame, samples: int, seed: int) -> Float:
-    """Return E of a frame, the sum over all lights."""
-    known: dict[tuple[str, ...], tuple[Guides, Guides]] = {}
-    views, smooth = (frame, halved(frame)), min(samples, SMOOTH)
-    E: Any = 0.0
-    for k, light in enumerate(relayed(mi, place).values()):
-        if light.absent not in known:
-            fine, blunt = (seen(mi, place, parts, light, view, smooth, seed) for view in views)
-            known[light.absent] = fine, blunt
-        E = E + lit(mi, place, parts, light, frame, known[light.absent], samples, seed + 7919 * (k + 1))
-    return E
 
 
 def depth(mi: ModuleType, place: Place, frame: Frame) -> Float:
