@@ -116,8 +116,8 @@ pictures.picture(ax, alt="The sixty pixels' points, moved sideways by their ln E
 # Yield the state of one channel, before the first turn and after each.
 
 # %% [markdown] about="recover_steps"
-# **Predict.** Photographs two stops apart leave something open: whatever repeats with a period of two stops in
-# $\ln E$ can be moved from $f$ into the $E_i$. What will that look like?
+# **Predict.** Photographs two stops apart leave something open: whatever repeats with a period of two stops
+# in $\ln E$ can be moved from $f$ into the $E_i$. What will that look like?
 
 # %% about="recover_steps hat"
 states = list(recover_steps(sampling.by_rank(grays, 800), bracket.times, hat(), smoothness=0.0))

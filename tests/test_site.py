@@ -74,7 +74,7 @@ def made(tmp_path_factory):
 
 
 def test_a_link_leads_to_what_the_site_has_and_is_plain_text_otherwise():
-    text = "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) [c](notebooks/05_y.ipynb) [d](../assignments/x.ipynb)"
+    text = "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) [c](05_y.ipynb) [d](../assignments/x.ipynb)"
     assert build._linked(text, {"hw1", "04_x"}) == "[a](../assignments/hw1.ipynb) [b](04_x.ipynb) c d"
 
 

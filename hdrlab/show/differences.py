@@ -23,8 +23,8 @@ MISSING = 128
 def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
     """Return expected, came, and came - expected with a ring around the worst pixel, side by side.
 
-    Both are drawn with the same black and white. In the difference orange is too small, purple too large, and
-    gray is no number.
+    Both are drawn with the same black and white. In the difference orange is too large, purple too
+    small, and gray is no number.
     """
     truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
     if truth.shape != answer.shape or truth.ndim not in (2, 3):

@@ -42,14 +42,23 @@ def write(page, name, text):
         if k:
             page.keyboard.press("Enter")
         page.keyboard.insert_text(line)
-    for _ in range(2):
-        page.keyboard.press("Shift+Enter")
+    page.keyboard.press("Shift+Enter")
+    below = name.replace("task-", "check-")  # on a busy machine it takes a moment until this one is selected
+    page.wait_for_function(
+        "(name) => window.jupyterapp.shell.currentWidget.content.activeCell.model.id === name", arg=below
+    )
+    page.keyboard.press("Shift+Enter")
 
 
 def answered(page, name, word):
     """Return the check's output when it says a word."""
-    output = cell(page, f"check-{name}").locator(".hdrlab-check")
-    output.get_by_text(word).first.wait_for(timeout=ANSWER)
+    checked, written = cell(page, f"check-{name}"), cell(page, f"task-{name}")
+    output = checked.locator(".hdrlab-check")
+    try:
+        output.get_by_text(word).first.wait_for(timeout=ANSWER)
+    except Exception as error:
+        said = f"{written.inner_text()}\n{checked.inner_text()}"
+        raise AssertionError(f"expected {word!r}, got {said}") from error
     return output
 
 
