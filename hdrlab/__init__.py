@@ -8,6 +8,8 @@ Exposure, and planning a bracket       capture.exposure, capture.planning.plan
 Metering, automatic exposure           capture.metering, capture.autoexposure.expose
 Photographs in, with their exposure    io.photos.read_bracket
 Median threshold bitmaps               align.mtb.align, align.shift.shift
+From the hand: turned, tilted          align.cerman.align, align.homography.align, align.auto.align
+... moved through linear light         align.resample.photographs, capture.motion.hand
 The response by least squares          response.debevec.gsolve, response.debevec.recover
 ... by maximum likelihood              response.robertson.recover
 ... without exact times                response.mitsunaga.recover, response.marginal.calibrate

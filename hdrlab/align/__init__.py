@@ -1,1 +1,1 @@
-"""Where every photograph of a hand-held bracket must move: `mtb` finds the offsets, `shift` applies them."""
+"""Where every photograph of a hand-held bracket must move: `align` finds it; `shift` and `resample` do it."""

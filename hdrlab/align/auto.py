@@ -134,11 +134,11 @@ def align(
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, scenes
+    >>> from hdrlab.capture import camera, responses, scenes
     >>> room = scenes.room((120, 180))
     >>> taken = camera.shoot(room, [0.02, 0.08], offsets=[[3, -4], [0, 0]])
-    >>> choice = choose(taken.images, times=taken.times)
-    >>> choice.way, align(taken.images, times=taken.times)[0, :2, 2].tolist()  # dx, dy
+    >>> known = {"times": taken.times, "g": responses.true_g()}
+    >>> choose(taken.images, **known).way, align(taken.images, **known)[0, :2, 2].tolist()  # dx, dy
     ('mtb', [-4.0, 3.0])
     """
     return along(verdicts(images, times=times, g=g))
