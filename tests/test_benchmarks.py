@@ -123,7 +123,8 @@ def test_every_subject_has_rows_of_different_names():
     for subject in command.subjects():
         names = [row.name for row in command.chosen(subject, None)]
         assert names and len(set(names)) == len(names)
-        assert all(row.holds for row in command.chosen(subject, None))
+        held = [row.holds for row in command.chosen(subject, None)]
+        assert any(held), "a peer may have a row without a hold, but not every row is a peer's"
 
 
 def test_a_subject_is_found_by_having_rows(monkeypatch, tmp_path):

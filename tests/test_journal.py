@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
@@ -105,7 +106,8 @@ def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
             run.kill()  # the run alone: what it started may write its result or not
             run.wait()
             time.sleep(0.3)
-        os.killpg(run.pid, signal.SIGKILL)
+        with suppress(ProcessLookupError):  # nothing of it is left
+            os.killpg(run.pid, signal.SIGKILL)
         run.wait()
     done, results = graded(home)
     assert {name: data for name, data in results.items() if name[0] != "."} == whole

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.align.bitmaps import Mask, Offset, Words, around, error, pack, unpack
-from hdrlab.align.judge import judge
+from hdrlab.align.judge import NEAR, judge
 from hdrlab.align.pairs import Verdict, along, blind, by_brightness
 from hdrlab.align.pyramid import Frame, Gray, Histogram, frame
 from hdrlab.core.arrays import as_stack
@@ -27,6 +27,8 @@ NOISE = 4  # codes: closer than this to the threshold, noise decides the bit
 CACHE = 2**18  # pixels
 NEAREST = [4, 1, 3, 5, 7, 0, 2, 6, 8]  # of the nine offsets: the centre, its sides, its corners
 CLIPPED = 12  # codes: a threshold this close to 0 or 255 leaves too little on its other side
+OTHERS = (0.83, 0.17)  # percentiles that are tried where the median leaves a doubt
+CERTAIN = 0.9  # confidence of what is taken from them
 
 
 class State(NamedTuple):
@@ -69,7 +71,7 @@ def divides(h: Histogram) -> Mask:
     return (z >= CLIPPED) & (z < 256 - CLIPPED) & (near <= h.sum() / 2)
 
 
-def percentile(*histograms: Histogram) -> float | None:
+def percentile(*histograms: Histogram, near: float = 0.5) -> float | None:
     """Return the q nearest to the median whose threshold divides every one of the photographs, or None.
 
     Ward goes to the 17th or 83rd percentile where the median is clipped. Any percentile cuts all photographs
@@ -77,7 +79,7 @@ def percentile(*histograms: Histogram) -> float | None:
     """
     q = np.linspace(0, 1, 1001)
     serves = np.all([divides(h)[threshold(h, q)] for h in histograms], axis=0)
-    return float(min(q[serves], key=lambda one: abs(one - 0.5))) if serves.any() else None
+    return float(min(q[serves], key=lambda one: abs(one - near))) if serves.any() else None
 
 
 def bitmap(Y: Gray, t: int) -> Mask:
@@ -107,9 +109,9 @@ def step(fixed: Words, moving: Words, offset: Offset) -> tuple[NDArray[np.float6
     return errors, (offset[0] + i - 1, offset[1] + j - 1)
 
 
-def search(fixed: Frame, moving: Frame) -> Iterator[State]:
+def search(fixed: Frame, moving: Frame, *, near: float = 0.5) -> Iterator[State]:
     """Yield a State per level: the best of nine, and twice that is where the next level begins."""
-    q = percentile(fixed.h[0], moving.h[0])
+    q = percentile(fixed.h[0], moving.h[0], near=near)
     if q is None:
         return
     offset = (0, 0)
@@ -143,12 +145,28 @@ def align_steps(
         yield from search(fixed, moving)
 
 
-def verdict(fixed: Frame, moving: Frame) -> Verdict:
-    """Return what the search found for a pair, and whether to trust it."""
-    levels, pair = list(search(fixed, moving)), (moving.image, fixed.image)
+def searched(fixed: Frame, moving: Frame, *, near: float = 0.5) -> Verdict:
+    """Return what a search found for a pair, and whether to trust it."""
+    levels, pair = list(search(fixed, moving, near=near)), (moving.image, fixed.image)
     if not levels:
         return blind(*pair)
     return judge(pair, *levels[-1].bits, levels[-1].offset, limit=2 ** len(levels) - 1)
+
+
+def verdict(fixed: Frame, moving: Frame) -> Verdict:
+    """Return what was found for a pair; Ward's other percentiles are asked where the median's search is lost.
+
+    Such a second answer must be beyond doubt and lie elsewhere: photographs that turned fit nearby, too.
+    """
+    first = searched(fixed, moving)
+    others = (searched(fixed, moving, near=near) for near in OTHERS) if first.trouble else iter(())
+    sure = (one for one in others if one.confidence > CERTAIN and not one.trouble and apart(one, first))
+    return next(sure, first)
+
+
+def apart(one: Verdict, other: Verdict) -> bool:
+    """Return whether two answers lie more than 2 pixels from each other."""
+    return bool(np.max(np.abs(np.subtract(one.offset, other.offset))) > NEAR)
 
 
 def verdicts(
