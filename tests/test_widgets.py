@@ -1,5 +1,6 @@
 """Widgets in Python: what they hand to the browser, and what they do when it moves a slider."""
 
+import gc
 import io
 import itertools
 
@@ -422,3 +423,19 @@ def test_a_slider_computes_on_one_thread():
 
     widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
     assert seen and set(seen) == {1}
+
+
+def test_garbage_is_looked_for_after_an_answer_and_not_in_the_midst_of_it():
+    seen = []
+
+    def f(k=1):
+        seen.append(gc.isenabled())
+        return square(k)
+
+    tuner = widgets.tune(f, lambda picture: picture, alt="A gray square", stored=2, k=(0, 3))
+    seen.clear()
+    tuner.at = [2]
+    assert seen == [False] and gc.isenabled()
+    tuner._picture = lambda at: 1 / 0
+    tuner.at = [3]
+    assert "ZeroDivisionError" in tuner.problem and gc.isenabled()

@@ -4,13 +4,13 @@ drawn  what a draw function returns: a uint8 picture (H, W) or (H, W, 3), an Axe
 alt    alt text: what is in the picture, in a sentence
 """
 
-import io
 import sys
 from collections.abc import Callable, Iterable, Sequence
 from html import escape
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
@@ -173,12 +173,11 @@ def _is_picture(shape: tuple[int, ...]) -> bool:
 
 
 def _pixels(figure: Any) -> NDArray[np.uint8]:
-    file = io.BytesIO()
-    figure.savefig(file, format="rgba", dpi=figure.dpi)
-    width, height = (int(side) for side in figure.canvas.get_width_height(physical=True))
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
     if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
         sys.modules["matplotlib.pyplot"].close(figure)
-    return np.frombuffer(file.getvalue(), np.uint8).reshape(height, width, 4)[..., :3]
+    return np.array(canvas.buffer_rgba())[..., :3]
 
 
 def _legend(low: int, high: int) -> str:

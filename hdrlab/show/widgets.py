@@ -10,7 +10,9 @@ The first two know no algorithm: `states` is any iterable (the library's `<verb>
 yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure.
 """
 
-from collections.abc import Callable, Iterable
+import gc
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -31,6 +33,18 @@ State = TypeVar("State")
 
 THREADS = ThreadpoolController()  # of the linear algebra that is loaded by now
 MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Let Python look for garbage after an answer, and not in the midst of it: a plot leaves plenty."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
 
 
 class Player(anywidget.AnyWidget):
@@ -120,12 +134,13 @@ class Tuner(anywidget.AnyWidget):
     def _answer(self, _: object) -> None:
         """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""
         at, frame, problem = list(self.at), self.frame, ""
-        try:
-            frame = self._picture(at)
-        except Exception as error:  # it may be a student's function: its words belong beside the slider
-            problem = f"{type(error).__name__}: {error}"
-        with self.hold_sync():
-            self.frame, self.shown, self.problem, self.answers = frame, at, problem, self.answers + 1
+        with undisturbed():
+            try:
+                frame = self._picture(at)
+            except Exception as error:  # it may be a student's function: its words belong beside the slider
+                problem = f"{type(error).__name__}: {error}"
+            with self.hold_sync():
+                self.frame, self.shown, self.problem, self.answers = frame, at, problem, self.answers + 1
 
 
 def tune(
