@@ -12,14 +12,13 @@ from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NamedTuple
 
-import jinja2
-
 from hdrlab.course import grading, journal, materials, plan, results, unpack
 from hdrlab.course.grading import Conditions
 from hdrlab.course.handins import Handin
 from hdrlab.course.members import Refused
 from hdrlab.course.plan import Homework
 from hdrlab.course.results import Result
+from hdrlab.show.templates import templates
 
 READ = (".ipynb", ".py")
 PAGE = "class_page.html"
@@ -88,19 +87,16 @@ def page(homework: Homework, graded: Iterable[Result], notes: Iterable[str]) -> 
     met = Counter((task, said) for result in each for task, said in result.misconceptions.items())
     scores = sorted(result.score for result in each)
     bins = Counter(min(9, int(10 * score / max(homework.points, 1e-9))) for score in scores)
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template(PAGE).render(
-        homework=homework,
-        count=len(each),
-        median=scores[len(scores) // 2] if scores else 0,
-        bins=[(10 * k, bins[k]) for k in range(10)],
-        promises=[(*key, holds, of) for key, (holds, of) in promises.items()],
-        met=met.most_common(),
-        notes=list(notes),
+    return (
+        templates(Path(__file__).parent)
+        .get_template(PAGE)
+        .render(
+            homework=homework,
+            count=len(each),
+            median=scores[len(scores) // 2] if scores else 0,
+            bins=[(10 * k, bins[k]) for k in range(10)],
+            promises=[(*key, holds, of) for key, (holds, of) in promises.items()],
+            met=met.most_common(),
+            notes=list(notes),
+        )
     )

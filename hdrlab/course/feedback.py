@@ -11,6 +11,7 @@ import jinja2
 from hdrlab.course import results
 from hdrlab.course.results import Check, Drawing, Result
 from hdrlab.io import web
+from hdrlab.show.templates import templates
 
 MARKS = {"holds": "✓", "fails": "✗", "no answer": "✗"}
 
@@ -76,12 +77,6 @@ def _pictures(drawing: Drawing) -> list[tuple[str, str, str]]:
 
 
 def _environment() -> jinja2.Environment:
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
+    environment = templates(Path(__file__).parent)
     environment.filters |= {"pictures": _pictures, "number": number, "points": results.points}
     return environment

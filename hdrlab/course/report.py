@@ -9,7 +9,6 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import jinja2
 import numpy as np
 from markupsafe import Markup
 
@@ -21,6 +20,7 @@ from hdrlab.io.decode import look
 from hdrlab.io.exposure import Exposure
 from hdrlab.io.files import replacing
 from hdrlab.show import figures, plots, sections
+from hdrlab.show.templates import templates
 
 AFTER = {"bracket": "description", "curves": "algorithm", "map": "results"}  # figure -> section
 ALONE = {"bracket": "The bracket", "curves": "The response", "map": "The radiance map"}
@@ -64,8 +64,10 @@ def write_report(project: Project) -> Written:
     parts = tuple(_parts(said, {name: found[name] for name in AFTER if name in found}))
     notes += [f"the words have no section about: {name}" for name in said.missing()]
     title = said.title or project.about.title or project.folder.resolve().name
-    text = _template().render(
-        title=title, about=project.about, hero=found.get("artifact"), parts=parts, lang="en"
+    text = (
+        templates(Path(__file__).parent)
+        .get_template(TEMPLATE)
+        .render(title=title, about=project.about, hero=found.get("artifact"), parts=parts, lang="en")
     )
     page = project.folder / PAGE
     with replacing(page) as temporary:
@@ -145,18 +147,6 @@ def _parts(said: words.Words, found: dict[str, Any]) -> Iterator[Part]:
         yield Part(section.heading, section.html, mine)
     for name, figure in waiting.items():
         yield Part(ALONE[name], Markup(), {name: figure})
-
-
-def _template() -> jinja2.Template:
-    """Return the page's template, in which everything but the rendered words is escaped."""
-    environment = jinja2.Environment(
-        loader=jinja2.FileSystemLoader(Path(__file__).parent),
-        autoescape=True,
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-    )
-    return environment.get_template(TEMPLATE)
 
 
 def example() -> str:

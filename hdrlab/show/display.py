@@ -11,7 +11,6 @@ it begins.
 
 from pathlib import Path
 
-import jinja2
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -19,6 +18,7 @@ from hdrlab.core.arrays import describe
 from hdrlab.io import web
 from hdrlab.io.files import replacing
 from hdrlab.io.photos import write_picture
+from hdrlab.show.templates import templates
 
 PAGE = "display.html"
 
@@ -56,9 +56,7 @@ def write_display(folder: str | Path, pictures: ArrayLike, *, frames: int = 4) -
     folder.mkdir(parents=True, exist_ok=True)
     for number, picture in enumerate(shown, 1):
         write_picture(folder / f"step-{number:02d}.png", picture)
-    template = jinja2.Environment(autoescape=True, undefined=jinja2.StrictUndefined).from_string(
-        (Path(__file__).parent / PAGE).read_text(encoding="utf8")
-    )
+    template = templates(Path(__file__).parent).get_template(PAGE)
     height, width = shown.shape[1:]
     pages = [web.data_uri(web.webp(picture, lossless=True)) for picture in shown]
     with replacing(folder / PAGE) as temporary:

@@ -8,7 +8,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import jinja2
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -17,6 +16,7 @@ from hdrlab.core.errors import Truth
 from hdrlab.io.files import replacing
 from hdrlab.pipeline import Assembly
 from hdrlab.show import figures, sections
+from hdrlab.show.templates import templates
 
 PAGE = "report.html"
 
@@ -75,27 +75,23 @@ def _page(
         raise ValueError(f"expected a finished assembly, got one after the stage {stage!r}")
     if picture.dtype != np.uint8 or picture.shape[:2] != seen.shape or picture.shape[2:] not in ((), (3,)):
         raise ValueError(f"expected a uint8 picture of {seen.shape} pixels, got {describe(picture)}")
-    return _template().render(
-        notes=notes,
-        doubts=doubts,
-        picture=figures.photograph(picture, 1600, "The picture: the radiance map, tone-mapped for a display"),
-        facts=sections.facts(E, seen, medians),
-        bracket=sections.bracket(bracket, offsets),
-        response=sections.response(g, truth),
-        radiance=sections.radiance(E),
-        known=sections.known(seen, picture),
-        moving=sections.moving(assembly.moving, picture),
-        agreement=sections.agreement(bracket, medians),
-        errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
-        recipe=sections.recipe(bracket, recipe),
+    return (
+        templates(Path(__file__).parent)
+        .get_template(PAGE)
+        .render(
+            notes=notes,
+            doubts=doubts,
+            picture=figures.photograph(
+                picture, 1600, "The picture: the radiance map, tone-mapped for a display"
+            ),
+            facts=sections.facts(E, seen, medians),
+            bracket=sections.bracket(bracket, offsets),
+            response=sections.response(g, truth),
+            radiance=sections.radiance(E),
+            known=sections.known(seen, picture),
+            moving=sections.moving(assembly.moving, picture),
+            agreement=sections.agreement(bracket, medians),
+            errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
+            recipe=sections.recipe(bracket, recipe),
+        )
     )
-
-
-def _template() -> jinja2.Template:
-    """Return the page's template. Names and notes come from file names, so everything in it is escaped."""
-    loader = jinja2.FileSystemLoader(Path(__file__).parent)
-    strict = jinja2.StrictUndefined
-    environment = jinja2.Environment(
-        loader=loader, autoescape=True, undefined=strict, trim_blocks=True, lstrip_blocks=True
-    )
-    return environment.get_template(PAGE)

@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 from urllib.parse import urlsplit
 
-import jinja2
 from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
@@ -15,6 +14,7 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 from hdrlab.course.gallery import bearers, store, tokens
 from hdrlab.course.gallery.guard import Rate, Rates, Refusal
 from hdrlab.course.gallery.writer import Writer
+from hdrlab.show.templates import templates
 
 HERE = Path(__file__).parent
 KEPT_FILES, KEPT_CARDS = 400, 4000  # in memory: what a class looks at again and again
@@ -35,15 +35,7 @@ class Front:
         self.cookie = "__Host-gallery" if self.secure else "gallery"
         self.folder, self.clock, self.rates = Path(folder), clock, Rates()
         self.db, self.writer = store.connect(folder), Writer(folder)
-        loader = jinja2.FileSystemLoader(HERE / "templates")
-        self.pages = jinja2.Environment(
-            loader=loader,
-            autoescape=True,
-            undefined=jinja2.StrictUndefined,
-            trim_blocks=True,
-            lstrip_blocks=True,
-        )
-
+        self.pages = templates(HERE / "templates")
         self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
         self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
 
