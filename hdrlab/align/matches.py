@@ -21,15 +21,12 @@ from scipy.fft import irfft2, next_fast_len, rfft2
 from scipy.ndimage import maximum_filter
 
 from hdrlab.align import criterion, light
+from hdrlab.align.judge import ALIKE, DOUBT, FAR, NEAR, RIVALS
 from hdrlab.align.pairs import by_brightness
 from hdrlab.core import warp
 from hdrlab.core.arrays import as_stack, as_times
 
 Float = NDArray[np.float64]
-NEAR, FAR = 2, 8  # pixels: how far around a move to look
-DOUBT = 0.3  # confidence; photographs that do not fit stay below 0.15, and those that do come to 0.6 and more
-ALIKE = 0.1  # of the way up to the error elsewhere: a rival this low fits as well
-RIVALS = 4  # shifts, the next best of the correlation
 TILE = 512  # pixels: of so large a part of the picture repeating textures are looked for
 EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
