@@ -1,11 +1,16 @@
 """Commands that begin with photographs."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from hdrlab.cli import common, curves
 from hdrlab.core import catalogue
+
+if TYPE_CHECKING:
+    from hdrlab.core.bracket import Bracket
+    from hdrlab.pipeline import Assembly
 
 
 @click.command()
@@ -67,10 +72,8 @@ def assemble(
     reached as ./exif.
     """
     from hdrlab import pipeline
-    from hdrlab.core.steps import last
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
-    from hdrlab.pipeline.registration import BY_LIGHT
 
     recover = curves.given(response)
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
@@ -81,24 +84,9 @@ def assemble(
         progress=lambda paths: common.progress(paths, "reading"),
     )
     methods["method"] = merge
-    estimated = estimate_times or times == "estimate"
-    if estimated:
-        methods["times"] = "estimate"
-    steps = pipeline.assemble_steps(bracket, response=recover, **methods)
-    asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
-    count = len(pipeline.STAGES) + estimated + asked
-    if methods["align"] in BY_LIGHT:  # the first stage takes seconds a photograph
-        assembly = last(common.one_by_one(steps, ["aligning", *["the map"] * (count - 1)]))
-    else:
-        assembly = last(common.progress(steps, "assembling", count))
-    for note in assembly.notes:
-        click.echo(f"note: {note}", err=True)
-    if assembly.doubts and not anyway:
-        raise ValueError(
-            "; ".join(assembly.doubts) + " (nothing was written; --anyway writes the map as it is)"
-        )
-    for doubt in assembly.doubts:
-        click.echo(f"warning: {doubt}", err=True)
+    methods["times"] = "estimate" if estimate_times or times == "estimate" else "stated"
+    assembly = _assembled(bracket, methods | {"response": recover})
+    _tell(assembly, anyway)
     radiance.write_radiance(out, assembly.E)
     if picture or report:
         rendered = pipeline.develop(assembly.E, tonemap)
@@ -111,3 +99,28 @@ def assemble(
                 report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": tonemap}
             )
     click.echo(f"{out}: {common.size(assembly.E)}, frames agree to {assembly.spread:.3f} stops")
+
+
+def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":
+    """Return what the pipeline makes of a bracket, with progress."""
+    from hdrlab import pipeline
+    from hdrlab.core.steps import last
+    from hdrlab.pipeline.registration import BY_LIGHT
+
+    steps = pipeline.assemble_steps(bracket, **methods)
+    asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
+    count = len(pipeline.STAGES) + (methods["times"] == "estimate") + asked
+    if methods["align"] in BY_LIGHT:  # the first stage takes seconds a photograph
+        return last(common.one_by_one(steps, ["aligning", *["the map"] * (count - 1)]))
+    return last(common.progress(steps, "assembling", count))
+
+
+def _tell(assembly: "Assembly", anyway: bool) -> None:
+    """Print notes and doubts, or raise a ValueError where doubts forbid to write the map."""
+    for note in assembly.notes:
+        click.echo(f"note: {note}", err=True)
+    if assembly.doubts and not anyway:
+        said = "; ".join(assembly.doubts)
+        raise ValueError(f"{said} (nothing was written; --anyway writes the map as it is)")
+    for doubt in assembly.doubts:
+        click.echo(f"warning: {doubt}", err=True)

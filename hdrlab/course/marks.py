@@ -64,28 +64,17 @@ def marks(
     mine = {bill.student: bill for bill in bills if bill.project == homework.name}
     rows = []
     for id, name, team, _ in roster.students:
+        who, of = (id, name, team, homework.name), homework.points
         if id not in mine:
-            row = Mark(
-                id,
-                name,
-                team,
-                homework.name,
-                "",
-                0,
-                0,
-                0.0,
-                homework.points,
-                0.0,
-                0.0,
-                left.get(id, late.free_days),
-            )
-            rows.append(row._replace(note="not handed in"))
+            grace = left.get(id, late.free_days)
+            rows.append(Mark(*who, "", 0, 0, 0.0, of, 0.0, 0.0, grace, "not handed in"))
             continue
-        kept, work = mine[id], points.get(team, 0.0)
+        bill, work, note = mine[id], points.get(team, 0.0), "" if team in points else "not graded"
         received = handins[team].received.isoformat(timespec="minutes")
-        worth = (work, homework.points, kept.penalty, kept.score, kept.left)
-        note = "" if team in points else "not graded"
-        rows.append(Mark(id, name, team, homework.name, received, kept.late, kept.excused, *worth, note))
+        row = Mark(
+            *who, received, bill.late, bill.excused, work, of, bill.penalty, bill.score, bill.left, note
+        )
+        rows.append(row)
     return rows
 
 
