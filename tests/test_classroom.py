@@ -140,7 +140,7 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(tmp_path, monkeypatc
         '[late]\nfree_days = 10\npoints_a_day = 1\n[hw2]\ntitle = "T"\ndue = 2026-10-23T23:59:00Z\n'
         'tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]\n'
     )
-    good = "import numpy as np\n\ndef hat(*a, **k):\n    return 127.5 - abs(np.arange(256) - 127.5)\n"
+    good = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
     (tmp_path / "in" / "t_hw2.py").write_text(good)
     (tmp_path / "in" / "b3.zip").write_bytes(b"PK\3\4 no archive")
     (tmp_path / "times.csv").write_text(
