@@ -223,7 +223,7 @@ def killed(folder: Path, count: int = VOTERS, times: int = 5, *, after: float = 
         arguments = [address, str(home / "links.json"), str(after), "20", "apart"]
         command = [sys.executable, "-m", "benchmarks.gallery", *arguments]
         client = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE)
-        _wait_for_ballots(room, server, count // 4 + 7 * k)
+        _wait_for_ballots(room, server, count // 2 + 7 * k)
         os.kill(server.pid, signal.SIGKILL)
         server.wait()
         seen = Voted(**json.loads(client.communicate()[0]))
