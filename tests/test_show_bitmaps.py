@@ -14,8 +14,8 @@ PAIR = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])  # which lies on the 
 STATES = list(mtb.align_steps(PAIR))
 
 
-def titles(figure):
-    return [ax.get_title() for ax in figure.axes]
+def titles(drawn):
+    return [ax.get_title() for ax in drawn.figure.axes]
 
 
 def test_bits_that_agree_are_dark_or_white_and_those_that_differ_orange():
@@ -42,21 +42,21 @@ def test_bitmaps_of_two_sizes_are_refused(b, compared):
 
 def test_at_the_true_offset_nothing_is_orange_and_the_title_says_so():
     state = STATES[-1]
-    figure = drawn.difference(*state.bits, state.offset, state.width)
-    assert titles(figure) == [f"moved by ({state.offset[0]}, {state.offset[1]}): 0.00 % of the bits differ"]
-    shown = figure.axes[0].images[0].get_array()
+    ax = drawn.difference(*state.bits, state.offset, state.width)
+    assert titles(ax) == [f"moved by ({state.offset[0]}, {state.offset[1]}): 0.00 % of the bits differ"]
+    shown = ax.images[0].get_array()
     assert not np.all(shown == drawn.DIFFER, axis=-1).any()
-    beside = drawn.difference(*state.bits, (0, 0), state.width).axes[0].images[0].get_array()
+    beside = drawn.difference(*state.bits, (0, 0), state.width).images[0].get_array()
     assert np.all(beside == drawn.DIFFER, axis=-1).mean() > 0.1
 
 
 def test_the_error_in_a_title_is_the_share_of_orange_among_what_is_compared():
     state = STATES[-1]
-    figure = drawn.difference(*state.bits, (1, 1), state.width)
-    shown = figure.axes[0].images[0].get_array()
+    ax = drawn.difference(*state.bits, (1, 1), state.width)
+    shown = ax.images[0].get_array()
     orange = np.all(shown == drawn.DIFFER, axis=-1).sum()
     compared = (~np.all(shown == drawn.OUTSIDE, axis=-1)).sum()
-    assert f"{100 * orange / compared:.2f} %" in titles(figure)[0]
+    assert f"{100 * orange / compared:.2f} %" in titles(ax)[0]
 
 
 @pytest.mark.parametrize("state", STATES, ids=lambda state: f"level{state.level}")

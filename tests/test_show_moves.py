@@ -14,8 +14,8 @@ X = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])  # which lies on the fir
 TRUE = warp.as_moves([[-3, 4]])[0]
 
 
-def title(figure):
-    return figure.axes[0].get_title()
+def title(drawn):
+    return drawn.figure.axes[0].get_title()
 
 
 def test_after_the_true_move_nothing_differs_and_the_title_says_so():
@@ -25,18 +25,14 @@ def test_after_the_true_move_nothing_differs_and_the_title_says_so():
 
 
 def test_what_one_photograph_does_not_show_is_gray():
-    shown = drawn.difference(X, TRUE).axes[0].images[0].get_array()
+    shown = drawn.difference(X, TRUE).images[0].get_array()
     assert np.all(shown[-1] == 128) and np.all(shown[:, 0] == 128) and not np.all(shown[40] == 128)
 
 
 def test_the_brighter_photograph_is_told_by_its_colour():
     for k, warm in ((0.8, True), (1.25, False)):
-        pixel = (
-            drawn.difference(np.stack([X[0], X[0] * np.float32(k)]), np.eye(3))
-            .axes[0]
-            .images[0]
-            .get_array()[5, 5]
-        )
+        ax = drawn.difference(np.stack([X[0], X[0] * np.float32(k)]), np.eye(3))
+        pixel = ax.images[0].get_array()[5, 5]
         assert (pixel[0] > pixel[2]) == warm
 
 

@@ -439,3 +439,51 @@ def test_garbage_is_looked_for_after_an_answer_and_not_in_the_midst_of_it():
     tuner._picture = lambda at: 1 / 0
     tuner.at = [3]
     assert "ZeroDivisionError" in tuner.problem and gc.isenabled()
+
+
+def fixed(k):
+    """Draw a curve on axes that stay as they are, under a legend and a title of two lines."""
+    ax = plots.response(np.arange(256) * (k + 1) / 100, span=(0, 8), label=f"number {k}")
+    ax.annotate("here", (k, 40 * k))
+    ax.set_title(f"number {k}\nof some, gently", fontsize=9 + k)
+    return ax
+
+
+def running(k):
+    """Draw on axes whose ends, scales and colours change."""
+    ax = plots.axes()
+    ax.plot([1, 10 + 100 * k], [1, 2 + k])
+    ax.set(xscale="log" if k % 2 else "linear", xlabel=f"number {k}", facecolor="#E6E6E6" if k > 1 else "w")
+    return ax
+
+
+def beneath(k):
+    """Draw a picture, which lies under the grid."""
+    ax = plots.axes()
+    ax.imshow(np.full((4, 4), k), vmin=0, vmax=4, aspect="auto")
+    return ax
+
+
+def bare(k):
+    """Draw a picture in Axes without ticks, under a title."""
+    ax = plots.picture_axes(3, 2, (0, 0, 1, 0.8))
+    ax.imshow(np.full((4, 4), k), vmin=0, vmax=4, aspect="auto")
+    ax.set_title(f"gently {k}")
+    return ax
+
+
+@pytest.mark.parametrize("draw", [fixed, running, beneath, bare])
+def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw):
+    kept = again.Kept()
+    for k in (0, 1, 1, 3, 2, 0):
+        assert np.array_equal(again.drawn(draw, k, render, kept), render(draw(k)))
+
+
+def test_the_ground_is_kept_where_the_axes_stay_and_painted_anew_where_they_change():
+    for draw, stays in ((fixed, True), (running, False)):
+        kept = again.Kept()
+        again.drawn(draw, 0, render, kept)
+        ((_, before),) = kept.ground.values()
+        again.drawn(draw, 1, render, kept)
+        ((_, after),) = kept.ground.values()
+        assert (before is after) == stays

@@ -2,26 +2,32 @@
 
 `widgets.play` and `widgets.tune` draw many plots one after the other. Inside `drawn`, `plots.axes` hands out
 the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would leave behind.
+`paint` keeps the pixels of their ground, which is the paper with ticks, numbers and grid: where these are
+the same as in the picture before, only what stands upon them is drawn.
 """
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any, TypeVar
 
 from matplotlib import rcParams
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 State = TypeVar("State")
-Size = tuple[float, float]  # of the figure, inches
+Size = tuple[float, ...]  # of the figure, inches, and where in it the Axes lie if not in the usual place
 
 
 class Kept:
-    """Axes between two pictures: `spare` ones, by size, and those that were handed out since."""
+    """Axes between two pictures, by size: `spare` ones, those handed `out` since, pixels of their ground."""
 
     def __init__(self) -> None:
         self.spare: dict[Size, Axes] = {}
         self.out: dict[Size, tuple[Axes, object]] = {}
+        self.ground: dict[Size, tuple[object, Any]] = {}
 
 
 _kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
@@ -29,7 +35,7 @@ _kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
 
 @contextmanager
 def reusing(kept: Kept) -> Iterator[None]:
-    """Let `plots.axes` take Axes from `kept` while this lasts."""
+    """Let `plots.axes` and `picture_axes` take Axes from `kept` while this lasts."""
     token = _kept.set(kept)
     kept.out.clear()
     try:
@@ -44,7 +50,7 @@ def drawn(
     """Return finish(draw(state)), drawn on spare Axes where there are some."""
     with reusing(kept):
         picture = draw(state)
-    frame = finish(picture)
+        frame = finish(picture)
     keep(kept, picture)
     return frame
 
@@ -107,3 +113,53 @@ def wiped(ax: Axes) -> Axes:
     ax.relim()
     ax.autoscale(True)
     return ax
+
+
+def paint(canvas: FigureCanvasAgg) -> None:
+    """Draw the canvas's figure; where its ground is that of the picture before, only what stands upon it."""
+    kept, figure = _kept.get(), canvas.figure
+    mine = [(size, *out) for size, out in kept.out.items() if out[0].figure is figure] if kept else []
+    if kept is None or not mine or not separable(mine[0][1], mine[0][2]):
+        canvas.draw()
+        return
+    size, ax, as_new = mine[0]
+    ground = [figure.patch, ax.patch, ax.xaxis, ax.yaxis]
+    marks = (as_new, ax.get_facecolor(), ticks(ax.xaxis), ticks(ax.yaxis))
+    before, pixels = kept.ground.get(size, (None, None))
+    if before == marks:
+        canvas.restore_region(pixels)
+    else:
+        with hidden(child for child in ax.get_children() if child not in ground):
+            canvas.draw()
+        kept.ground[size] = (marks, canvas.copy_from_bbox(figure.bbox))
+    with hidden(ground):
+        figure.draw(canvas.get_renderer())
+
+
+def separable(ax: Axes, as_new: object) -> bool:
+    """Return whether the ground of Axes lies below all else, and is made of nothing but ticks and labels."""
+    ground = max(ax.xaxis.get_zorder(), ax.yaxis.get_zorder())
+    above = (child for child in ax.get_children() if child not in (ax.patch, ax.xaxis, ax.yaxis))
+    plain = alone(ax) and ax.get_aspect() == "auto" and look(ax) == as_new
+    return plain and all(child.get_zorder() > ground for child in above)
+
+
+def ticks(axis: Axis) -> object:
+    """Return all that makes an axis look as it does, beside `look`: its ends, its ticks and their numbers."""
+    numbers = (axis.get_major_formatter(), axis.get_minor_formatter())
+    places = (axis.get_majorticklocs().tolist(), axis.get_minorticklocs().tolist())
+    said = [(at, to.format_ticks(at), to.get_offset()) for to, at in zip(numbers, places, strict=True)]
+    return tuple(axis.get_view_interval()), axis.get_scale(), axis.get_label_text(), said
+
+
+@contextmanager
+def hidden(artists: Iterable[Artist]) -> Iterator[None]:
+    """Leave these out of what is drawn while this lasts."""
+    shown = [artist for artist in artists if artist.get_visible()]
+    try:
+        for artist in shown:
+            artist.set_visible(False)
+        yield
+    finally:
+        for artist in shown:
+            artist.set_visible(True)

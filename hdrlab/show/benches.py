@@ -13,7 +13,6 @@ from typing import NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab import pipeline
@@ -69,7 +68,7 @@ def _enlarged(w: NDArray[np.float64], shape: tuple[int, ...]) -> Mask:
     return (w >= w.max() / 2)[rows][:, columns]
 
 
-def draw_shot(shot: Shot) -> Figure:
+def draw_shot(shot: Shot) -> Axes:
     """Draw a photograph with its lost pixels marked, and what the mode chose; a ring for whom it asked."""
     time = F**2 / 2.0**shot.EV
     chosen = (
@@ -81,7 +80,7 @@ def draw_shot(shot: Shot) -> Figure:
     return sensors.titled(sensors.marked(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
 
 
-def looked(state: State) -> Figure:
+def looked(state: State) -> Axes:
     """Draw one shot of automatic exposure, its reading, and what it asks for next; the ring as above."""
     Z = np.round(255 * encode_srgb(state.B)).astype(np.uint8)
     full = f"{np.mean(state.B >= 1):.0%} of the pixels full"

@@ -1,4 +1,4 @@
-"""Alignment by bitmaps -> pictures and Figures: where two bitmaps differ, nine offsets at once, all offsets.
+"""Alignment by bitmaps -> pictures and drawings: where two bitmaps differ, nine offsets at once, all.
 
 bits     of one photograph   (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap, 1 where compared
 state    of `align.mtb`      one level of one pair
@@ -11,6 +11,7 @@ the four part as well.
 from textwrap import wrap
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike, NDArray
@@ -20,6 +21,7 @@ from hdrlab.align.bitmaps import Offset, Words
 from hdrlab.align.mtb import State
 from hdrlab.align.pairs import Verdict
 from hdrlab.core.arrays import describe
+from hdrlab.show.plots import picture_axes
 
 Image = NDArray[np.uint8]
 AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
@@ -40,19 +42,18 @@ def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = Non
     return picture
 
 
-def difference(fixed: Words, moving: Words, offset: Offset, width: int, *, title: str = "") -> Figure:
-    """Return the difference of two photographs' bits, the second moved by an offset, under its error."""
+def difference(fixed: Words, moving: Words, offset: Offset, width: int, *, title: str = "") -> Axes:
+    """Draw the difference of two photographs' bits, the second moved by an offset, under its error."""
     moved = judge.move(moving, offset)
     error = float(bitmaps.error(bitmaps.disagreement(fixed, moved)))
-    figure = _figure(fixed.shape[1] / width, above=0.32 + 0.21 * title.count("\n"))
-    ax = figure.axes[0]
+    ax = _under(fixed.shape[1] / width, above=0.32 + 0.21 * title.count("\n"))
     ax.imshow(_picture(fixed, moved, width), interpolation="nearest", aspect="auto")
     ax.set_title(title or f"moved by {_pair(offset)}: {100 * error:.2f} % of the bits differ", fontsize=11)
-    return figure
+    return ax
 
 
-def judged(state: State, verdict: Verdict) -> Figure:
-    """Return what still differs at the end of a search, under what was found and why to doubt it."""
+def judged(state: State, verdict: Verdict) -> Axes:
+    """Draw what still differs at the end of a search, under what was found and why to doubt it."""
     found = f"found {_pair(state.offset)}, {100 * verdict.after:.2f} % of the bits differ"
     said = wrap(verdict.trouble or "nothing speaks against it", 68)
     title = "\n".join([found, *said, *[""] * (2 - len(said))])  # of one height, whatever it says
@@ -140,14 +141,11 @@ def _picture(fixed: Words, moved: Words, width: int) -> Image:
     return overlay(masks[0, 0], masks[1, 0], masks[0, 1] & masks[1, 1])
 
 
-def _figure(ratio: float, *, above: float) -> Figure:
-    """Return a figure with bare Axes for a picture of this height over width, and room for a title."""
+def _under(ratio: float, *, above: float) -> Axes:
+    """Return bare Axes for a picture of this height over width, with room for a title."""
     tall = (WIDTH - 0.1) * ratio
-    figure = Figure(figsize=(WIDTH, tall + above + 0.05), dpi=100)
     total = tall + above + 0.05
-    ax = figure.add_axes((0.05 / WIDTH, 0.05 / total, 1 - 0.1 / WIDTH, tall / total))
-    ax.set_axis_off()
-    return figure
+    return picture_axes(WIDTH, total, (0.05 / WIDTH, 0.05 / total, 1 - 0.1 / WIDTH, tall / total))
 
 
 def _pair(offset: Offset) -> str:

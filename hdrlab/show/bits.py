@@ -1,4 +1,4 @@
-"""Numbers as they stand in a file -> Figures: every bit, what its field says, and a scanline, code by code.
+"""Numbers as they stand in a file, drawn: every bit, what its field says, and a scanline, code by code.
 
 field   a part of a number       its name, its bits as "0101", and what they stand for, in words
 half    16 bits                  sign 1, exponent 5, mantissa 10
@@ -13,11 +13,13 @@ from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
+from hdrlab.show.plots import picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have
 ROW, SIDE, LONG = 0.36, 0.21, 20  # inches from row to row, and of a box; bits beyond which a row is long
@@ -37,8 +39,8 @@ class Field(NamedTuple):
     said: str
 
 
-def rgbe(pixel: ArrayLike) -> Figure:
-    """Return the four bytes of a pixel (4,) uint8, a row each: bits, number, and what a channel comes to."""
+def rgbe(pixel: ArrayLike) -> Axes:
+    """Draw the four bytes of a pixel (4,) uint8, a row each: bits, number, and what a channel comes to."""
     given = np.asarray(pixel)
     if given.shape != (4,) or given.dtype != np.uint8:
         raise ValueError(f"expected a pixel (4,) uint8, got {describe(given)}")
@@ -51,8 +53,8 @@ def rgbe(pixel: ArrayLike) -> Figure:
     return rows([*fields, Field("exponent", f"{e:08b}", unit)])
 
 
-def number(value: float, *, bits: int = 16) -> Figure:
-    """Return the fields of a half (16 bits) or a float (32), a row each, with what they say."""
+def number(value: float, *, bits: int = 16) -> Axes:
+    """Draw the fields of a half (16 bits) or a float (32), a row each, with what they say."""
     if bits not in FORMATS:
         raise ValueError(f"expected 16 or 32 bits, got {bits}")
     kind, as_word, wide, bias = FORMATS[bits]
@@ -69,13 +71,12 @@ def number(value: float, *, bits: int = 16) -> Figure:
     return rows(fields, title=f"{value:.7g} is stored as {float(stored):.10g}")
 
 
-def rows(fields: Sequence[Field], *, title: str = "") -> Figure:
-    """Return fields as rows of boxes, a bit in each, between name and meaning; long rows stand below."""
+def rows(fields: Sequence[Field], *, title: str = "") -> Axes:
+    """Draw fields as rows of boxes, a bit in each, between name and meaning; long rows stand below."""
     tall = [2 * ROW if len(field.bits) > LONG else ROW for field in fields]
     above = 0.35 if title else 0.08
     height = sum(tall) + above
-    figure = Figure(figsize=(WIDTH, height), dpi=100)
-    ax = figure.add_axes((0.01, 0, 0.98, 1 - above / height))
+    ax = picture_axes(WIDTH, height, (0.01, 0, 0.98, 1 - above / height))
     for (name, bits, said), y in zip(fields, np.cumsum([0, *tall]), strict=False):
         colour = COLOURS.get(name.split()[0], COLOURS["mantissa"])
         long = len(bits) > LONG
@@ -87,9 +88,8 @@ def rows(fields: Sequence[Field], *, title: str = "") -> Figure:
         ax.text(0, y + SIDE / 2, name, fontsize=10, va="center")
         ax.text(1.3 if long else 1.4 + SIDE * len(bits), y + SIDE / 2, said, fontsize=10, va="center")
     ax.set(xlim=(0, WIDTH * 0.98), ylim=(sum(tall), -0.03))
-    ax.set_axis_off()
-    figure.text(0.012, 1 - 0.2 / height, title, fontsize=11, va="center")
-    return figure
+    ax.text(0.012, 1 - 0.2 / height, title, fontsize=11, va="center", transform=ax.figure.transFigure)
+    return ax
 
 
 def scanline(planes: ArrayLike, done: int, *, title: str = "") -> Figure:

@@ -1,4 +1,4 @@
-"""Registration by light -> Figures: what differs after a move, correlation at every shift, the simplex's way.
+"""Registration by light, drawn: what differs after a move, correlation at every shift, the simplex's way.
 
 X      light               (2, h, w): a fixed and a moving photograph on one scale, NaN where discarded
 H      move                (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
@@ -10,6 +10,7 @@ state  of `align.cerman`   one level of one pair
 from collections.abc import Mapping
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
@@ -17,6 +18,7 @@ from hdrlab.align import criterion
 from hdrlab.align.cerman import State
 from hdrlab.core.arrays import describe
 from hdrlab.show.figures import false_colour
+from hdrlab.show.plots import bare, picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have
 REACH = 0.6  # d at which the colours end: one photograph 1.86 times as bright as the other
@@ -34,16 +36,14 @@ def differences(X: ArrayLike, H: ArrayLike) -> tuple[NDArray[np.float64], float]
     return d.reshape(light.shape[1:]), criterion.error(d)
 
 
-def difference(X: ArrayLike, H: ArrayLike, *, title: str = "") -> Figure:
-    """Return what differs between two photographs, the second moved by H, under its error."""
+def difference(X: ArrayLike, H: ArrayLike, *, title: str = "") -> Axes:
+    """Draw what differs between two photographs, the second moved by H, under its error."""
     d, e = differences(X, H)
     tall = WIDTH * d.shape[0] / d.shape[1]
-    figure = Figure(figsize=(WIDTH, tall + 0.4), dpi=100)
-    ax = figure.add_axes((0, 0, 1, tall / (tall + 0.4)))
+    ax = picture_axes(WIDTH, tall + 0.4, (0, 0, 1, tall / (tall + 0.4)))
     ax.imshow(false_colour(d, -REACH, REACH, colours=COLOURS), interpolation="nearest", aspect="auto")
-    ax.set_axis_off()
     ax.set_title(f"{title}error e = {e:.4f}", fontsize=11)
-    return figure
+    return ax
 
 
 def correlation(c: ArrayLike, *, marks: Mapping[str, tuple[float, float]] | None = None) -> Figure:
@@ -73,7 +73,7 @@ def level(state: State) -> Figure:
     figure = Figure(figsize=(WIDTH, total), dpi=100)
     above = figure.add_axes((0, 1.9 / total, 1, tall / total))
     above.imshow(false_colour(d, -REACH, REACH, colours=COLOURS), interpolation="nearest", aspect="auto")
-    above.set_axis_off()
+    bare(above)
     size = f"{d.shape[1]} × {d.shape[0]} pixels"
     above.set_title(f"level {state.level}, {size}: error e = {found:.4f}", fontsize=11)
     ax = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total))

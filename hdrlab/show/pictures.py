@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.io import web
-from hdrlab.show import figures
+from hdrlab.show import again, figures
 
 SIDE = 1000  # pixels
 DECADE = float(np.log10(2))  # of a stop
@@ -174,7 +174,7 @@ def _is_picture(shape: tuple[int, ...]) -> bool:
 
 def _pixels(figure: Any) -> NDArray[np.uint8]:
     canvas = FigureCanvasAgg(figure)
-    canvas.draw()
+    again.paint(canvas)
     if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
         sys.modules["matplotlib.pyplot"].close(figure)
     return np.array(canvas.buffer_rgba())[..., :3]

@@ -49,6 +49,22 @@ def axes(width: float = 5.4, height: float = 3.6) -> Axes:
     return again.handed_out((width, height), ax)
 
 
+def picture_axes(width: float, height: float, place: tuple[float, float, float, float]) -> Axes:
+    """Return bare Axes for a picture, in a figure of this size (inches) at a place in parts of it."""
+    if spare := again.take((width, height, *place)):
+        return spare
+    ax = bare(Figure(figsize=(width, height), dpi=100).add_axes(place))
+    return again.handed_out((width, height, *place), ax)
+
+
+def bare(ax: Axes) -> Axes:
+    """Take the frame and the ticks from Axes that hold a picture; a title then need not look for ticks."""
+    ax.set_axis_off()
+    ax.xaxis.set_visible(False)
+    ax.yaxis.set_visible(False)
+    return ax
+
+
 def seconds(time: float) -> str:
     """Return an exposure time as a camera shows it: '1/60 s', '2 s'.
 
@@ -150,11 +166,10 @@ def radiance(
     bar = ax.figure.add_axes((place.x1 + 0.02, place.y0, 0.025, place.height))
     ticks = MaxNLocator(8, steps=[1, 2, 5, 10])
     ax.figure.colorbar(shown, cax=bar, label=f"{unit} from the median luminance", ticks=ticks)
-    ax.set_axis_off()
-    return ax
+    return bare(ax)
 
 
-def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 4) -> Figure:
+def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 3) -> Figure:
     """Draw the photographs in rows, each under its exposure time and, where given, its offset (dy, dx)."""
     count, (h, w) = len(bracket.images), bracket.images.shape[1:3]
     rows, width, title = -(-count // columns), 1.75, 0.25 if offsets is None else 0.4
@@ -168,7 +183,7 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
         ax.imshow(_eight_bits(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
         moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
         ax.set_title(seconds(time) + moved, fontsize=11, pad=3)
-        ax.set_axis_off()
+        bare(ax)
     return figure
 
 

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture.planning import Plan
@@ -20,7 +20,7 @@ from hdrlab.capture.ranges import Held
 from hdrlab.capture.transfer import Transfer
 from hdrlab.core.arrays import describe
 from hdrlab.core.picture import as_picture
-from hdrlab.show.plots import axes
+from hdrlab.show.plots import axes, picture_axes
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
 ORANGE, BLUE = np.array([213, 94, 0], np.uint8), np.array([0, 114, 178], np.uint8)
@@ -124,17 +124,15 @@ def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None)
     return ax
 
 
-def titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Figure:
-    """Return a picture (H, W[, 3]) uint8 under lines of text, with the edge of a region if one is given."""
+def titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Axes:
+    """Draw a picture (H, W[, 3]) uint8 under lines of text, with the edge of a region if one is given."""
     shown = as_picture(picture)
     high = width * shown.shape[0] / shown.shape[1]
     lines = 0.25 * (text.count("\n") + 1) + 0.12
-    figure = Figure(figsize=(width, high + lines), dpi=100)
-    ax = figure.add_axes((0, 0, 1, high / (high + lines)))
+    ax = picture_axes(width, high + lines, (0, 0, 1, high / (high + lines)))
     ax.imshow(shown, cmap="gray", vmin=0, vmax=255, interpolation="nearest", aspect="auto")
     if ring is not None and 0 < np.asarray(ring, float).mean() < 1:
-        for colour, wide in (("black", 3.0), ("white", 1.2)):
-            ax.contour(np.asarray(ring, float), [0.5], colors=colour, linewidths=wide)
-    ax.set_axis_off()
-    figure.text(0.01, 1 - 0.06 / (high + lines), text, va="top", fontsize=11.5)
-    return figure
+        edge = ax.contour(np.asarray(ring, float), [0.5], colors="white", linewidths=1.2)
+        edge.set_path_effects([withStroke(linewidth=3, foreground="black")])
+    ax.text(0.01, 1 - 0.06 / (high + lines), text, va="top", fontsize=11.5, transform=ax.figure.transFigure)
+    return ax

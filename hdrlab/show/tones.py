@@ -24,7 +24,7 @@ from hdrlab.core.arrays import describe
 from hdrlab.core.colour import encode_srgb
 from hdrlab.show.curves import LINES
 from hdrlab.show.figures import MISSING, fit
-from hdrlab.show.plots import axes
+from hdrlab.show.plots import axes, bare
 
 Float = NDArray[np.float64]
 
@@ -59,7 +59,7 @@ def maps(
         ax = figure.add_axes(place)
         shown = ax.imshow(v, cmap=colours, norm=norm, interpolation="nearest")
         ax.set_title(name, fontsize=11, pad=4)
-        ax.set_axis_off()
+        bare(ax)
     height = figure.get_size_inches()[1]
     bar = figure.add_axes((0.08, 0.47 / height, 0.84, 0.14 / height))
     ticks: Any = range(len(names)) if names else MaxNLocator(7, steps=[1, 2, 5, 10])

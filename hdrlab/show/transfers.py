@@ -41,7 +41,8 @@ def comparagram(
     scale = LogNorm(max(most / 1000, J[J > 0].min()), most)
     ax = axes(5.4, 4.3)
     ax.set_facecolor("#E6E6E6")  # no pixel has these two levels
-    shown = ax.imshow(np.where(J > 0, J, np.nan).T, norm=scale, origin="lower", interpolation="nearest")
+    counted = np.where(J > 0, J, np.nan).T
+    shown = ax.imshow(counted, norm=scale, origin="lower", interpolation="nearest", zorder=1)  # upon the grid
     counts = [count for count in 10.0 ** np.arange(15) if scale.vmin <= count <= scale.vmax]
     swatches: list[Artist] = [
         Patch(facecolor=shown.cmap(scale(count)), label=f"{count:,.0f}") for count in counts
