@@ -47,8 +47,8 @@ from hdrlab.show import pictures, plots
 # ## 3 · How many photographs? ({points})
 #
 # A scene spans so many stops, one photograph holds $R$ of them (`usable`), and neighbours shall share $O$
-# (`overlap`), so that the response can be found. The first photograph covers $R$, each further one adds $R
-# - O$:
+# (`overlap`), so that the response can be found. The first photograph covers $R$, each further one adds
+# $R - O$:
 #
 # $$n = 1 + \left\lceil \frac{\text{scene} - R}{R - O} \right\rceil, \qquad\text{and at least } 1.$$
 
