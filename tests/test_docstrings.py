@@ -47,6 +47,14 @@ def test_every_module_with_an_algorithm_has_an_example(name):
         assert "    >>> " in source(name)
 
 
+@pytest.mark.parametrize("name", [name for name in MODULES if name.split(".")[1] in (*ALGORITHMS, "io")])
+def test_a_function_whose_parameters_are_listed_shows_an_example(name):
+    for node in ast.parse(source(name)).body:
+        if isinstance(node, ast.FunctionDef) and not node.name.startswith("_"):
+            said = ast.get_docstring(node)
+            assert ("Parameters\n---" in said) <= (">>> " in said), f"{name}.{node.name} has no example"
+
+
 @pytest.mark.parametrize("name", MODULES)
 def test_every_module_and_public_function_is_explained(name):
     tree = ast.parse(source(name))

@@ -71,6 +71,12 @@ def shoot(
     ------
     ValueError
         For radiance, transparencies or channels that do not fit together.
+
+    Examples
+    --------
+    >>> shoot(np.full((2, 2), 0.5), [[1, 0.5], [0.25, 0.125]])
+    array([[128,  64],
+           [ 32,  16]], dtype=uint8)
     """
     E, e = as_radiance(E), _transparency(e, np.shape(E)[:2])
     if (c is None) != (E.ndim == 2) or bits not in (8, 16):

@@ -90,6 +90,11 @@ def shoot(
     ------
     ValueError
         For radiance, shares or channels that do not fit together.
+
+    Examples
+    --------
+    >>> shoot(np.full((1, 1), 0.5), [0.5, 0.25], bits=16).ravel()
+    array([16384,  8192], dtype=uint16)
     """
     E, each, rng = as_radiance(E), as_shares(e), np.random.default_rng(rng)
     if not 8 <= bits <= 16:

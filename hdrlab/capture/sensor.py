@@ -166,6 +166,11 @@ def develop(
     ------
     ValueError
         For levels of another kind, or gains that are not positive.
+
+    Examples
+    --------
+    >>> develop(np.uint16([[64, 2064, 4064]]), Sensor(full_well=20_000, gain=5, black=64)).tolist()
+    [[0.0, 0.5, 1.0]]
     """
     Z, gains, sensor = np.asarray(Z), np.asarray(white, np.float64), as_sensor(sensor)
     if Z.dtype != np.uint16 or Z.ndim not in (2, 3) or Z.size == 0 or (bayer and Z.ndim == 3):

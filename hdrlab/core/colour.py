@@ -135,6 +135,12 @@ def render(
     Returns
     -------
     (H, W, 3) uint8, sRGB; or (H, W) where E is gray
+
+    Examples
+    --------
+    >>> E = np.full((1, 1, 3), 4.0)
+    >>> render(E, luminance(E), [[0.5]]).tolist()
+    [[[188, 188, 188]]]
     """
     if way not in WAYS:
         raise ValueError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")

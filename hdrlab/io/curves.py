@@ -60,6 +60,14 @@ def write_curve(path: str | Path, g: ArrayLike) -> None:
     ------
     ValueError
         For another suffix, and for what is no response: not finite, or of another shape.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "gamma.csv"
+    >>> write_curve(path, 2.2 * np.log(np.maximum(np.arange(256), 1) / 128))
+    >>> read_curve(path)[[64, 128]].round(3)
+    array([-1.525,  0.   ])
     """
     form = FORMS[suffix_of(path)]
     g = as_curve(g)

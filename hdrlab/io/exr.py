@@ -81,6 +81,14 @@ def read(path: str | Path) -> NDArray[np.float32]:
     ------
     ValueError
         For a file that is not one, is cut short or damaged, or holds other channels than these.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "wall.exr"
+    >>> write(file, np.full((2, 3, 3), 0.5))
+    >>> read(file).shape
+    (2, 3, 3)
     """
     header = read_header(path)
     names = set(header.channels)

@@ -66,6 +66,14 @@ def write_layers(path: str | Path, layers: Mapping[str, ArrayLike]) -> None:
     ------
     ValueError
         For layers of different size or other channels, or values that half floats cannot hold.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "light.exr"
+    >>> write_layers(path, {"radiance": np.full((2, 4, 3), 0.25)})
+    >>> float(read_layers(path)["radiance"].max())
+    0.25
     """
     arrays = {name: np.asarray(layer, np.float32) for name, layer in layers.items()}
     if len({layer.shape[:2] for layer in arrays.values()}) != 1:

@@ -91,6 +91,14 @@ def read(path: str | Path, *, flip: bool = True) -> NDArray[np.float32]:
     ------
     ValueError
         For a file that is not one, or is cut short.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "rows.pfm"
+    >>> write(file, [[1.0], [2.0]])
+    >>> read(file).tolist(), read(file, flip=False).tolist()
+    ([[1.0], [2.0]], [[2.0], [1.0]])
     """
     header = read_header(path)
     shape = (header.height, header.width, 3) if header.colour else (header.height, header.width)

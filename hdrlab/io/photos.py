@@ -48,6 +48,14 @@ def read_photo(path: str | Path) -> NDArray[Any]:
     ------
     ValueError
         For a file that is none of these, or is damaged.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "wall.png"
+    >>> write_picture(path, np.full((2, 3), 128, np.uint8))
+    >>> read_photo(path).tolist()
+    [[128, 128, 128], [128, 128, 128]]
     """
     header = look(path)
     image = np.empty(header.shape, header.dtype)
@@ -148,6 +156,14 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     ------
     ValueError
         For another suffix, shape or dtype.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "edge.tif"
+    >>> write_picture(path, np.repeat(np.uint8([[0, 255]]), 2, axis=0))
+    >>> read_photo(path).tolist()
+    [[0, 255], [0, 255]]
     """
     image, suffix = np.asarray(image), Path(path).suffix.lower()
     if suffix not in PICTURES:

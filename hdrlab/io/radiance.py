@@ -91,6 +91,14 @@ def write_radiance(path: str | Path, E: ArrayLike, *, half: bool = False) -> Non
     ------
     ValueError
         For another suffix, and for values that are no radiance or that the format cannot hold.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "sun.exr"
+    >>> write_radiance(path, [[1e-3, 1e6]])
+    >>> read_radiance(path).tolist()
+    [[0.0010000000474974513, 1000000.0]]
     """
     form = format_of(path)
     if half and form is not exr:

@@ -44,6 +44,14 @@ def read(path: str | Path) -> NDArray[np.float32]:
     References
     ----------
     Ward, G., "Real Pixels", Graphics Gems II, Academic Press 1991, 80-83.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "light.hdr"
+    >>> write(file, [[[1.0, 0.5, 0.25]]])
+    >>> read(file).tolist()
+    [[[1.0, 0.5, 0.25]]]
     """
     header = read_header(path)
     scanlines, length = (header.height, header.width)[:: 1 if header.axes[1] == "Y" else -1]
@@ -73,6 +81,14 @@ def write(path: str | Path, E: ArrayLike) -> None:
     ------
     ValueError
         For NaN, infinite or negative values, and for values of 2^127 or more, which RGBE cannot hold.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "gray.hdr"
+    >>> write(file, np.ones((4, 10)))
+    >>> read(file).shape
+    (4, 10, 3)
     """
     E = as_radiance(E)
     height, width = E.shape[:2]

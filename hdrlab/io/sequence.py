@@ -146,6 +146,12 @@ def write(path: str | Path, frames: Iterable[Frame], *, rate: float = 25.0) -> i
     ------
     ValueError
         For another suffix, a rate that is not positive, or frames that are not pictures of one size.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> write(Path(tempfile.mkdtemp()) / "blink.gif", np.uint8([[[0, 0]], [[255, 255]]]))
+    2
     """
     path = Path(path)
     require_writable(path)

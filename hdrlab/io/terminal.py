@@ -19,6 +19,12 @@ def elapsed(what: str, *, stream: TextIO | None = None, delay: float = 1.0) -> I
     what : the work
     stream : standard error, unless told
     delay : seconds before the first sign, and between two of them
+
+    Examples
+    --------
+    >>> with elapsed("adding"):
+    ...     sum(range(10))
+    45
     """
     stream = stream or sys.stderr
     if not stream.isatty():

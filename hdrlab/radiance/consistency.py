@@ -40,6 +40,14 @@ def level_medians(
     ------
     ValueError
         If the shapes of photographs, map and mask do not fit together.
+
+    Examples
+    --------
+    >>> Z = np.repeat(np.uint8([[64, 128]]), 200, axis=0)
+    >>> E = Z / 128  # a linear camera, two photographs of one second
+    >>> level_medians([Z, Z], [1, 1], E)[:, 0, [64, 128]]
+    array([[-1.,  0.],
+           [-1.,  0.]])
     """
     stack, E = as_stack(images), as_radiance(E)
     times, mask = as_times(times, len(stack)), as_mask(valid, stack)

@@ -139,6 +139,14 @@ def estimate(F: ArrayLike, *, powers: tuple[float, ...] = POWERS) -> tuple[Sprea
     ------
     ValueError
         For radiance that is not finite or negative, and for no powers.
+
+    Examples
+    --------
+    >>> from hdrlab import scenes
+    >>> from hdrlab.capture import flare
+    >>> spread, _ = estimate(flare.veil(scenes.room((128, 192)), Spread(0.05, 2.5)))
+    >>> spread.power, round(spread.share, 2)
+    (2.5, 0.05)
     """
     F = as_radiance(F)
     if not powers:

@@ -185,6 +185,15 @@ def left_right(image: ArrayLike, *, limit: float = AGREE, **knobs: Any) -> Verdi
     References
     ----------
     Wilburn, Xu and Matsushita, CVPR 2008, fig. 7.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import camera
+    >>> dark = np.repeat([1.0, 0.0, 1.0], [110, 60, 110])
+    >>> blurred = np.convolve(dark, np.full(40, 1 / 40), "valid")[None].repeat(8, 0)
+    >>> image = camera.shoot(blurred, [1.0], full_well=20_000).images[0]
+    >>> left_right(image).linear
+    True
     """
     found = ramps(image, **knobs)
     left, right = [one for one in found if not one.rises], [one for one in found if one.rises]

@@ -51,6 +51,12 @@ def maps(
     span : ends of the scale; by default all but 1 % of the pixels fit, and for a signed map the middle is 0
     signed : whether zero is white, and the two signs differ in colour
     names : of the classes, where v is an index into them
+
+    Examples
+    --------
+    >>> figure = maps({"slope": np.arange(6.0).reshape(2, 3)}, label="stops")
+    >>> [ax.get_title() for ax in figure.axes if ax.get_title()]
+    ['slope']
     """
     arrays = _arrays(each)
     norm, colours = _scale(arrays, span, signed, len(names))
