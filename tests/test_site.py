@@ -164,6 +164,13 @@ def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(ma
     assert "notebooks/01_one.html" in links
     functions = [link for link in links if "#hdrlab." in link]
     assert len(functions) > 20
+    assert "reference/pipeline.html#hdrlab.pipeline.assemble" in links
+
+
+def test_a_name_in_a_table_breaks_after_a_dot_alone(made):
+    text = (made[1] / "map.html").read_text("utf-8")
+    assert "tonemap.<wbr>ward" in text and "read_<wbr>bracket" in text
+    assert "<wbr>" not in text.partition("<table")[0] + text.rpartition("</table>")[2]
 
 
 def test_a_page_of_the_reference_has_the_legend_the_parameters_and_the_source(made):

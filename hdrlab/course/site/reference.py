@@ -100,9 +100,7 @@ def _page(name: str, parts: Sequence[str], played: Sequence[str]) -> str:
     if played and not parts and len(played) <= 8:
         links = ", ".join(f":doc:`{notebook.split('_')[0]} </notebooks/{notebook}>`" for notebook in played)
         text += f".. rst-class:: played\n\nIn the notebooks: {links}\n\n"
-    text += (
-        f".. automodule:: {name}\n" + ("" if parts else "   :members:\n   :member-order: bysource\n") + "\n"
-    )
+    text += f".. automodule:: {name}\n   :members:\n   :member-order: bysource\n\n"
     if parts:
         tree = "".join(f"   {short(one)}\n" for one in parts)
         text += f"{_listed(parts)}\n.. toctree::\n   :hidden:\n\n{tree}"
@@ -135,7 +133,7 @@ def _map(names: Sequence[str], uses: dict[str, set[str]]) -> str:
     text += "   * - Lecture\n     - Where\n     - Notebooks\n"
     for lecture, where in rows():
         linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <hdrlab.{found[0]}>`", where)
-        told = {name for word in NAME.findall(where) for name in names if _within(f"hdrlab.{word}", name)}
+        told = {_module(f"hdrlab.{word}", names) for word in NAME.findall(where)}
         playing = [notebook for notebook in uses if told & uses[notebook]]
         said = (
             "most"
@@ -146,9 +144,9 @@ def _map(names: Sequence[str], uses: dict[str, set[str]]) -> str:
     return text
 
 
-def _within(word: str, name: str) -> bool:
-    """Return whether a word of the map is a module, or something in it: never all that is in a chapter."""
-    return word == name or (word.rpartition(".")[0] == name and name.count(".") > 1)
+def _module(word: str, names: Sequence[str]) -> str:
+    """Return the module that a word of the map names, or the one in which what it names is."""
+    return word if word in names else word.rpartition(".")[0]
 
 
 def escaped(line: str) -> str:

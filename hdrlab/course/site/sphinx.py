@@ -1,5 +1,6 @@
 """What Sphinx is told: how docstrings, formulas and names in backticks become pages."""
 
+import re
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -8,6 +9,8 @@ from hdrlab import __version__
 from hdrlab.course.site import formulas, reference
 
 HERE = Path(__file__).parent
+TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
+NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
 SETTINGS: dict[str, Any] = {
     "project": "hdrlab",
     "version": __version__,
@@ -54,6 +57,7 @@ def setup(app: Any) -> dict[str, Any]:
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # numpydoc comes at 500
     app.connect("autodoc-skip-member", _skip)
     app.connect("missing-reference", _resolve)
+    app.connect("html-page-context", _breakable)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -102,3 +106,13 @@ def _resolve(app: Any, env: Any, node: Any, content: Any) -> Any:
             copy["reftarget"] = found[0][0]
             return python.resolve_xref(env, node["refdoc"], app.builder, "obj", found[0][0], copy, content)
     return None
+
+
+def _breakable(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Let a name in a table break after a dot or an underscore: a narrow column cuts it nowhere else."""
+
+    def broken(table: re.Match[str]) -> str:
+        return NAME.sub(lambda name: re.sub(r"([._])(?=.)", r"\1<wbr>", name[0]), table[0])
+
+    if "body" in context:
+        context["body"] = TABLE.sub(broken, context["body"])
