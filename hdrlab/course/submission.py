@@ -59,6 +59,8 @@ def cells_of(data: bytes, name: str) -> tuple[list[Cell], list[str]]:
     except UnicodeDecodeError:
         return [], [f"{name} is neither a notebook nor Python text"]
     looks_like = text.lstrip()[:1] == "{"
+    if not looks_like and len(text) > MOST_CODE:
+        return [], [f"{name} holds more than {MOST_CODE:,} characters of code"]
     cells, problems = _notebook(text, name) if looks_like else (_percent(text), [])
     if name.endswith(".ipynb") and not looks_like:
         problems = [f"{name} is not a notebook, and was read as Python text"]
@@ -96,10 +98,11 @@ def _percent(text: str) -> list[Cell]:
     fences = list(FENCE.finditer(text))
     ends = [*(one.start() for one in fences), len(text)]
     cells = [Cell(text[: ends[0]], where="the file's beginning")]
+    line, counted = 1, 0
     for fence, start, end in zip(fences, (one.end() for one in fences), ends[1:], strict=True):
         if not fence["kind"]:
             task = re.search(r'task="(\w+)"', fence["rest"])
-            line = text.count("\n", 0, start) + 1
+            line, counted = line + text.count("\n", counted, start), start
             cells.append(
                 Cell(text[start:end], task[1] if task else "", "given=" in fence["rest"], f"line {line}")
             )
