@@ -83,8 +83,9 @@ def _needed(task: Statement, name: str, statements: Sequence[Statement]) -> list
             chosen |= {giver.place: giver for giver in givers[one]}
             wanted += sorted({need for giver in givers[one] for need in giver.needs} - set(givers))
     order: dict[int, Statement] = {}
+    begun: set[tuple[int, bool]] = set()
     for place in sorted(chosen, key=lambda place: (not _is_import(chosen[place]), place)):
-        _run_after(chosen[place], givers, order, set(), deep=False)
+        _run_after(chosen[place], givers, order, begun, deep=False)
     return list(order.values())
 
 
@@ -134,11 +135,11 @@ def _is_import(one: Statement) -> bool:
 
 def _statements(cell: Cell, first: int) -> list[Statement]:
     """Return the statements of a cell that bind names; calls, pictures and prints are left out."""
-    text = plain(cell.text)
+    text = re.sub(r"\r\n?", "\n", plain(cell.text))
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of odd escapes, which are the student's own business
         body = ast.parse(text).body
-    lines = text.splitlines(keepends=True)
+    lines = text.split("\n")  # as the parser counts them: a form feed ends no line
     found: list[Statement] = []
     for node in body:
         binds = frozenset(names.bound(node))
@@ -159,10 +160,12 @@ def _statements(cell: Cell, first: int) -> list[Statement]:
 
 def _part(lines: Sequence[str], start: int, node: ast.stmt) -> str:
     """Return the text of a statement; of two on one line, separated by a semicolon, its own part."""
+    assert node.end_lineno is not None
+    own = [line.encode() for line in lines[start - 1 : node.end_lineno]]
+    own[-1] = own[-1][: node.end_col_offset]  # counted in bytes of UTF-8
     if start == node.lineno:
-        whole = "".join(lines)
-        return textwrap.dedent(ast.get_source_segment(whole, node) or "")
-    return "".join(lines[start - 1 : node.end_lineno]).rstrip("\n")
+        own[0] = own[0][node.col_offset :]
+    return b"\n".join(own).decode()
 
 
 def _shallow(node: ast.AST) -> Iterable[ast.AST]:
