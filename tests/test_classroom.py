@@ -10,7 +10,7 @@ from html.parser import HTMLParser
 import pytest
 
 from hdrlab import cli
-from hdrlab.course import classroom, marks, sheets
+from hdrlab.course import classroom, marks, overview, sheets
 from hdrlab.course.grading import Conditions
 from hdrlab.course.handins import Handin
 from hdrlab.course.late import Handed
@@ -75,12 +75,25 @@ def test_canvas_gets_a_line_of_points_and_no_formula():
     assert lines[2][0] == "'=Ada" and float(lines[2][5]) == 80
 
 
+def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
+    before = [Handed("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 10))]
+    given = ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0}, RULE, before
+    header, rows = marks.what_if(*given)
+    table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
+    assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
+    assert [table["b2"][f"late {days}"] for days in (0, 10, 14)] == [80, 80, 76]
+    assert [table["b3"][f"late {days}"] for days in (0, 3)] == [100, 97]  # nothing came: were it all right
+    scores = {row.student: row.score for row in marks.marks(*given)}
+    assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
+
+
 def test_the_class_page_counts_promises_and_misconceptions_and_escapes_them():
     script = "<script>alert(1)</script>"
     each = [result("t", (1, 0), {"hat": script}), result("b3", (1, 1), {"hat": script}), result("x", (0, 0))]
-    text = classroom.page(HOMEWORK, each, [f"{script} came late"])
+    text = overview.page(HOMEWORK, overview.tally(each), [f"{script} came late"])
     assert "script" not in {tag for tag, _ in tags(text)} and text.count("&lt;script&gt;") == 2
     assert "<b>2</b> in <b>hat</b>" in text and "2 of 3" in text and "1 of 3" in text
+    assert text.count('<td class="right">1</td>') == 1 and text.count('<td class="right">2</td>') == 1  # fail
 
 
 def tags(text):
@@ -122,42 +135,103 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
         for name, data in members.items():
             archive.writestr(name, data)
     (tmp_path / "scratch").mkdir()
-    path, refused = classroom._opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
+    path, refused = classroom.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
     assert said in refused and bool(refused) == bool(said) and "\n" not in refused
     assert path.read_bytes() == (b"" if said else b"x")
 
 
 def test_a_grader_can_be_sent_to_another_process():
-    grader = classroom.Grader("hw2", None, Conditions())
+    grader = classroom.Grader(HOMEWORK, Conditions())
     assert pickle.loads(pickle.dumps(grader.result)).__self__ == grader
 
 
-def test_a_class_is_graded_once_with_a_gradebook_and_a_page(tmp_path, monkeypatch, capsys):
+PLAN = """
+[late]
+free_days = 10
+points_a_day = 1
+[hw2]
+title = "T"
+due = 2026-10-23T23:59:00Z
+tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]
+"""
+GOOD = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Make a class of four, of which a team and a student have handed in, and go there."""
     monkeypatch.chdir(tmp_path)
     (tmp_path / "in").mkdir()
     (tmp_path / "roster.csv").write_text("student,name,team\nb1,Ada,t\nb2,Bo,t\nb3,Cy,\nb4,Di,\n")
-    (tmp_path / "plan.toml").write_text(
-        '[late]\nfree_days = 10\npoints_a_day = 1\n[hw2]\ntitle = "T"\ndue = 2026-10-23T23:59:00Z\n'
-        'tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]\n'
-    )
-    good = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
-    (tmp_path / "in" / "t_hw2.py").write_text(good)
+    (tmp_path / "plan.toml").write_text(PLAN)
+    (tmp_path / "in" / "t_hw2.py").write_text(GOOD)
     (tmp_path / "in" / "b3.zip").write_bytes(b"PK\3\4 no archive")
     (tmp_path / "times.csv").write_text(
         "file,received\nt_hw2.py,2026-10-23T12:00Z\nb3.zip,2026-10-26T12:00Z\n"
     )
-    words = ["grade", "in", "--homework", "hw2", "--tier", "practice", "--plan", "plan.toml", "-o", "out"]
-    words += ["--roster", "roster.csv", "--received", "times.csv", "--jobs", "2"]
-    said = []
-    for _ in range(2):
+    return tmp_path
+
+
+WORDS = ["grade", "in", "--homework", "hw2", "--tier", "practice", "--plan", "plan.toml", "-o", "out"]
+WORDS += ["--roster", "roster.csv", "--received", "times.csv"]
+
+
+@pytest.fixture
+def grade(folder, capsys):
+    """Return a function that runs the command with more words, and returns what it said."""
+
+    def run(*more, code=None):
         with pytest.raises(SystemExit) as ended:
-            cli.run(words)
-        assert not ended.value.code
-        said.append(capsys.readouterr().out)
-    assert "2 of 2 graded, 2 of them now" in said[0] and "2 of 2 graded, 0 of them now" in said[1]
-    rows = {row["student"]: row for row in sheets.read_csv(tmp_path / "out" / "gradebook.csv")}
+            cli.run([*WORDS, *more])
+        said = capsys.readouterr()
+        assert ended.value.code == code, said.err
+        return said.err if code else said.out
+
+    return run
+
+
+def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
+    assert "2 of 2 graded, 2 of them now" in grade()
+    whole = {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()}
+    rows = {row["student"]: row for row in sheets.read_csv(folder / "out" / "gradebook.csv")}
     assert float(rows["b1"]["work"]) > 0 and rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
     assert (rows["b3"]["late"], rows["b3"]["grace left"], float(rows["b3"]["work"])) == ("3", "7", 0)
     assert rows["b4"]["note"] == "not handed in"
-    assert "refused" in (tmp_path / "out" / "feedback" / "b3" / "feedback.html").read_text()
-    assert (tmp_path / "out" / "class.html").is_file() and (tmp_path / "out" / "canvas.csv").is_file()
+    assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
+    names = {"gradebook.csv", "canvas.csv", "what_if.csv", "class.html"}
+    assert names <= {path.name for path in whole}
+    feedback = folder / "out" / "feedback"  # a run that was killed may have left any of this
+    (feedback / "t" / "feedback.html").unlink()
+    (feedback / "t" / ".hdrlab-12.html").write_text("<p>hal")
+    (feedback / "b3" / "result.json").write_text("of another submission")
+    (feedback / "b3" / "junit.xml").write_text("of another submission")
+    (folder / "out" / "class.html").unlink()
+    assert "2 of 2 graded, 0 of them now" in grade()
+    assert {path: path.read_bytes() for path in (folder / "out").rglob("*") if path.is_file()} == whole
+
+
+def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, grade):
+    assert "1 of 2 graded, 1 of them now" in grade("--only", "B2")  # of team t
+    assert "1 of 2 graded, 0 of them now" in grade("--since", "2026-10-27")
+    assert "2 of 2 graded, 1 of them now" in grade("--since", "2026-10-25")
+    result = next((folder / "out" / "results").glob("t.*.json"))
+    before = result.stat().st_mtime_ns, result.read_bytes()
+    assert "2 of 2 graded, 1 of them now" in grade("--regrade", "--only", "t")
+    assert result.stat().st_mtime_ns > before[0] and result.read_bytes() == before[1]
+    told = grade("--regrade", "--cluster", "tcp://127.0.0.1:1", code=2)  # nothing is forgotten for nothing
+    assert "expected a Dask cluster at tcp://127.0.0.1:1" in told and result.read_bytes() == before[1]
+    rows = {row["student"]: row for row in sheets.read_csv(folder / "out" / "gradebook.csv")}
+    assert not rows["b1"]["note"] and not rows["b3"]["note"]
+
+
+@pytest.mark.parametrize(
+    "more, said",
+    [
+        (["--only", "b4"], "expected names that have handed in, got b4"),
+        (["--only", "b9"], "expected a student of the roster, got 'b9'"),
+        (["--cluster", "tcp://127.0.0.1:1", "--jobs", "2"], "expected --jobs or --cluster"),
+    ],
+)
+def test_what_cannot_be_graded_is_told_in_a_line(more, said, grade):
+    told = grade(*more, code=2)
+    assert said in told and told.count("\n") == 1

@@ -10,9 +10,10 @@ from contextlib import suppress
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
+import errands
 import pytest
 
-from hdrlab.course import handins, journal
+from hdrlab.course import handins, journal, processes
 from hdrlab.course.roster import Roster, Student
 
 RUN = """
@@ -24,54 +25,28 @@ test_journal.graded(Path({folder!r}))
 """
 
 
-def grade(piece):
-    """Stand in for the grading of a submission: slow enough to be killed, noted each time it begins."""
-    path = piece.path
-    with open(path.parent / "begun", "a") as file:
-        file.write(f"{path.stem}\n")
-    time.sleep(0.02)
-    return (f'{{"of": "{path.stem}", "bytes": {path.stat().st_size}}}' * 2000).encode()
-
-
-def fatal(piece):
-    """Die as under the memory limit, if it is the hostile one."""
-    if piece.owner == "s3":
-        os.kill(os.getpid(), signal.SIGKILL)
-    return grade(piece)
-
-
-def endless(piece):
-    time.sleep(60)
-    return b""
-
-
-def pieces(folder, count=5):
-    folder.mkdir(exist_ok=True)
-    made = []
-    for k in range(count):
-        path = folder / f"s{k}.py"
-        if not path.exists():
-            path.write_text("x" * k)
-        made.append(journal.Piece(f"s{k}", path, journal.key(path.read_text())))
-    return made
-
-
-def graded(home, work=grade, **knobs):
-    """Grade the class of a folder, and return what was done now and what the results are."""
-    done = list(journal.done_steps(pieces(home / "class"), work, home / "results", jobs=2, **knobs))
-    return done, {path.name: path.read_bytes() for path in sorted((home / "results").iterdir())}
+def graded(home, work=errands.grade, again=False):
+    """Grade the class of a folder, and return what was done and what the results are."""
+    folder, wanted = home / "results", errands.pieces(home / "class")
+    if again:
+        journal.forget(folder, wanted)
+    with journal.held(folder):
+        done, rest = journal.parted(folder, wanted)
+        with processes.Processes(work, 2) as crew:
+            done += journal.done_steps(rest, crew, folder)
+    return done, {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
 def test_nothing_is_graded_twice(tmp_path):
     first, results = graded(tmp_path)
     again, same = graded(tmp_path)
     assert all(one.fresh for one in first) and not any(one.fresh for one in again) and results == same
-    assert (tmp_path / "class" / "begun").read_text().count("\n") == len(results) == 5
+    assert len(errands.begun(tmp_path / "class")) == len(results) == 5
 
 
 def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
     graded(tmp_path)
-    (tmp_path / "class" / "s4.py").write_text("other")
+    (tmp_path / "class" / "s4.py").write_text(f"{tmp_path / 'class' / 'begun'}\nother")
     again, results = graded(tmp_path)
     assert [one.piece.owner for one in again if one.fresh] == ["s4"] and len(results) == 5
     assert sum(one.fresh for one in graded(tmp_path, again=True)[0]) == 5
@@ -80,16 +55,49 @@ def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
 def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_graded(tmp_path):
     (tmp_path / "alone").mkdir()
     _, alone = graded(tmp_path / "alone")
-    done, results = graded(tmp_path, fatal)
+    done, results = graded(tmp_path, errands.fatal)
     lost = [one for one in done if one.result is None]
-    assert [one.piece.owner for one in lost] == ["s3"] and "3 times" in lost[0].why
+    assert [one.piece.owner for one in lost] == ["s3"] and "3 times" in lost[0].why and "(-9)" in lost[0].why
     assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
 
 
 def test_a_submission_that_never_ends_is_ended(tmp_path):
-    one = pieces(tmp_path / "class", 1)
-    (done,) = journal.done_steps(one, endless, tmp_path / "results", patience=0.5)
-    assert done.result is None and list((tmp_path / "results").iterdir()) == []
+    one = errands.pieces(tmp_path / "class", 1)
+    with processes.Processes(errands.endless, 1, patience=0.5) as crew:
+        (done,) = journal.done_steps(one, crew, tmp_path / "results")
+    assert done.result is None and "too long" in done.why
+    assert list((tmp_path / "results").iterdir()) == []
+
+
+def test_an_error_is_told_of_in_a_line(tmp_path):
+    done, results = graded(tmp_path, errands.failing)
+    assert {one.why for one in done} == {
+        "it ended 3 times without a result: ValueError: expected this, got that"
+    }
+    assert not results
+
+
+def test_two_runs_do_not_write_to_one_folder(tmp_path):
+    (tmp_path / "feedback").mkdir()
+    (tmp_path / "feedback" / ".hdrlab-1234.html").write_text("half of a page, by a run that was killed")
+    with journal.held(tmp_path):
+        with pytest.raises(ValueError, match="another run"), journal.held(tmp_path):
+            pass
+        assert not list((tmp_path / "feedback").iterdir())
+    with journal.held(tmp_path):
+        pass
+
+
+def test_what_runs_is_ended_when_the_run_is_interrupted(tmp_path):
+    with pytest.raises(KeyboardInterrupt), processes.Processes(errands.endless, 2) as crew:
+        for one in errands.pieces(tmp_path / "class", 2):
+            assert crew.start(one)
+        while len(errands.begun(tmp_path / "class")) < 2:
+            assert not crew.endings()
+        raise KeyboardInterrupt
+    for _, process, _ in errands.begun(tmp_path / "class"):
+        with pytest.raises(ProcessLookupError):
+            os.kill(process, 0)
 
 
 @pytest.mark.skipif(not hasattr(os, "killpg"), reason="kills a group of processes")
@@ -110,7 +118,7 @@ def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
             os.killpg(run.pid, signal.SIGKILL)
         run.wait()
     done, results = graded(home)
-    assert {name: data for name, data in results.items() if name[0] != "."} == whole
+    assert results == whole
     assert len(done) == 5 and all(one.result for one in done)
 
 

@@ -34,6 +34,8 @@ ONLY_IN = {  # package -> rooms
     "pyseccomp": {"course"},  # the sandbox
     **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
     "jinja2": {"show", "course"},
+    **dict.fromkeys(["dask", "distributed"], {"course"}),  # a class on many machines
+    "copydetect": {"course"},  # what submissions have in common
     **dict.fromkeys(["starlette", "uvicorn", "markupsafe", "markdown_it"], {"course"}),
     "lazy_loader": {"__init__"},
     "threadpoolctl": {"show"},

@@ -1,89 +1,116 @@
 """`hdrlab grade` on a folder: a whole class, with what instructors need afterwards."""
 
-import os
+from collections.abc import Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from hdrlab.cli import common
 
 if TYPE_CHECKING:
+    from hdrlab.course.classroom import Course
     from hdrlab.course.grading import Conditions
+    from hdrlab.course.handins import Handin
+    from hdrlab.course.journal import Crew, Done, Piece
     from hdrlab.course.plan import Homework
 
 
-def grade_folder(
-    folder: Path,
-    out: Path,
-    homework: "Homework",
-    conditions: "Conditions",
-    *,
-    plan: Path | None,
-    roster: Path | None,
-    received: Path | None,
-    before: tuple[Path, ...],
-    only: tuple[str, ...],
-    since: datetime | None,
-    regrade: bool,
-    jobs: int | None,
-) -> None:
+class Options(NamedTuple):
+    """The options of a class, as they came from the command line."""
+
+    roster: Path | None
+    received: Path | None
+    before: tuple[Path, ...]
+    only: tuple[str, ...]
+    since: datetime | None
+    regrade: bool
+    jobs: int | None
+    cluster: str | None
+
+
+def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> None:
     """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course import classroom, gradebook, handins, journal, marks, results, sheets
+    from hdrlab.course import classroom, handins, journal, overview
+
+    times = classroom.times(asked.received) if asked.received else {}
+    found = handins.find(folder, course.roster, times)
+    for note in found.notes:
+        click.echo(f"note: {note}", err=True)
+    since = asked.since.replace(tzinfo=UTC) if asked.since else None
+    everything = classroom.pieces(found.handins, course.homework, course.conditions)
+    wanted = classroom.chosen(found.handins, course.roster, asked.only, since)
+    with journal.held(out):
+        done = _graded([piece for piece in everything if piece.owner in wanted], out, course, asked)
+        lost = [f"{one.piece.owner}: {one.why}" for one in done if one.result is None]
+        for said in lost:
+            click.echo(f"warning: {said}", err=True)
+        counted = overview.tally(classroom.read(out, everything))
+        *_, page = overview.write(out, course, found.handins, counted, [*found.notes, *lost])
+        _compare(out, course, found.handins)
+    fresh = sum(one.fresh for one in done if one.result)
+    click.echo(f"{page}: {len(counted.points)} of {len(found.handins)} graded, {fresh} of them now")
+
+
+def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Options) -> "list[Done]":
+    """Return what became of each submission; its feedback is written as soon as its result is there."""
+    from hdrlab.course import classroom, journal
+
+    folder = out / "results"
+    before, rest = ([], [*wanted]) if asked.regrade else journal.parted(folder, wanted)
+    done = [classroom.told(out, one) for one in before]
+    if before:
+        click.echo(f"{len(before)} of {len(wanted)} were graded before", err=True)
+    if rest:
+        with _crew(course, asked) as crew:
+            journal.forget(folder, rest)
+            steps = (classroom.told(out, one) for one in journal.done_steps(rest, crew, folder))
+            done += common.progress(steps, course.homework.name, len(rest))
+    return done
+
+
+def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> None:
+    """Write what is alike among all that was handed in, also what was graded before."""
+    try:
+        from hdrlab.course import alike
+    except ImportError as error:
+        click.echo(f'note: similar.html needs {error.name}: pip install "hdrlab[class]"', err=True)
+        return
+    if len(handins) > alike.MOST:
+        click.echo(f"note: no similar.html, which compares at most {alike.MOST:,} works", err=True)
+        return
+    steps = alike.write_steps(out, course.homework, handins)
+    list(common.progress(steps, "what is alike", len(handins)))
+
+
+def _crew(course: "Course", asked: Options) -> "Crew":
+    """Return those who grade: processes of this machine, or the workers of a cluster."""
+    from hdrlab.course import classroom, processes
+    from hdrlab.course.sandbox import doctor
+
+    grader = classroom.Grader(course.homework, course.conditions, classroom.hidden(course.conditions.hidden))
+    if asked.cluster is None:
+        found = doctor.examine(course.conditions.tier)  # tried once, and not missed by each submission
+        if not found.works:
+            raise common.no_tier(found.says)
+        return processes.Processes(grader.result, asked.jobs)
+    if asked.jobs is not None:
+        raise ValueError("expected --jobs or --cluster: a cluster grades as many at a time as it has threads")
+    try:
+        from hdrlab.course import cluster
+    except ImportError as error:
+        raise ValueError(f'expected {error.name}: pip install "hdrlab[cluster]"') from None
+    return cluster.Cluster(asked.cluster, grader.result, grader.ready)
+
+
+def course_of(homework: "Homework", conditions: "Conditions", plan: Path | None, asked: Options) -> "Course":
+    """Return what a class is graded by, read from the files that were named."""
+    from hdrlab.course import classroom, marks
     from hdrlab.course import plan as plans
     from hdrlab.course import roster as lists
 
-    if roster is None:
+    if asked.roster is None:
         raise ValueError("expected --roster, which says who is in the class")
-    since = since.replace(tzinfo=UTC) if since else None
-    students = lists.read(roster)
-    times = _times(received) if received else {}
-    counted, notes = handins.find(folder, students, times)
-    for note in notes:
-        click.echo(f"note: {note}", err=True)
-    everything = classroom.pieces(counted, homework, conditions)
-    names = {students.team_of([one]) if one not in counted else one for one in only}
-    wanted = [
-        piece
-        for piece in everything
-        if (not only or piece.owner in names) and (since is None or counted[piece.owner].received >= since)
-    ]
-    grader = classroom.Grader(homework.name, plan, conditions)
-    steps = journal.done_steps(
-        wanted, grader.result, out / "results", jobs=jobs or os.cpu_count() or 1, again=regrade
-    )
-    done = list(common.progress(steps, homework.name, len(wanted)))
-    lost = [f"{one.piece.owner}: {one.why}" for one in done if one.result is None]
-    for said in lost:
-        click.echo(f"warning: {said}", err=True)
-    kept = journal.results(out / "results", {piece.owner: piece for piece in everything})
-    graded = {team: results.from_json(data) for team, data in kept.items()}
-    for one in done:
-        if one.result and one.piece.owner in graded:
-            gradebook.write_results(out / "feedback" / one.piece.owner, graded[one.piece.owner])
-    late = plans.read(plan).late
-    rows = marks.marks(students, homework, counted, classroom.points(graded), late, marks.read(before))
-    sheets.write_csv(out / "gradebook.csv", marks.COLUMNS, rows, private=True)
-    sheets.write_csv(out / "canvas.csv", *marks.canvas(rows, homework), private=True)
-    page = classroom.page(homework, graded.values(), [*notes, *lost])
-    journal.write(out / "class.html", page.encode())
-    fresh = sum(one.fresh for one in done if one.result)
-    click.echo(f"{out / 'class.html'}: {len(graded)} of {len(counted)} graded, {fresh} of them now")
-
-
-def _times(path: Path) -> dict[str, datetime]:
-    """Return when files came, from a table with the columns file and received."""
-    from hdrlab.course import sheets
-
-    times = {}
-    for row in sheets.read_csv(path):
-        try:
-            times[row["file"]] = datetime.fromisoformat(row["received"])
-        except (KeyError, ValueError):
-            raise ValueError(
-                f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
-            ) from None
-        if times[row["file"]].tzinfo is None:
-            raise ValueError(f"{path}: expected times with a zone, got {row['received']}")
-    return times
+    late, before = plans.read(plan).late, marks.read(asked.before)
+    return classroom.Course(lists.read(asked.roster), homework, conditions, late, before)

@@ -16,6 +16,15 @@ CLEAN = click.option(
 )
 
 
+def no_tier(reason: str) -> ValueError:
+    """Return the error of a tier that cannot be had, with what can be done about it, in one line."""
+    from hdrlab.course.sandbox import doctor
+
+    helps = "; ".join(filter(None, (doctor.remedy(reason), "hdrlab doctor says more")))
+    line = reason.strip().partition("\n")[0].rstrip(".")
+    return ValueError(f"{line}; {helps}. For practice alone, and not for credit: --tier practice")
+
+
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
     """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
     from tqdm import tqdm

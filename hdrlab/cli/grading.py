@@ -68,8 +68,9 @@ def check(
 @click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
 @click.option("--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable.")
 @click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
-@click.option("--regrade", is_flag=True, help="Of a class, what was graded before, too.")
+@click.option("--regrade", is_flag=True, help="Of a class, anew what was graded before.")
 @click.option("--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]")
+@click.option("--cluster", metavar="ADDRESS", help="Of a class, on this Dask cluster, tcp://HOST:8786.")
 @PLAN
 def grade(
     submission: Path,
@@ -100,10 +101,11 @@ def grade(
     secret = secret_file.read_text(encoding="utf8").strip() if secret_file else ""
     conditions = Conditions(tier, student, secret, hidden, timeout)
     if submission.is_dir():
-        from hdrlab.cli.classroom import grade_folder
+        from hdrlab.cli import classroom
 
-        asked = _homework(submission, homework, plan)
-        grade_folder(submission, out, asked, conditions, plan=plan, **of_class)
+        options = classroom.Options(**of_class)
+        course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
+        classroom.grade_folder(submission, out, course, options)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))
@@ -185,6 +187,22 @@ def export(
             click.echo(file)
 
 
+@course.command()
+@click.argument("folder", type=common.FILE)
+def toy(folder: Path) -> None:
+    """Make a toy class in FOLDER: a dozen submissions of hw2, good, late, wrong and hostile, to be graded."""
+    from hdrlab.course import toy as classes
+    from hdrlab.course.sandbox import doctor
+
+    made = classes.write(folder)
+    click.echo(f"{folder / 'README.md'}: what each of {len(made)} submissions of {classes.HOMEWORK} is")
+    command, strict = classes.COMMAND.format(folder=folder), doctor.examine("strict")
+    if not strict.works:
+        click.echo(f"note: {common.no_tier(strict.says)}", err=True)
+        command += " --tier practice"
+    click.echo(f"to grade it: {command}")
+
+
 def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homework":
     """Return the homework that is asked for, or the one whose name stands in the file's."""
     from hdrlab.course import plan as plans
@@ -223,7 +241,7 @@ def _graded(submission: Path, homework: "Homework", conditions: "Conditions") ->
         steps: Any = grading.grade_steps(submission, homework, conditions)
         return last(common.progress(steps, homework.name))
     except Unavailable as error:
-        raise ValueError(str(error)) from None
+        raise common.no_tier(str(error)) from None
 
 
 def _write(page: Path, text: str) -> None:

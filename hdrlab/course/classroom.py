@@ -1,48 +1,137 @@
-"""A class's submissions are graded, and what came of it is put where instructors look for it.
+"""A class's submissions are graded, one by one: what there is to do, and how one of them is done.
 
 RESULTS/
   results/      a file for each submission, of which everything else is made
-  feedback/     a page for each team, and what other systems read
-  gradebook.csv, canvas.csv, class.html
+  feedback/     for each team, a page, and what other systems read
+  and what is written about the whole class: see `overview`
 """
 
 import tempfile
-from collections import Counter
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from datetime import datetime
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import grading, journal, materials, plan, results, unpack
+from hdrlab.course import gradebook, grading, journal, materials, results, sheets, unpack
 from hdrlab.course.grading import Conditions
 from hdrlab.course.handins import Handin
+from hdrlab.course.journal import Done, Piece
+from hdrlab.course.late import Handed
 from hdrlab.course.members import Refused
-from hdrlab.course.plan import Homework
+from hdrlab.course.plan import Homework, Late
 from hdrlab.course.results import Result
-from hdrlab.show.templates import templates
+from hdrlab.course.roster import Roster
+from hdrlab.course.sandbox import doctor
+from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.subject import LOST
 
 READ = (".ipynb", ".py")
-PAGE = "class_page.html"
+MOST = 1 << 26  # bytes of hidden checks, which travel with each submission
+
+
+class Course(NamedTuple):
+    """What a class is graded by.
+
+    Attributes
+    ----------
+    roster : who is in it
+    homework, conditions : what is checked, and under which conditions
+    late : the rule for what comes late
+    before : what was handed in for earlier homeworks, in the order they were due
+    """
+
+    roster: Roster
+    homework: Homework
+    conditions: Conditions
+    late: Late = Late()
+    before: Sequence[Handed] = ()
 
 
 class Grader(NamedTuple):
-    """Grades one submission; it can be sent to another process."""
+    """Grades one submission; it can be sent to another process, and to a machine without this one's files.
 
-    homework: str
-    plan_file: Path | None
+    Attributes
+    ----------
+    homework, conditions : what is checked, and how
+    hidden : the instructor's own checks and what stands beside them, by name; see `hidden`
+    """
+
+    homework: Homework
     conditions: Conditions
+    hidden: Sequence[tuple[str, bytes]] = ()
 
-    def result(self, piece: journal.Piece) -> bytes:
-        """Return the result of a submission as JSON; an archive is unpacked for it, or refused in a line."""
-        asked = plan.read(self.plan_file).homeworks[self.homework]
-        conditions = self.conditions._replace(student=piece.owner if self.conditions.secret else "")
+    def ready(self) -> None:
+        """Raise Unavailable on a machine that cannot give the tier: said once, and not by each submission."""
+        _ready(self.conditions.tier)
+
+    def result(self, piece: Piece) -> bytes:
+        """Return the result of a submission as JSON.
+
+        Where a function's process ended without an answer, that may have been its own doing, or somebody else
+        has killed it. So such a result is believed when it comes twice.
+
+        Raises
+        ------
+        ValueError
+            Where it never does.
+        """
+        before = None
+        for _ in range(journal.TRIES):
+            result = self._result(piece)
+            if result == before or not any(said in one.message for one in result.checks for said in LOST):
+                return results.to_json(result)
+            before = result
+        raise ValueError("its functions' process ended without an answer, each time at another check")
+
+    def _result(self, piece: Piece) -> Result:
+        """Grade a submission; an archive is unpacked for it, or refused in a line."""
+        student = piece.owner if self.conditions.secret else ""
         with tempfile.TemporaryDirectory(prefix="hdrlab-class-") as scratch:
-            path, refused = _opened(piece.path, Path(scratch), self.homework)
-            result = grading.grade(path, asked, conditions)
-        said = (refused, *result.problems) if refused else result.problems
-        return results.to_json(result._replace(student=piece.owner, problems=said))
+            hidden = _laid(self.hidden, Path(scratch) / "hidden") if self.hidden else None
+            path, refused = opened(piece.path, Path(scratch), self.homework.name)
+            conditions = self.conditions._replace(student=student, hidden=hidden)
+            result = grading.grade(path, self.homework, conditions)
+        said = (refused,) if refused else result.problems  # what follows from a refusal is no news
+        return result._replace(student=piece.owner, problems=said)
 
 
-def _opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
+@cache
+def _ready(tier: str) -> None:
+    """Try a tier; the second time, if the first was disturbed."""
+    found = doctor.examine(tier)
+    found = found if found.works else doctor.examine(tier)
+    if not found.works:
+        raise Unavailable(found.says)
+
+
+def hidden(folder: Path | None) -> list[tuple[str, bytes]]:
+    """Return the instructor's own checks, which travel with the work.
+
+    Raises
+    ------
+    ValueError
+        For what is no folder, or holds more than a submission can carry along.
+    """
+    if folder is None:
+        return []
+    if not folder.is_dir():
+        raise ValueError(f"expected a folder with hidden checks, got {folder}")
+    files = [path for path in sorted(folder.rglob("*")) if path.is_file() and "__pycache__" not in path.parts]
+    if (size := sum(path.stat().st_size for path in files)) > MOST:
+        raise ValueError(f"{folder}: expected hidden checks of at most {MOST} bytes, got {size}")
+    return [(path.relative_to(folder).as_posix(), path.read_bytes()) for path in files]
+
+
+def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
+    """Write files into a new folder, and return it."""
+    for name, data in files:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_bytes(data)
+    return folder
+
+
+def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
     """Return the notebook or Python file of a submission, and why its archive was refused, or ""."""
     if path.suffix.lower() in READ:
         return path, ""
@@ -60,43 +149,68 @@ def _opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
     return scratch / "files" / named[0], ""
 
 
-def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[journal.Piece]:
+def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
     folders = [materials.folder("tests") / "spec", *([conditions.hidden] if conditions.hidden else [])]
     checks = [folder / f"test_{task.id}.py" for folder in folders for task in homework.tasks]
     files = grading.specification([check for check in checks if check.is_file()])
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
-    return [
-        journal.Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()
-    ]
+    return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
 
 
-def points(graded: Mapping[str, Result]) -> dict[str, float]:
-    """Return the points of each team's work."""
-    return {team: result.score for team, result in graded.items()}
+def chosen(
+    handins: Mapping[str, Handin], roster: Roster, only: Collection[str] = (), since: datetime | None = None
+) -> dict[str, Handin]:
+    """Return what counts of these students or teams, all unless told, and has come since a time.
+
+    Raises
+    ------
+    ValueError
+        For a name that the roster does not know, or of which nothing was handed in.
+    """
+    names = {one if one in handins else roster.team_of([one]) for one in only}
+    if missing := sorted(names - set(handins)):
+        raise ValueError(f"expected names that have handed in, got {', '.join(missing)}")
+    return {
+        team: one
+        for team, one in handins.items()
+        if (not only or team in names) and (since is None or one.received >= since)
+    }
 
 
-def page(homework: Homework, graded: Iterable[Result], notes: Iterable[str]) -> str:
-    """Return the class page: how many hold each promise, and which misconceptions were met."""
-    each = list(graded)
-    promises = {(one.task, one.promise): [0, 0] for result in each for one in result.checks}
-    for result in each:
-        for one in result.checks:
-            promises[one.task, one.promise][0] += one.outcome == "holds"
-            promises[one.task, one.promise][1] += 1
-    met = Counter((task, said) for result in each for task, said in result.misconceptions.items())
-    scores = sorted(result.score for result in each)
-    bins = Counter(min(9, int(10 * score / max(homework.points, 1e-9))) for score in scores)
-    return (
-        templates(Path(__file__).parent)
-        .get_template(PAGE)
-        .render(
-            homework=homework,
-            count=len(each),
-            median=scores[len(scores) // 2] if scores else 0,
-            bins=[(10 * k, bins[k]) for k in range(10)],
-            promises=[(*key, holds, of) for key, (holds, of) in promises.items()],
-            met=met.most_common(),
-            notes=list(notes),
-        )
-    )
+def told(out: Path, done: Done) -> Done:
+    """Write a team's feedback, unless all of it is there and of this result; return what was `done`.
+
+    It is of this result where its JSON is, which is removed first and written last.
+    """
+    if done.result is not None:
+        folder, data = out / "feedback" / done.piece.owner, done.result.read_bytes()
+        whole = folder / "result.json"
+        missing = [name for name in gradebook.FILES if not (folder / name).is_file()]
+        if missing or whole.read_bytes() != data:
+            whole.unlink(missing_ok=True)
+            gradebook.write_results(folder, results.from_json(data))
+    return done
+
+
+def read(out: Path, everything: Sequence[Piece]) -> Iterator[Result]:
+    """Yield the results that are there, one at a time: a large class has more pictures than memory."""
+    for piece in everything:
+        path = journal.place(out / "results", piece)
+        if path.is_file():
+            yield results.from_json(path.read_bytes())
+
+
+def times(path: Path) -> dict[str, datetime]:
+    """Return when files came, from a table with the columns file and received."""
+    came = {}
+    for row in sheets.read_csv(path):
+        try:
+            came[row["file"]] = datetime.fromisoformat(row["received"])
+        except (KeyError, ValueError):
+            raise ValueError(
+                f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
+            ) from None
+        if came[row["file"]].tzinfo is None:
+            raise ValueError(f"{path}: expected times with a zone, got {row['received']}")
+    return came

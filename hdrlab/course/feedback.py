@@ -4,6 +4,7 @@ Everything that a student wrote, or that their function said, is text here: it i
 and the page forbids scripts besides. Of a hidden check the outcome alone is shown.
 """
 
+from functools import cache
 from pathlib import Path
 
 import jinja2
@@ -76,6 +77,7 @@ def _pictures(drawing: Drawing) -> list[tuple[str, str, str]]:
     return list(zip(frames, drawing.alts, drawing.captions, strict=True))
 
 
+@cache  # a class has many pages, and the templates are translated once
 def _environment() -> jinja2.Environment:
     environment = templates(Path(__file__).parent)
     environment.filters |= {"pictures": _pictures, "number": number, "points": results.points}

@@ -7,6 +7,7 @@ answers from a sandbox (`subject`). How far it is kept apart is said in the Resu
 import base64
 import hashlib
 import json
+import os
 import platform
 import tempfile
 from collections.abc import Iterator, Sequence
@@ -115,6 +116,7 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
         "draw": conditions.draw,
         "specification": str(materials.folder("tests") / "spec"),
         "out": str(folder / "lines"),
+        "grader": os.getpid(),
     }
     (folder / "lines").touch()
     file = folder / "job.json"

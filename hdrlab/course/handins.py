@@ -5,7 +5,6 @@ on with a sign: b0123.ipynb, b0123_hw2.py, team7-hw2.zip. Of several the last th
 """
 
 import hashlib
-import re
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
@@ -51,7 +50,7 @@ def find(folder: str | Path, roster: Roster, received: dict[str, datetime] | Non
     folder = Path(folder)
     if not folder.is_dir():
         raise ValueError(f"{folder}: expected the folder of what was handed in")
-    owners, notes = _owners(roster), []
+    owners, teams, notes = _owners(roster), roster.teams(), []
     handins: dict[str, Handin] = {}
     for path in _files(folder):
         team = _team(path.relative_to(folder).parts[0], owners)
@@ -59,7 +58,7 @@ def find(folder: str | Path, roster: Roster, received: dict[str, datetime] | Non
             notes.append(f"{plain(path.name, 80)}: the roster knows nobody of that name")
             continue
         when = (received or {}).get(path.name) or datetime.fromtimestamp(path.stat().st_mtime, UTC)
-        students = tuple(one.id for one in roster.teams()[team])
+        students = tuple(one.id for one in teams[team])
         fresh = Handin(team, students, path, when, hashlib.sha256(path.read_bytes()).hexdigest())
         before = handins.get(team)
         if before:
@@ -88,9 +87,9 @@ def _owners(roster: Roster) -> dict[str, str]:
 
 
 def _team(name: str, owners: dict[str, str]) -> str | None:
-    """Return the team of the longest name that this one begins with."""
+    """Return the team of the longest name that this one begins with, before its end, or a sign."""
     folded = name.casefold()
-    for owner in sorted(owners, key=len, reverse=True):
-        if re.match(re.escape(owner) + r"($|[^\w]|_)", folded):
-            return owners[owner]
+    for end in range(len(folded), 0, -1):
+        if folded[:end] in owners and not folded[end : end + 1].isalnum():
+            return owners[folded[:end]]
     return None

@@ -1,17 +1,19 @@
 """Work that is done once, whatever happens meanwhile: a file for each piece, written whole or not at all.
 
 A piece is named by its owner and a key, which is a digest of all that its result rests on. What is there is
-done; what is not will be done by the next run. Each piece runs in a process of its own: one that dies is
-tried again, three times in all, and then told of. The run may be killed at any moment, and so may they.
+done; what is not will be done by the next run. Pieces are done by a crew, on this machine (`processes`) or on
+many (`cluster`), and written here. One that ends without a result is tried again, three times in all, and
+then told of. The run may be killed at any moment, and so may those of its crew.
 """
 
+import contextlib
 import hashlib
 import os
-import time
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from multiprocessing import connection, get_context
+from collections import Counter, deque
+from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any, NamedTuple
+from types import TracebackType
+from typing import NamedTuple, Protocol, Self
 
 TRIES = 3
 
@@ -24,9 +26,6 @@ class Piece(NamedTuple):
     key: str
 
 
-Work = Callable[[Piece], bytes]  # a submission -> the bytes of its result; it can be sent to a process
-
-
 class Done(NamedTuple):
     """What became of a piece: where its result is, or why there is none; `fresh` if it was done just now."""
 
@@ -36,10 +35,39 @@ class Done(NamedTuple):
     fresh: bool = True
 
 
-class _Running(NamedTuple):
+class Ending(NamedTuple):
+    """How one try of a piece ended.
+
+    Attributes
+    ----------
+    piece : Piece
+    result : its bytes, or None
+    why : there is none
+    blamed : whether that is the piece's own doing, as far as can be told; else it is tried again alone
+    """
+
     piece: Piece
-    process: Any
-    until: float
+    result: bytes | None
+    why: str = ""
+    blamed: bool = True
+
+
+class Crew(Protocol):
+    """Those who do the pieces, each in a process of its own; used in a with statement."""
+
+    def start(self, piece: Piece, *, alone: bool = False) -> bool:
+        """Begin a piece if there is room for it, with no other beside it where it is to be `alone`."""
+
+    def endings(self) -> Sequence[Ending]:
+        """Wait a little, and return what has ended."""
+
+    def __enter__(self) -> Self:
+        """Make ready."""
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+    ) -> None:
+        """End what runs."""
 
 
 def key(*parts: str) -> str:
@@ -63,7 +91,7 @@ def place(folder: Path, piece: Piece) -> Path:
 
 def write(path: Path, data: bytes) -> None:
     """Write a file so that after a power failure, too, it is there whole or not at all."""
-    temporary = path.with_name(f".{path.name}.{os.getpid()}")
+    temporary = path.with_name(f".hdrlab-{os.getpid()}-{path.name}")
     with open(temporary, "wb") as file:
         file.write(data)
         file.flush()
@@ -77,25 +105,47 @@ def write(path: Path, data: bytes) -> None:
             os.close(handle)
 
 
-def done_steps(
-    pieces: Sequence[Piece],
-    work: Work,
-    folder: Path,
-    *,
-    jobs: int = 1,
-    again: bool = False,
-    patience: float = 1800.0,
-) -> Iterator[Done]:
-    """Yield what became of each piece, those first that were done before.
+@contextlib.contextmanager
+def held(folder: Path) -> Iterator[None]:
+    """Make a folder and hold it for one run; what a killed one left half written in it is removed.
 
-    Parameters
-    ----------
-    pieces : each owner once
-    work : returns the bytes of a result; it runs in another process
-    folder : of the results, made where it is missing
-    jobs : processes at a time
-    again : do what was done before, too
-    patience : seconds for one try
+    Raises
+    ------
+    ValueError
+        Where another run holds it. Who is killed holds nothing.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with _locked(folder):
+        for rest in folder.rglob(".hdrlab-*"):
+            rest.unlink(missing_ok=True)
+        yield
+
+
+@contextlib.contextmanager
+def _locked(folder: Path) -> Iterator[None]:
+    try:
+        import fcntl
+    except ImportError:  # on Windows; there, two runs at once are the instructor's affair
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        yield
+    except BlockingIOError:
+        raise ValueError(f"{folder}: another run is writing to it") from None
+    finally:
+        os.close(handle)
+
+
+def forget(folder: Path, pieces: Sequence[Piece]) -> None:
+    """Remove the results of pieces, which are then to be done again, by this run or the next."""
+    for piece in pieces:
+        place(folder, piece).unlink(missing_ok=True)
+
+
+def parted(folder: Path, pieces: Sequence[Piece]) -> tuple[list[Done], list[Piece]]:
+    """Return what was done before, and what is to be done.
 
     Raises
     ------
@@ -104,78 +154,65 @@ def done_steps(
     """
     if len({piece.owner for piece in pieces}) < len(pieces):
         raise ValueError("expected each owner once")
+    there = {path.name for path in folder.glob("*.json")}
+    names = [place(folder, piece) for piece in pieces]
+    before = [
+        Done(piece, path, fresh=False)
+        for piece, path in zip(pieces, names, strict=True)
+        if path.name in there
+    ]
+    return before, [piece for piece, path in zip(pieces, names, strict=True) if path.name not in there]
+
+
+def done_steps(pieces: Sequence[Piece], crew: Crew, folder: Path) -> Iterator[Done]:
+    """Yield what became of each piece, as soon as it is known; an owner's older results are removed.
+
+    Parameters
+    ----------
+    pieces : what is to be done, each owner once
+    crew : does it
+    folder : of the results, made where it is missing
+    """
     folder.mkdir(parents=True, exist_ok=True)
-    waiting = []
-    for piece in pieces:
-        if place(folder, piece).is_file() and not again:
-            yield Done(piece, place(folder, piece), fresh=False)
-        else:
-            waiting.append(piece)
-    yield from _run(waiting, work, folder, jobs, patience)
+    older = _older(folder, pieces)
+    for ending in _endings(pieces, crew):
+        piece, result = ending.piece, ending.result
+        if result is None:
+            yield Done(piece, None, f"it ended {TRIES} times without a result: {ending.why}")
+            continue
+        write(place(folder, piece), result)
+        for path in older.get(piece.owner, ()):
+            path.unlink(missing_ok=True)
+        yield Done(piece, place(folder, piece))
 
 
-def _run(waiting: list[Piece], work: Work, folder: Path, jobs: int, patience: float) -> Iterator[Done]:
-    tries: dict[str, int] = {}
-    running: list[_Running] = []
-    try:
-        while waiting or running:
-            while waiting and len(running) < jobs:
-                running.append(_start(waiting.pop(0), work, folder, patience))
-            for one in _ended(running):
-                running.remove(one)
-                tries[one.piece.owner] = tries.get(one.piece.owner, 0) + 1
-                code = one.process.exitcode
-                if code == 0:
-                    _forget_older(folder, one.piece)
-                    yield Done(one.piece, place(folder, one.piece))
-                elif tries[one.piece.owner] < TRIES:
-                    waiting.append(one.piece)  # elsewhere, and after the others
-                else:
-                    yield Done(one.piece, None, f"its grading ended {TRIES} times without a result ({code})")
-    finally:  # an error, or Ctrl-C: what runs would be done again by the next run
-        for one in running:
-            one.process.kill()
-            one.process.join()
+def _endings(pieces: Sequence[Piece], crew: Crew) -> Iterator[Ending]:
+    """Yield the last ending of each piece: with a result, or the third without."""
+    waiting, doubted, running = deque(pieces), set(), 0
+    tries: Counter[str] = Counter()
+    while waiting or running:
+        while waiting and crew.start(waiting[0], alone=waiting[0].owner in doubted):
+            waiting.popleft()
+            running += 1
+        for ending in crew.endings():
+            running -= 1
+            owner = ending.piece.owner
+            tries[owner] += ending.blamed
+            if ending.result is not None or tries[owner] == TRIES:
+                yield ending
+            elif ending.blamed:
+                waiting.append(ending.piece)  # elsewhere, and after the others
+            else:
+                doubted.add(owner)
+                waiting.appendleft(ending.piece)
 
 
-def _start(piece: Piece, work: Work, folder: Path, patience: float) -> _Running:
-    process = get_context("spawn").Process(target=_do, args=(work, piece, place(folder, piece)))
-    process.start()
-    return _Running(piece, process, time.monotonic() + patience)
-
-
-def _do(work: Work, piece: Piece, result: Path) -> None:
-    """Grade one submission, in its own process."""
-    write(result, work(piece))
-
-
-def _ended(running: list[_Running]) -> list[_Running]:
-    """Wait a little, end those that took too long, and return those that have ended."""
-    connection.wait([one.process.sentinel for one in running], timeout=0.5)
-    for one in running:
-        if time.monotonic() > one.until:
-            one.process.kill()
-    ended = [one for one in running if not one.process.is_alive()]
-    for one in ended:
-        one.process.join()
-    return ended
-
-
-def _forget_older(folder: Path, piece: Piece) -> None:
-    """Remove an owner's results of another key, and what a killed process left of this one."""
-    for older in folder.glob(f"{_plain(piece.owner)}.*.json"):
-        if older != place(folder, piece) and older.name.count(".") == piece.owner.count(".") + 2:
-            older.unlink(missing_ok=True)
-    for rest in folder.glob(f".{_plain(piece.owner)}.*.json.*"):
-        rest.unlink(missing_ok=True)
-
-
-def _plain(owner: str) -> str:
-    """Return an owner's name for a pattern of file names."""
-    return "".join(f"[{letter}]" if letter in "*?[" else letter for letter in owner)
-
-
-def results(folder: Path, pieces: Mapping[str, Piece]) -> dict[str, bytes]:
-    """Return the results that are there, by owner."""
-    there = {owner: place(folder, piece) for owner, piece in pieces.items()}
-    return {owner: path.read_bytes() for owner, path in there.items() if path.is_file()}
+def _older(folder: Path, pieces: Sequence[Piece]) -> dict[str, list[Path]]:
+    """Return the results of other keys, by owner."""
+    names = {piece.owner: place(folder, piece).name for piece in pieces}
+    found: dict[str, list[Path]] = {}
+    for path in folder.glob("*.json"):
+        owner = path.name.rsplit(".", 2)[0]
+        if owner in names and path.name != names[owner]:
+            found.setdefault(owner, []).append(path)
+    return found

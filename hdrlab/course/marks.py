@@ -10,6 +10,7 @@ from typing import NamedTuple
 from hdrlab.course import sheets
 from hdrlab.course.handins import Handin
 from hdrlab.course.late import Handed, accounts, lateness
+from hdrlab.course.late import what_if as late_days
 from hdrlab.course.plan import Homework, Late
 from hdrlab.course.roster import Roster
 
@@ -17,6 +18,8 @@ COLUMNS = (
     *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),
     *("grace left", "note"),
 )
+LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
+DAYS = range(15)  # of the what-if table
 
 
 class Mark(NamedTuple):
@@ -78,11 +81,38 @@ def marks(
     return rows
 
 
+def what_if(
+    roster: Roster,
+    homework: Homework,
+    handins: Mapping[str, Handin],
+    points: Mapping[str, float],
+    late: Late,
+    before: Iterable[Handed] = (),
+) -> tuple[list[str], list[list[sheets.Cell]]]:
+    """Return header and rows of a table: each student's score, had the work come so many days late.
+
+    Work that has not come, or is not graded, is taken for one that earns all points. The parameters are those
+    of `marks`.
+    """
+    teams = {team: tuple(one.id for one in members) for team, members in roster.teams().items()}
+    work = {team: points.get(team, homework.points) for team in teams}
+    supposed = [Handed(homework.name, 0, members, work[team]) for team, members in teams.items()]
+    table = late_days(
+        [*before, *supposed], homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day
+    )
+    header = ["student", "name", "team", "homework", "work", *(f"late {days}" for days in DAYS)]
+    rows: list[list[sheets.Cell]] = [
+        [one.id, one.name, one.team, homework.name, work[one.team], *(by[one.id].score for _, by in table)]
+        for one in roster.students
+    ]
+    return header, rows
+
+
 def read(paths: Sequence[Path]) -> list[Handed]:
     """Return what gradebooks of earlier homeworks tell, in the order of the files."""
     handed = []
     for path in paths:
-        for row in sheets.read_csv(path):
+        for row in sheets.read_csv(path, most=LARGE):
             try:
                 if not row["note"]:
                     student = (row["student"].removeprefix("'"),)

@@ -7,6 +7,9 @@ line by line into another, so that nothing is lost if this process is ended.
 
 import base64
 import json
+import os
+import re
+import signal
 from contextlib import ExitStack
 from fractions import Fraction
 from pathlib import Path
@@ -16,7 +19,7 @@ import numpy as np
 import pytest
 
 from hdrlab.core.arrays import describe
-from hdrlab.course import compare, misconceptions, plan
+from hdrlab.course import compare, misconceptions, plan, warden
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.subject import NoAnswer, Subject
@@ -24,6 +27,8 @@ from hdrlab.course.subject import NoAnswer, Subject
 CALLS = 20  # of a task that are kept to recognise a mistake by
 LONGEST = 1500  # characters of a message
 SAID = 4000  # characters of what a function printed
+WHERE = re.compile(r"\n *\+  where")  # begins what pytest adds to a plain assert
+ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  # of an object: it is another in each run
 DRAWN = 3_000_000  # values of an image that is drawn, at most
 
 
@@ -59,6 +64,9 @@ class Checking:
 
     def pytest_sessionstart(self) -> None:
         """Start the sandbox first: it gets ready while the checks are collected."""
+        warden.prctl(warden.DIE_WITH_PARENT, signal.SIGKILL)  # if the grader is killed, this is to end, too
+        if os.getppid() != self.job["grader"]:
+            pytest.exit("the grader has ended")
         sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])
         self.submission = self.open.enter_context(Subject(sources, {}, sandbox, self.job["timeout"]))
 
@@ -103,7 +111,7 @@ class Checking:
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
-        said = subject.said[:SAID]
+        said = ADDRESS.sub("", subject.said)[:SAID]
         if not self._is_hidden(item) and isinstance(subject, Subject):
             kept = self.calls.setdefault(_task(item), [])
             kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
@@ -157,7 +165,7 @@ def _promise(item: pytest.Item) -> str:
 
 def _message(raised: BaseException) -> str:
     """Return why a check does not hold, in words."""
-    said = str(raised).partition("\n  +  where")[0].strip()
+    said = ADDRESS.sub("", WHERE.split(str(raised))[0]).strip()
     if isinstance(raised, compare.Different) and raised.came is not None and np.ndim(raised.came):
         return f"{said[:LONGEST]}\nYours: {describe(raised.came)}"
     if isinstance(raised, compare.Different | NoAnswer):

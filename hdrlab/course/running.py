@@ -33,9 +33,12 @@ def run(folder: Path, job: Path, files: Sequence[Path], patience: float) -> Iter
         try:
             yield from _followed(process, folder / "lines", patience)
         finally:
+            ended = process.poll()  # None: its time is over, or nobody listens any more
             process.kill()
             process.wait()
-    if process.returncode not in (0, 1, -9):  # 1: some checks do not hold
+    if ended is not None and ended < 0:
+        raise ValueError(f"the checks were ended from outside, by signal {-ended}")
+    if ended not in (None, 0, 1):  # 1: some checks do not hold
         told = (folder / "said").read_text(errors="replace").strip().splitlines()
         raise ValueError("the checks could not be run: " + " / ".join(told[-4:]))
 

@@ -21,6 +21,7 @@ from hdrlab.course.sandbox.running import Running, Sandbox
 TIMEOUT = 10.0  # seconds of a call
 OUTPUT = 1 << 16  # characters of a check that are kept of what was printed
 REMEMBERED = 1 << 23  # bytes of a check's answers that are kept in `calls`
+LOST = ("ended its process, and gave no answer", "sent what is no answer")  # or was killed by somebody else
 CONTROLS = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
 
 
@@ -215,8 +216,8 @@ def _no_answer(task: str, error: Exception, timeout: float) -> NoReturn:
     if isinstance(error, TimeoutError):
         raise NoAnswer(f"{task} took longer than {timeout:g} s", "late") from None
     if isinstance(error, channel.Damaged):
-        raise NoAnswer(f"{task} sent what is no answer: {error}", "damaged") from None
-    raise NoAnswer(f"{task} ended its process, and gave no answer", "died") from None
+        raise NoAnswer(f"{task} {LOST[1]}: {error}", "damaged") from None
+    raise NoAnswer(f"{task} {LOST[0]}", "died") from None
 
 
 def readable(text: str) -> str:

@@ -80,7 +80,7 @@ def examine(tier: str) -> Finding:
     try:
         broken, start = _trial(tier)
     except (Unavailable, NoAnswer, OSError) as error:
-        return Finding(tier, False, credit, str(error), _remedy(str(error)))
+        return Finding(tier, False, credit, str(error), remedy(str(error)))
     if not credit:
         stops = "; ".join(practice.DOES_NOT_STOP)
         return Finding(tier, True, False, f"started in {start:.2f} s. It does not stop: {stops}", "")
@@ -101,8 +101,14 @@ def _trial(tier: str) -> tuple[list[str], float]:
         return (subject.tried(secret, target) if tier != "practice" else []), start
 
 
-def _remedy(reason: str) -> str:
-    """Return what would help, as far as the reason and the system's switches tell."""
+def remedy(reason: str) -> str:
+    """Return what would help, as far as the reason and the system's switches tell.
+
+    Examples
+    --------
+    >>> remedy("the strict tier needs bubblewrap, and there is no bwrap on the path").partition(" (")[0]
+    'install bubblewrap 0.8 or later'
+    """
     known = [help for word, help in INSTALL.items() if word in reason.partition("\n")[0]]
     if known and "did not start" not in reason:
         return known[0]

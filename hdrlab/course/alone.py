@@ -1,0 +1,106 @@
+"""One piece of work in a process of its own, so that whatever becomes of that process happens to no other.
+
+order   on the standard input: where modules are found, then the work and its piece, pickled by this program
+answer  on the standard output: a sign, + or -, and the result's bytes, or why there are none
+
+The process ends with the one that started it, however that ended, and so do those that it starts itself.
+"""
+
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from typing import Any
+
+from hdrlab.course.running import LIBRARY
+from hdrlab.course.warden import DIE_WITH_PARENT, prctl
+
+TICK = 0.2  # seconds between two looks at whether it is to be ended
+LAST = 300  # characters of why it failed
+
+
+class Failed(RuntimeError):
+    """Why a piece of work has no result, in a line."""
+
+
+def run(
+    work: Callable[[Any], bytes],
+    piece: Any,
+    *,
+    patience: float,
+    stopped: Callable[[], bool] = lambda: False,
+) -> bytes:
+    """Return work(piece), computed in a process of its own.
+
+    Parameters
+    ----------
+    work, piece : both can be pickled
+    patience : seconds that it may take
+    stopped : asked again and again; where it says so, the process is ended
+
+    Raises
+    ------
+    Failed
+        Where the work raised an error, its process died, took too long, or was stopped.
+    """
+    order = pickle.dumps([one for one in sys.path if one]) + pickle.dumps((work, piece))
+    with tempfile.TemporaryDirectory(prefix="hdrlab-piece-", ignore_cleanup_errors=True) as scratch:
+        process = subprocess.Popen(
+            [sys.executable, "-P", "-m", "hdrlab.course.alone", str(os.getpid())],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.PIPE,
+            env=os.environ | {"PYTHONPATH": _path(), "TMPDIR": scratch},
+        )
+        with process:
+            try:
+                answer, said = _answer(process, order, time.monotonic() + patience, stopped)
+            finally:
+                process.kill()
+    if answer[:1] == b"+":
+        return answer[1:]
+    lines = (answer[1:] or said).decode(errors="replace").strip().splitlines()
+    raise Failed((lines[-1] if lines else f"its process was ended ({process.returncode})")[:LAST])
+
+
+def _path() -> str:
+    return os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
+
+
+def _answer(
+    process: "subprocess.Popen[bytes]", order: bytes, until: float, stopped: Callable[[], bool]
+) -> tuple[bytes, bytes]:
+    """Return what a process answered and what it said besides, or raise Failed when it is to be ended."""
+    given: bytes | None = order
+    while True:
+        try:
+            return process.communicate(given, timeout=TICK)
+        except subprocess.TimeoutExpired:
+            given = None  # it has been told
+        if stopped():
+            raise Failed("it was stopped")
+        if time.monotonic() > until:
+            raise Failed("it took too long")
+
+
+def main(parent: str) -> None:
+    """Read the order, do the work, and answer: the whole life of this process."""
+    prctl(DIE_WITH_PARENT, signal.SIGKILL)
+    if os.getppid() != int(parent):  # it has died meanwhile
+        return
+    with os.fdopen(os.dup(1), "wb") as out:
+        os.dup2(2, 1)  # what anything prints is no part of the answer
+        sys.path[:] = pickle.load(sys.stdin.buffer)
+        work, piece = pickle.load(sys.stdin.buffer)
+        try:
+            out.write(b"+" + work(piece))
+        except Exception as error:
+            out.write(b"-" + " ".join(f"{type(error).__name__}: {error}".split()).encode())
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])

@@ -1,0 +1,252 @@
+"""A crew on many machines: a Dask cluster, whose workers have hdrlab, and no disk in common with this one.
+
+A submission's bytes go out with the work, and its result's bytes come back; nothing is kept over there. A
+piece is given to one worker, and no worker has more of them than threads, so that it is known who was at work
+where when a worker is lost. A piece that was alone on its worker is blamed for the loss; those that were
+several are not, and each is tried again alone.
+"""
+
+import contextlib
+import hashlib
+import secrets
+import tempfile
+import time
+from collections import Counter
+from collections.abc import Callable, Iterator, Mapping
+from functools import cache
+from pathlib import Path
+from types import TracebackType
+from typing import NamedTuple, Self
+
+import dask
+import distributed
+from distributed import Client, Future, KilledWorker
+
+import hdrlab
+from hdrlab.course import alone as process
+from hdrlab.course.journal import Ending, Piece
+from hdrlab.course.processes import LOOK, PATIENCE
+
+CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
+LONELY = 120.0  # seconds without any worker, after which the run ends
+TICK = 0.05  # seconds between two looks at what has ended
+WARNING = {
+    "distributed.admin.large-graph-warning-threshold": "4 GiB"
+}  # a submission may be of many photographs
+
+
+class Seat(NamedTuple):
+    """A worker: its address, and how many pieces it may have."""
+
+    address: str
+    threads: int
+
+
+class Task(NamedTuple):
+    """What travels to a worker: the work, the piece and its bytes, and which hdrlab they are of."""
+
+    work: Callable[[Piece], bytes]
+    ready: Callable[[], object]
+    piece: Piece
+    data: bytes
+    patience: float
+    version: str
+
+
+def version() -> str:
+    """Return which hdrlab this is: its version, and a digest of its source."""
+    return f"{hdrlab.__version__} ({_sources()})"
+
+
+@cache
+def _sources() -> str:
+    home, digest = Path(hdrlab.__file__).parent, hashlib.sha256()
+    for path in sorted(home.rglob("*.py")):
+        digest.update(path.relative_to(home).as_posix().encode() + path.read_bytes())
+    return digest.hexdigest()[:8]
+
+
+def do(task: Task) -> bytes:
+    """Do a piece, on a worker: a sign, + or -, and the result's bytes, or why there are none."""
+    if version() != task.version:
+        raise ValueError(f"its hdrlab is {version()}, expected {task.version}")
+    task.ready()
+    with tempfile.TemporaryDirectory(prefix="hdrlab-task-", ignore_cleanup_errors=True) as folder:
+        path = Path(folder) / task.piece.path.name
+        path.write_bytes(task.data)
+        piece = task.piece._replace(path=path)
+        try:
+            return b"+" + process.run(task.work, piece, patience=task.patience, stopped=_watch())
+        except process.Failed as error:
+            return b"-" + str(error).encode()
+
+
+def _watch() -> Callable[[], bool]:
+    """Return what tells whether a task is no longer wanted: the run has ended, or was killed."""
+    worker = distributed.get_worker()
+    mine = worker.get_current_task()
+
+    def stopped() -> bool:
+        state = worker.state.tasks.get(mine)
+        return state is None or state.state == "cancelled"
+
+    return stopped
+
+
+class Cluster:
+    """A `journal.Crew` of the workers of a Dask cluster; those who join later are of it, too.
+
+    Parameters
+    ----------
+    address : of the scheduler, such as tcp://10.0.0.1:8786
+    work : returns the bytes of a result; it can be pickled
+    ready : raises an error on a machine that cannot do the work
+    patience : seconds for one try
+
+    Raises
+    ------
+    ValueError
+        Where there is no cluster, where it has another hdrlab, or cannot do the work, or is lost later on.
+    """
+
+    def __init__(
+        self,
+        address: str,
+        work: Callable[[Piece], bytes],
+        ready: Callable[[], object] = version,
+        patience: float = PATIENCE,
+    ) -> None:
+        self._address, self._work, self._ready, self._patience = address, work, ready, patience
+        self._running: dict[Future, tuple[Piece, Seat]] = {}
+        self._taken: set[str] = set()  # workers that one piece has to itself
+        self._met = time.monotonic()  # when there was a worker, last
+
+    def __enter__(self) -> Self:
+        try:
+            self._client = Client(self._address, timeout=CONNECT, set_as_default=False)
+        except (OSError, ValueError) as error:
+            why = f": {error}" if isinstance(error, ValueError) else ""
+            raise ValueError(f"expected a Dask cluster at {self._address}, there is none{why}") from None
+        try:
+            self._check()
+        except BaseException:
+            self._client.close()
+            raise
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
+    ) -> None:
+        with contextlib.suppress(OSError, RuntimeError):  # it may be gone
+            self._client.cancel(list(self._running), force=True)
+        self._client.close()
+
+    def start(self, piece: Piece, *, alone: bool = False) -> bool:
+        """Begin a piece on the worker with most room, if there is any."""
+        seats, busy = self._present(), Counter(seat.address for _, seat in self._running.values())
+        room = {seat: seat.threads - busy[seat.address] for seat in seats if seat.address not in self._taken}
+        fitting = [seat for seat in room if room[seat] > 0 and not (alone and busy[seat.address])]
+        if not fitting:
+            return False
+        seat = max(fitting, key=room.__getitem__)
+        if alone:
+            self._taken.add(seat.address)
+        self._running[self._sent(piece, seat)] = piece, seat
+        return True
+
+    def endings(self) -> list[Ending]:
+        """Wait a little, and return what has ended, and those whose worker is lost."""
+        until = time.monotonic() + LOOK
+        while not any(one.done() for one in self._running) and time.monotonic() < until:
+            time.sleep(TICK)
+        ended = [one for future in list(self._running) if (one := self._ending(future))]
+        present = {seat.address for seat in self._present()}
+        return ended + self._lost({seat.address for _, seat in self._running.values()} - present)
+
+    def _check(self) -> None:
+        """Raise a ValueError for another hdrlab over there, or for a worker that cannot do the work."""
+        mine = version()
+        with self._talking():
+            said = {"the scheduler": self._client.run_on_scheduler(version)}
+            said |= self._client.run(version, on_error="return")
+            able = self._client.run(self._ready, on_error="return")
+        for who, theirs in said.items():
+            if theirs != mine:
+                raise ValueError(f"{who} of the cluster has hdrlab {theirs}, expected {mine} as it is here")
+        for who, why in able.items():
+            if isinstance(why, BaseException):
+                raise ValueError(f"{who} of the cluster cannot do it: {why}")
+
+    @contextlib.contextmanager
+    def _talking(self) -> Iterator[None]:
+        """Say in plain words what an error of the network means."""
+        try:
+            yield
+        except (OSError, RuntimeError) as error:
+            why = " ".join(str(error).split())[: process.LAST]
+            raise ValueError(
+                f"the cluster at {self._address} is lost; what is graded stays graded: {why}"
+            ) from None
+
+    def _present(self) -> list[Seat]:
+        """Return the workers that there are."""
+        with self._talking():
+            known = self._client.nthreads()
+        now = time.monotonic()
+        self._met = now if known else self._met
+        if now - self._met > LONELY:
+            raise ValueError(f"the cluster at {self._address} has had no worker for {LONELY:.0f} s")
+        return [Seat(address, threads) for address, threads in known.items()]
+
+    def _sent(self, piece: Piece, seat: Seat) -> Future:
+        task = Task(self._work, self._ready, piece, piece.path.read_bytes(), self._patience, version())
+        key = f"hdrlab-grade-{secrets.token_hex(8)}"
+        with self._talking(), dask.config.set(WARNING):
+            return self._client.submit(do, task, key=key, workers=[seat.address], pure=False)
+
+    def _ending(self, future: Future) -> Ending | None:
+        """Return how a piece has ended, if it has; that its worker is lost shows elsewhere, as a rule."""
+        piece, seat = self._running[future]
+        if future.status == "finished":
+            return self._answer(future, piece)
+        if future.status == "error":
+            with self._talking():
+                why = future.exception()
+            if not isinstance(why, KilledWorker):
+                raise ValueError(f"{seat.address} of the cluster cannot do it: {why}")
+            return self._lost({seat.address}, only=future)[0]  # again and again, at the same address
+        if future.status in ("cancelled", "lost"):  # somebody has cleared the cluster
+            self._forget(future)
+            return Ending(piece, None, "it was cancelled", blamed=False)
+        return None
+
+    def _answer(self, future: Future, piece: Piece) -> Ending | None:
+        """Return what a worker answered, unless that was lost with it."""
+        with self._talking():
+            try:
+                answer = future.result(timeout=CONNECT)
+            except TimeoutError:
+                return None
+        self._forget(future)
+        if answer[:1] == b"+":
+            return Ending(piece, answer[1:])
+        return Ending(piece, None, answer[1:].decode())
+
+    def _forget(self, future: Future) -> None:
+        _, seat = self._running.pop(future)
+        self._taken.discard(seat.address)
+
+    def _lost(self, gone: set[str], only: Future | None = None) -> list[Ending]:
+        """Return the endings of pieces whose worker is gone: one that was alone there is to blame."""
+        company = Counter(seat.address for _, seat in self._running.values())
+        lost = [
+            one for one, (_, seat) in self._running.items() if seat.address in gone and only in (None, one)
+        ]
+        with self._talking():
+            self._client.cancel(lost, force=True)
+        return [self._without(one, company) for one in lost]
+
+    def _without(self, future: Future, company: Mapping[str, int]) -> Ending:
+        piece, seat = self._running[future]
+        self._forget(future)
+        return Ending(piece, None, f"its worker {seat.address} was lost", blamed=company[seat.address] == 1)

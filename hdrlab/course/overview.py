@@ -1,0 +1,97 @@
+"""What is written about a whole class, when its submissions are graded.
+
+gradebook.csv   a row for each student: points, days late, penalty, score
+canvas.csv      the scores, as Canvas imports them
+what_if.csv     what each student's score would be, had the work come so many days late
+class.html      how many hold each promise, and which misconceptions were met: what to teach again
+"""
+
+import statistics
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+from hdrlab.course import journal, marks, sheets
+from hdrlab.course.classroom import Course
+from hdrlab.course.handins import Handin
+from hdrlab.course.plan import Homework
+from hdrlab.course.results import Outcome, Result
+from hdrlab.show.templates import templates
+
+PAGE = "class_page.html"
+BINS = 10  # of the scores, each a tenth of the points
+
+
+class Tally(NamedTuple):
+    """What counts of a class's results.
+
+    Attributes
+    ----------
+    points : of each team's work
+    outcomes : of each promise, by task and its words: how often it holds, fails, or was not answered
+    met : how often each misconception was met, by task and sentence
+    """
+
+    points: dict[str, float]
+    outcomes: dict[tuple[str, str], Counter[Outcome]]
+    met: Counter[tuple[str, str]]
+
+
+def tally(each: Iterable[Result]) -> Tally:
+    """Return what counts of results, each of which is looked at once and let go."""
+    points: dict[str, float] = {}
+    outcomes: dict[tuple[str, str], Counter[Outcome]] = {}
+    met: Counter[tuple[str, str]] = Counter()
+    for result in each:
+        points[result.student] = result.score
+        met.update(result.misconceptions.items())
+        for one in result.checks:
+            outcomes.setdefault((one.task, one.promise), Counter())[one.outcome] += 1
+    return Tally(points, outcomes, met)
+
+
+def write(
+    out: Path, course: Course, handins: Mapping[str, Handin], counted: Tally, notes: Sequence[str] = ()
+) -> list[Path]:
+    """Write all that is about the whole class, and return the files; a new one has its line here.
+
+    Parameters
+    ----------
+    out : the folder of the results
+    course, handins, counted : by what, what counts of each team, and what came of it
+    notes : of what was left out, or could not be graded
+    """
+    given = course.roster, course.homework, handins, counted.points, course.late, course.before
+    rows = marks.marks(*given)
+    tables: dict[str, tuple[Sequence[str], Sequence[Sequence[sheets.Cell]]]] = {
+        "gradebook.csv": (marks.COLUMNS, rows),
+        "canvas.csv": marks.canvas(rows, course.homework),
+        "what_if.csv": marks.what_if(*given),
+    }
+    files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]
+    journal.write(out / "class.html", page(course.homework, counted, notes).encode())
+    return [*files, out / "class.html"]
+
+
+def page(homework: Homework, counted: Tally, notes: Iterable[str] = ()) -> str:
+    """Return the class page: how many hold each promise, and which misconceptions were met."""
+    scores = counted.points.values()
+    whole = max(homework.points, 1e-9)
+    bins = Counter(min(BINS - 1, int(BINS * score / whole)) for score in scores)
+    return (
+        templates(Path(__file__).parent)
+        .get_template(PAGE)
+        .render(
+            homework=homework,
+            count=len(scores),
+            median=statistics.median(scores) if scores else 0,
+            bins=[(100 // BINS * k, bins[k]) for k in range(BINS)],
+            promises=[
+                (*key, each.total(), each["holds"], each["fails"], each["no answer"])
+                for key, each in counted.outcomes.items()
+            ],
+            met=counted.met.most_common(),
+            notes=list(notes),
+        )
+    )

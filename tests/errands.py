@@ -1,0 +1,87 @@
+"""Work for the crews under test, in place of grading: it is sent elsewhere, so it is light to import.
+
+A submission here is a file of two lines: where to note what happens, and anything.
+"""
+
+import os
+import signal
+import time
+from pathlib import Path
+
+from hdrlab.course import journal
+
+
+def pieces(folder, count=5, names="s"):
+    """Write a class of so many submissions, unless it is there, and return them."""
+    folder.mkdir(exist_ok=True)
+    made = []
+    for k in range(count):
+        path = folder / f"{names}{k}.py"
+        if not path.exists():
+            path.write_text(f"{folder / 'begun'}\n{'x' * k}")
+        made.append(journal.Piece(f"{names}{k}", path, journal.key(path.read_text().partition("\n")[2])))
+    return made
+
+
+def begun(folder):
+    """Return what has begun: whose piece, in which process, which process has started that."""
+    noted = folder / "begun"
+    lines = noted.read_text().splitlines() if noted.exists() else []
+    return [(owner, int(own), int(parent)) for owner, own, parent in map(str.split, lines)]
+
+
+def grade(piece):
+    """Note that it begins, and answer: slow enough to be killed."""
+    where, rest = piece.path.read_text().split("\n")
+    with Path(where).open("a") as file:
+        file.write(f"{piece.owner} {os.getpid()} {os.getppid()}\n")
+    time.sleep(0.02)
+    return (f'{{"of": "{piece.path.name}", "bytes": {len(rest)}}}' * 2000).encode()
+
+
+def fatal(piece):
+    """Die as under the memory limit, if it is the hostile one."""
+    if piece.owner == "s3":
+        os.kill(os.getpid(), signal.SIGKILL)
+    return grade(piece)
+
+
+def slow(piece):
+    """Take more than a second."""
+    answer = grade(piece)
+    time.sleep(1.4)
+    return answer
+
+
+def deadly(piece):
+    """End the process that has started this one, on a cluster the worker, if it is the hostile one."""
+    if piece.owner != "s3":
+        return slow(piece)
+    answer = grade(piece)
+    time.sleep(1)  # a nanny looks after a worker when it has seen it begin
+    os.kill(os.getppid(), signal.SIGKILL)
+    time.sleep(60)
+    return answer
+
+
+def crowded(piece):
+    """The same, where the others do not end before the hostile one has begun for the first time."""
+    until = time.monotonic() + 10
+    while piece.owner != "s3" and time.monotonic() < until:
+        if "s3" in {owner for owner, *_ in begun(Path(piece.path.read_text().split("\n")[0]).parent)}:
+            time.sleep(1)
+            break
+        time.sleep(0.05)
+    return deadly(piece)
+
+
+def endless(piece):
+    """Never answer."""
+    grade(piece)
+    time.sleep(600)
+    return b""
+
+
+def failing(piece):
+    """Raise an error, on two lines."""
+    raise ValueError("expected this,\ngot that")
