@@ -1,0 +1,146 @@
+"""The page about what is alike in a class, for instructors' eyes: side by side, with what it cannot tell.
+
+similar.html   caveats, the shares of all pairs, the pairs from the threshold on, what is alike the library
+similar.csv    the same pairs as a table
+
+Both follow from what was handed in alone: the same class gives the same bytes.
+"""
+
+import tempfile
+import unicodedata
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from copydetect import compare_files
+
+from hdrlab.course import authored, classroom, inline, sheets, similarity
+from hdrlab.course.authored import Work
+from hdrlab.course.handins import Handin
+from hdrlab.course.plan import Homework
+from hdrlab.course.similarity import Likeness, Pair, Printed
+from hdrlab.io.files import replacing
+from hdrlab.show.templates import templates
+
+PAGE = "alike_page.html"
+MOST = 1_000  # works that are compared: half a million pairs, a gigabyte
+SHOWN = 100  # pairs with their passages
+ROWS = 10_000  # of the table
+WORTH = 0.3  # share of a task, from which its passages are shown
+TEXT = 8_000  # characters of a task that are shown
+COLUMNS = ("one", "other", "share", "one in other", "other in one")
+Piece = tuple[str, bool]  # of a text, and whether the other has it
+
+
+class Row(NamedTuple):
+    """A task of a pair, or "" for all together: the shares, and both texts where they are worth a look."""
+
+    task: str
+    forth: float
+    back: float
+    one: tuple[Piece, ...] = ()
+    other: tuple[Piece, ...] = ()
+
+
+def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) -> Iterator[str]:
+    """Write page and table of a class; yield each team when its work is read, the files are there at the end.
+
+    Parameters
+    ----------
+    out : folder of the results
+    homework, handins : what was asked, and what counts of each team
+    """
+    each = []
+    for one in similarity.printed_steps(works(homework, handins)):
+        each.append(one)
+        yield one.work.team
+    blocks = inline.inlined({task.id: task.function for task in homework.tasks}).values()
+    library = "\n\n\n".join(block.text for block in blocks)
+    found = similarity.compare(each, authored.handed_out(homework.name), library)
+    teams = [one.work.team for one in each]
+    table = [
+        (teams[one], teams[other], f"{share:.3f}", f"{forth:.3f}", f"{back:.3f}")
+        for one, other, share, forth, back in found.pairs[:ROWS]
+    ]
+    sheets.write_csv(out / "similar.csv", COLUMNS, table, private=True)
+    with replacing(out / "similar.html") as temporary:
+        temporary.touch(mode=0o600)
+        temporary.write_text(page(homework, each, found), encoding="utf8")
+
+
+def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[Work]:
+    """Yield what each team wrote itself, by the teams' names; an archive is unpacked for it."""
+    tasks = [task.id for task in homework.tasks]
+    for team, one in sorted(handins.items()):
+        with tempfile.TemporaryDirectory(prefix="hdrlab-alike-") as scratch:
+            path, refused = classroom.opened(one.path, Path(scratch), homework.name)
+            if refused:
+                yield Work(team, {}, (refused,))
+            else:
+                yield authored.read(team, path, homework.name, tasks)
+
+
+def page(homework: Homework, each: Sequence[Printed], found: Likeness) -> str:
+    """Return the page; whatever students wrote is text on it."""
+    library = {
+        task: sorted((each[n].work.team, share) for n, share in all.items() if share >= similarity.THRESHOLD)
+        for task, all in found.library.items()
+    }
+    environment = templates(Path(__file__).parent)
+    environment.filters["percent"] = lambda share: int(100 * share + 1e-9)
+    return environment.get_template(PAGE).render(
+        homework=homework,
+        teams=[one.work.team for one in each],
+        bins=[(100 * k // similarity.BINS, int(n)) for k, n in enumerate(found.counts)],
+        found=found,
+        shown=[(pair, rows(found, pair)) for pair in found.pairs[:SHOWN]],
+        library={task: all for task, all in library.items() if all},
+        notes=[(one.work.team, note) for one in each for note in one.work.notes],
+        measure=similarity,
+        most=ROWS,
+    )
+
+
+def rows(found: Likeness, pair: Pair) -> list[Row]:
+    """Return what two works have in common: all tasks together, then each task that was compared."""
+    each, signs = [], []
+    for task, prints in found.own.items():
+        if pair.one in prints and pair.other in prints:
+            one, other = prints[pair.one], prints[pair.other]
+            _, (forth, back), places = compare_files(one, other)
+            row = Row(task, float(forth), float(back))
+            if max(forth, back) >= WORTH:
+                texts = (pieces(text.raw_code, at) for text, at in zip((one, other), places, strict=True))
+                row = Row(*row[:3], *texts)
+            each.append(row)
+            signs.append((one.token_coverage, other.token_coverage))
+    both = np.sum([np.multiply(row[1:3], size) for row, size in zip(each, signs, strict=True)], axis=0)
+    return [Row("", *(both / np.sum(signs, axis=0)).tolist()), *each]
+
+
+def pieces(text: str, places: np.ndarray) -> tuple[Piece, ...]:
+    """Return a text in pieces that are alike and others; of a long one, what begins with the first alike.
+
+    Examples
+    --------
+    >>> pieces("a = 1\\nb = 2\\nc = 3\\n", np.array([[6], [12]]))
+    (('a = 1\\n', False), ('b = 2', True), ('\\nc = 3\\n', False))
+    """
+    first = int(places[0].min()) if places.size else 0
+    ends = [0 if len(text) <= TEXT else text.rfind("\n", 0, first) + 1]
+    last = min(len(text), ends[0] + TEXT)
+    for start, end in places.T.astype(int).tolist():
+        part = text[start : min(end, last)]
+        ends += [start, start + len(part.rstrip())] if part.strip() else []
+    ends.append(last)
+    parts = [(_visible(text[a:b]), k % 2 == 1) for k, (a, b) in enumerate(zip(ends, ends[1:], strict=False))]
+    return tuple(part for part in parts if part[0])
+
+
+def _visible(text: str) -> str:
+    """Return a text in which what has no shape, or turns the direction of others, is a mark of its own."""
+    hidden = {"Cc", "Cf", "Cs", "Co", "Cn"}
+    return "".join(
+        "\ufffd" if unicodedata.category(one) in hidden and one not in "\n\t" else one for one in text
+    )

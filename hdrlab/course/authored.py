@@ -1,0 +1,120 @@
+"""What of a homework a team wrote itself: each task's function with its helpers, without what all were given.
+
+It is read and never run, and within bounds, since it is read where the whole class is at hand: what is longer
+than any homework, or nested too deep, is left out, and it is said.
+"""
+
+import ast
+import re
+from collections.abc import Collection, Iterator, Sequence
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+from hdrlab.course import handouts, materials, names
+from hdrlab.course.closure import closed
+from hdrlab.course.submission import LARGEST, cells_of
+
+CODE = 100_000  # characters in all cells; a worked homework has some 40,000, docstrings and all
+LINES = 4_000  # of code in all cells
+TASK = 30_000  # characters of one task
+BROKEN = (SyntaxError, ValueError, RecursionError, MemoryError)  # what text may do to a parser
+
+
+class Work(NamedTuple):
+    """What a team wrote: the text of each task, and what could not be read, in words."""
+
+    team: str
+    texts: dict[str, str]
+    notes: tuple[str, ...] = ()
+
+
+def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
+    """Return what a team wrote of these tasks, out of a notebook or a Python file.
+
+    Parameters
+    ----------
+    team : whose it is
+    path : the file, which may hold anything
+    homework : its handout is given
+    tasks : the names of their functions
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> path = Path(tempfile.mkdtemp()) / "hw2.py"
+    >>> _ = path.write_text("import numpy as np\\ndef hat(n=256):\\n    return tent(n)\\ntent = np.hanning")
+    >>> print(read("t7", path, "hw2", ["hat"]).texts["hat"])
+    def hat(n=256):
+        return tent(n)
+    tent = np.hanning
+    """
+    try:
+        sources = _sources(path, homework, tasks)
+    except BROKEN as error:
+        return Work(team, {}, (f"cannot be read: {error}" if str(error) else "cannot be read",))
+    texts, notes = {}, []
+    for task, text in sources.items():
+        if len(text) > TASK:
+            notes.append(f"{task} has more than {TASK:,} characters and is not compared")
+            continue
+        try:
+            texts[task] = "\n".join(_own(text, _given(homework), {*tasks} - {task}))
+        except BROKEN:
+            notes.append(f"{task} is nested too deep and is not compared")
+    if not sources:
+        notes.append("none of the tasks can be read in it")
+    return Work(team, texts, tuple(notes))
+
+
+def _sources(path: Path, homework: str, tasks: Sequence[str]) -> dict[str, str]:
+    """Return each task with all that it needs, or raise a ValueError for what is no homework."""
+    if not path.is_file() or path.stat().st_size > LARGEST:
+        raise ValueError(f"it is no file of at most {LARGEST // 1_000_000} MB")
+    data = path.read_bytes()
+    if len(data) > 4 * CODE and data.lstrip()[:1] != b"{":  # a notebook may be long by its pictures
+        raise ValueError(f"it has more than {CODE:,} characters of code")
+    cells, problems = cells_of(data, path.name)
+    if not cells:
+        raise ValueError("; ".join(problems) or "it holds no code")
+    if sum(len(cell.text) for cell in cells) > CODE:
+        raise ValueError(f"it has more than {CODE:,} characters of code")
+    if sum(len(re.findall(r"[\n\r;]", cell.text)) for cell in cells) > LINES:
+        raise ValueError(f"it has more than {LINES:,} lines of code")
+    try:
+        return closed(cells, tasks, handouts.given(homework))[0]
+    except RecursionError:
+        raise ValueError("what its functions need is nested too deep") from None
+
+
+def _own(text: str, given: Collection[str], others: Collection[str]) -> Iterator[str]:
+    """Yield the statements of a task that are neither imports, nor given, nor other tasks."""
+    for node, part in _statements(text):
+        if isinstance(node, ast.Import | ast.ImportFrom) or part in given:
+            continue
+        if not set(names.bound(node)) & set(others):
+            yield part
+
+
+def _statements(text: str) -> Iterator[tuple[ast.stmt, str]]:
+    """Yield each statement at the top of a text, with its own lines."""
+    text = re.sub(r"\r\n?", "\n", text)
+    lines = text.split("\n")  # as the parser counts them: a form feed ends no line
+    for node in ast.parse(text).body:
+        start = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", ()))])
+        yield node, "\n".join(lines[start - 1 : node.end_lineno])
+
+
+@cache
+def _given(homework: str) -> frozenset[str]:
+    """Return the statements that a homework's handout gives."""
+    return frozenset(part for cell in handouts.given(homework) for _, part in _statements(cell.text))
+
+
+@cache
+def handed_out(homework: str) -> tuple[str, ...]:
+    """Return the code of a homework's handout: what is given, and the beginnings of the tasks."""
+    file = materials.folder("assignments") / f"{homework}.ipynb"
+    if not file.is_file():
+        return ()
+    return tuple(cell.text for cell in cells_of(file.read_bytes(), file.name)[0])

@@ -1,0 +1,298 @@
+"""What is alike in a class: what is found and what is not, on a page that nobody's work can break."""
+
+import os
+import re
+import stat
+import subprocess
+import sys
+import time
+from datetime import UTC, datetime
+from functools import cache
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+import pytest
+from copydetect import compare_files
+
+from hdrlab.cli import classroom as commands
+from hdrlab.course import alike, authored, classroom, closure, inline, materials, plan, sheets, similarity
+from hdrlab.course.authored import Work
+from hdrlab.course.grading import Conditions
+from hdrlab.course.handins import Handin
+from hdrlab.course.roster import Roster
+
+HW2 = plan.read().homeworks["hw2"]
+TASKS = [task.id for task in HW2.tasks]
+NOW = datetime(2026, 10, 20, tzinfo=UTC)
+MADE_APART = sorted((materials.folder("tests") / "equivalent").glob("*.py"))
+LOOPS, GAUGE, FLOAT32 = (
+    next(path.read_text() for path in MADE_APART if path.stem == f"hw2_{name}")
+    for name in ("loops", "gauge", "float32")
+)
+NAMES = {"above": "upper", "below": "lower", "known": "seen", "row": "line", "total": "sums", "Ei": "e"}
+
+
+def renamed(text):
+    """Return a text with other names, comments and spaces."""
+    text = re.sub(r"\b(" + "|".join(NAMES) + r")\b", lambda found: NAMES[found[1]], text)
+    text = re.sub(r"^( +)(for|return)", r"\1# my own idea, step by step\n\1\2", text, flags=re.MULTILINE)
+    return text.replace("# NaN is not", "# leave out").replace(" * ", "*").replace(" + ", "  +  ")
+
+
+def reordered(text):
+    """Return a text whose functions come in another order."""
+    return "import numpy as np\n\n" + "\n\n".join(reversed(re.split(r"\n(?=# %%|def )", text)))
+
+
+@cache
+def library():
+    blocks = inline.inlined({task.id: task.function for task in HW2.tasks})
+    return {name: block.text for name, block in blocks.items()}
+
+
+def work(folder, team, text):
+    (folder / f"{team}.py").write_text(text)
+    return authored.read(team, folder / f"{team}.py", "hw2", TASKS)
+
+
+def likeness(folder, **texts):
+    each = list(similarity.printed_steps(work(folder, *one) for one in texts.items()))
+    return similarity.compare(each, authored.handed_out("hw2"), "\n\n".join(library().values()))
+
+
+def written(folder, texts):
+    """Return page and table about a class that has handed in these texts."""
+    handins = {}
+    for n, (team, text) in enumerate(texts.items()):
+        path = folder / f"{n}_hw2.py"
+        path.write_bytes(text if isinstance(text, bytes) else text.encode())
+        handins[team] = Handin(team, (team,), path, NOW, "digest")
+    assert list(alike.write_steps(folder, HW2, handins)) == sorted(texts)
+    return (folder / "similar.html").read_text(), sheets.read_csv(folder / "similar.csv")
+
+
+def tags(text):
+    found = []
+    reader = HTMLParser()
+    reader.handle_starttag = lambda tag, attrs: found.append((tag, dict(attrs)))
+    reader.feed(text)
+    return found
+
+
+@pytest.mark.parametrize("change", [renamed, reordered, lambda text: reordered(renamed(text))])
+def test_a_copy_is_found_behind_other_names_comments_spaces_and_order(change, tmp_path):
+    found = likeness(tmp_path, a=LOOPS, b=change(LOOPS), c=GAUGE)
+    assert [pair[:2] for pair in found.pairs] == [(0, 1)] and found.pairs[0].share > 0.95
+    rows = {row.task: min(row[1:3]) for row in alike.rows(found, found.pairs[0])}
+    assert set(rows) == {"", "gsolve", "irradiance", "update", "recover_steps", "recover"}
+    assert min(rows.values()) > 0.9
+
+
+def test_one_function_that_was_copied_is_found_among_others_that_were_not(tmp_path):
+    gsolve = re.search(r"(?s)def gsolve.*?(?=\n# %%)", renamed(LOOPS))[0]
+    mixed = re.sub(r"(?s)def gsolve.*?(?=\n# %%)", lambda _: gsolve, GAUGE)
+    found = likeness(tmp_path, a=LOOPS, b=mixed)
+    together, *each = alike.rows(found, found.pairs[0])
+    assert max(together[1:3]) < similarity.THRESHOLD  # all tasks together do not tell
+    assert [row.task for row in each if row.one] == ["gsolve"] and found.pairs[0].share > 0.95
+
+
+@pytest.mark.parametrize("homework", ["hw1", "hw2", "hw3", "hw4", "project"])
+def test_solutions_that_were_written_apart_are_far_below_the_threshold(homework):
+    asked = plan.read().homeworks[homework]
+    tasks = [task.id for task in asked.tasks]
+    paths = [path for path in MADE_APART if path.stem.startswith(homework)]
+    works = [authored.read(path.stem, path, homework, tasks) for path in paths]
+    assert len(works) >= 3 and all(one.texts and not one.notes for one in works)
+    blocks = inline.inlined({task.id: task.function for task in asked.tasks}).values()
+    text = "\n\n".join(block.text for block in blocks)
+    found = similarity.compare(list(similarity.printed_steps(works)), authored.handed_out(homework), text)
+    assert found.counts[3:].sum() == 0 and not found.pairs  # the page says: less than 30 percent
+    assert homework == "project" or found.counts.sum() >= 3
+
+
+def test_team_mates_are_not_compared(tmp_path):
+    mates = [work(tmp_path, "a", LOOPS), work(tmp_path, "b", LOOPS)._replace(team="a")]
+    found = similarity.compare(list(similarity.printed_steps(mates)))
+    assert not found.pairs and found.counts.sum() == 0
+
+
+def test_what_the_handout_gives_is_nobody_s_own(tmp_path):
+    blank = "\n\n".join(authored.handed_out("hw2"))
+    found = likeness(tmp_path, a=blank, b=blank)
+    assert found.counts.sum() == 0 and not any(found.own.values())
+    solved = "def gsolve(Z, B, smoothness, w):\n    return Solution(Z, B)"  # the handout's own class
+    assert work(tmp_path, "c", "import numpy as np\n" + blank + "\n\n" + solved).texts["gsolve"] == solved
+    both = list(similarity.printed_steps(work(tmp_path, team, LOOPS) for team in "de"))
+    assert similarity.compare(both, [LOOPS]).counts.sum() == 0 < similarity.compare(both).counts.sum()
+
+
+def test_a_copy_of_the_library_is_told_of_apart_and_is_no_pair(tmp_path):
+    taken = "\n\n\n".join(library().values())
+    page, table = written(tmp_path, {"a": taken, "b": renamed(taken), "c": LOOPS})
+    assert not table and "a (100 %), b (100 %)" in page and "c (" not in page
+
+
+def test_the_shares_of_all_pairs_are_those_of_copydetect(tmp_path):
+    texts = [LOOPS, GAUGE, FLOAT32, renamed(LOOPS), "def hat(n=256):\n    return 1\n"]
+    given = similarity.fingerprint("\n\n".join(authored.handed_out("hw2"))).hashes
+    for task in ("gsolve", "recover", "update"):
+        works = [work(tmp_path, f"w{n}", text).texts.get(task, "pass\n") for n, text in enumerate(texts)]
+        prints = [similarity.without(similarity.fingerprint(text), given) for text in works]
+        expected = [[compare_files(one, other)[0] for other in prints] for one in prints]
+        assert np.array_equal(similarity.covered(prints), expected)
+        assert expected[0][3] > 100 and expected[0][4] == 0
+
+
+def test_a_passage_that_stands_twice_counts_twice():
+    line = "    total = values[0] * weights[1] + values[2] / weights[3]\n"
+    text = "def f(values, weights):\n" + line + "    print(total, sep='', end=9)\n" + line
+    once = similarity.without(similarity.fingerprint(text), {1})
+    assert once.token_coverage == len(once.filtered_code)
+
+
+@pytest.mark.parametrize(
+    "said, text",
+    [
+        ("none of the tasks can be read", "def gsolve(Z, B:\n"),
+        ("none of the tasks can be read", "def gsolve():\n    return '\0'\n"),
+        ("none of the tasks can be read", "def gsolve():\n    return " + "-" * 60_000 + "1\n"),
+        ("none of the tasks can be read", "def gsolve():\n    return " + "+".join("a" * 40_000) + "\n"),
+        ("neither a notebook nor Python", b"\xff\xfe\x00"),
+        ("cut short or damaged", '{"cells": ' + "[" * 50_000),
+        ("100,000 characters", "x = 1\n" * 350_000),  # two megabytes
+        ("lines of code", "x=1\n" * 20_000),
+        ("gsolve has more than 30,000", "a = []\n" + "a.append(a)\n" * 3_900 + "def gsolve(): return a\n"),
+        ("gsolve has more than 30,000", "def gsolve():\n    return [" + "1," * 20_000 + "]\n"),
+    ],
+)
+def test_a_broken_or_hostile_file_is_told_of_in_bounded_time_and_the_rest_compared(said, text, tmp_path):
+    begun = time.process_time()
+    page, table = written(tmp_path, {"a": LOOPS, "b": renamed(LOOPS), "x": text})
+    assert time.process_time() - begun < 15
+    assert [(row["one"], row["other"]) for row in table] == [("a", "b")]
+    assert re.search(f"<li><b>x</b>: [^\n]*{said}", page)
+
+
+def test_a_file_that_changes_a_thing_a_thousand_times_is_read_within_seconds():
+    cell = closure.Cell("a = []\n" + "a.append(a)\n" * 1_000 + "def gsolve(): return a\n")
+    begun = time.process_time()
+    assert closure.closed([cell], ["gsolve"])[0]["gsolve"].count("append") == 1_000
+    assert time.process_time() - begun < 5  # it took 55
+
+
+def test_statements_are_cut_where_the_parser_sees_them():
+    text = "µ = 'µ'; b = µ\r\nc = '\x0c' + b  # a form feed ends no line\rdef gsolve(): return c\n"
+    sources, said = closure.closed([closure.Cell(text)], ["gsolve"])
+    assert sources["gsolve"] == "µ = 'µ'\n\nb = µ\n\nc = '\x0c' + b\n\ndef gsolve(): return c\n" and not said
+
+
+def test_names_and_sources_are_text_on_the_page(tmp_path):
+    script = "<script>alert(1)</script>"
+    mean = LOOPS.replace("k += 1", f"k += 1  # {script} \u202e\x1b[31m </pre></mark>", 1)
+    page, table = written(tmp_path, {script: mean, '"><b onclick="x()">': mean, "=HYPERLINK(1)": mean})
+    found = tags(page)
+    assert not {"script", "b onclick"} & {tag for tag, _ in found}
+    assert not any(name.startswith("on") for _, attributes in found for name in attributes)
+    assert "\u202e" not in page and "\x1b" not in page and page.count("&lt;/pre&gt;") == 6
+    assert len(table) == 3 and sum(row["other"] == "'=HYPERLINK(1)" for row in table) == 2
+    assert "default-src 'none'" in page
+
+
+def test_the_page_says_its_threshold_its_caveats_and_what_was_too_short(tmp_path):
+    page, _ = written(tmp_path, {"a": LOOPS, "b": renamed(LOOPS), "c": GAUGE})
+    words = re.sub(r"<[^>]+>|\s+", " ", page)
+    assert "from 60 percent" in words and "no proof" in words and "talk to both" in words
+    assert "Short functions coincide" in words and "Lines in another order" in words
+    assert "hat of 3 works: fewer than 100 signs" in re.sub(r" +", " ", words)
+    assert "3 pairs compared, 1 of them alike" in words
+
+
+def test_a_pair_can_be_opened_by_the_keyboard_and_shows_both_texts_with_marks(tmp_path):
+    page, _ = written(tmp_path, {"a": LOOPS, "b": renamed(LOOPS)})
+    names = [tag for tag, _ in tags(page)]
+    assert names.count("summary") == names.count("details") == 1 and names.count("pre") == 10
+    assert names.count("mark") > 50 and "lower = sum(" in page and "below = sum(" in page
+
+
+def test_the_shown_pieces_make_up_the_text():
+    text = "a = 1\nb = 2  \n\nc = 3\n"
+    parts = alike.pieces(text, np.array([[0, 14], [14, 20]]))
+    assert "".join(part for part, _ in parts) == text
+    assert [part for part, both in parts if both] == ["a = 1\nb = 2", "\nc = 3"]
+    long = "x = 1\n" * 5_000 + "y = 2\n" * 5_000
+    shown = alike.pieces(long, np.array([[30_000], [60_000]]))
+    assert shown[0] == (("y = 2\n" * 5_000)[: alike.TEXT].rstrip(), True)
+
+
+def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tmp_path):
+    names = ("loops", "gauge", "float32")
+    program = (
+        "import sys; from pathlib import Path; from hdrlab.course import alike, plan\n"
+        "from hdrlab.course.handins import Handin\n"
+        "out, *files = map(Path, sys.argv[1:]); out.mkdir()\n"
+        "handins = {f'{k}{n}': Handin('', (), f, None, '') for k in 'ba' for n, f in enumerate(files)}\n"
+        "list(alike.write_steps(out, plan.read().homeworks['hw2'], handins))\n"
+    )
+    files = [str(path) for path in MADE_APART if path.stem in {f"hw2_{name}" for name in names}]
+    came = []
+    for seed in ("1", "2"):
+        out = tmp_path / seed
+        subprocess.run(
+            [sys.executable, "-c", program, str(out), *files],
+            check=True,
+            env=os.environ | {"PYTHONHASHSEED": seed, "PYTHONPATH": str(Path(alike.__file__).parents[2])},
+        )
+        came.append([(out / name).read_bytes() for name in ("similar.html", "similar.csv")])
+    assert came[0] == came[1] and b"a0" in came[0][0]
+
+
+@pytest.mark.skipif(os.name != "posix", reason="only here has a file an owner's mode")
+def test_page_and_table_are_for_their_owner_s_eyes(tmp_path):
+    written(tmp_path, {"a": LOOPS})
+    for name in ("similar.html", "similar.csv"):
+        assert stat.S_IMODE((tmp_path / name).stat().st_mode) == 0o600
+
+
+def test_nothing_that_was_handed_in_is_run(tmp_path):
+    mark = tmp_path / "ran"
+    evil = f"open({str(mark)!r}, 'w')\n" + LOOPS + f"\nclass A:\n    open({str(mark)!r}, 'w')\n"
+    written(tmp_path, {"a": evil, "b": evil})
+    assert not mark.exists()
+
+
+def test_an_empty_class_and_works_with_nothing_in_common_make_a_page(tmp_path):
+    page, table = written(tmp_path, {})
+    assert "There is none" in page and not table
+    assert similarity.compare([similarity.Printed(Work("a", {}), {})]).counts.sum() == 0
+
+
+def compared(folder, capsys):
+    """Return what the command says when a class of two is compared."""
+    (folder / "a.py").write_text(LOOPS)
+    handins = {team: Handin(team, (team,), folder / "a.py", NOW, "digest") for team in "ab"}
+    course = classroom.Course(Roster(()), HW2, Conditions())
+    commands._compare(folder, course, handins)
+    return capsys.readouterr().err
+
+
+def test_grading_a_class_compares_it(tmp_path, capsys):
+    compared(tmp_path, capsys)
+    assert "b</b>: 100 percent" in (tmp_path / "similar.html").read_text()
+
+
+def test_a_class_too_large_to_compare_is_told_so_and_not_compared(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(alike, "MOST", 1)
+    assert "at most 1 works" in compared(tmp_path, capsys)
+    assert not (tmp_path / "similar.html").exists()
+
+
+def test_without_copydetect_a_line_says_what_to_install(tmp_path, monkeypatch, capsys):
+    monkeypatch.setitem(sys.modules, "copydetect", None)
+    for name in ("alike", "similarity"):
+        monkeypatch.delitem(sys.modules, f"hdrlab.course.{name}")
+        monkeypatch.delattr(f"hdrlab.course.{name}")
+    said = compared(tmp_path, capsys)
+    assert 'similar.html needs copydetect: pip install "hdrlab[class]"' in said
+    assert not (tmp_path / "similar.html").exists()
