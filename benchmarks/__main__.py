@@ -1,7 +1,6 @@
 """`python -m benchmarks [SUBJECT ...] [--rows A,B] [--json FILE]`: measure, print; 1 if a hold is missed."""
 
 import argparse
-import importlib
 import json
 import os
 import sys
@@ -13,7 +12,7 @@ from typing import Any
 
 from benchmarks import peers, table
 from benchmarks.experiments import Experiment, Skipped, findings
-from benchmarks.measure import measured
+from benchmarks.measure import measured, rows_of
 from benchmarks.rows import Outcome, Row, verdicts
 
 HERE = Path(__file__).parent
@@ -24,12 +23,13 @@ def subjects() -> list[str]:
     """Return the names of the modules and folders here that have ROWS, read as text and not imported."""
     files = [*HERE.glob("*.py"), *HERE.glob("*/__init__.py")]
     with_rows = [file for file in files if "\nROWS" in file.read_text(encoding="utf8")]
-    return sorted(file.parent.name if file.stem == "__init__" else file.stem for file in with_rows)
+    names = [file.parent.name if file.stem == "__init__" else file.stem for file in with_rows]
+    return sorted(name.removesuffix("_") for name in names)
 
 
 def chosen(subject: str, names: str | None) -> list[Row | Experiment]:
     """Return the rows of a subject: all, or those of these names, separated by commas."""
-    rows: list[Row | Experiment] = list(importlib.import_module(f"benchmarks.{subject}").ROWS)
+    rows: list[Row | Experiment] = list(rows_of(subject))
     return rows if names is None else [row for row in rows if row.name in names.split(",")]
 
 

@@ -11,10 +11,12 @@ import ctypes
 import gc
 import importlib
 import json
+import keyword
 import os
 import subprocess
 import sys
 import time
+from collections.abc import Sequence
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -28,6 +30,13 @@ ROUNDS, MOST_ROUNDS, ENOUGH = (
     41,
     3.0,
 )  # rounds at least and at most, and seconds after which the least suffice
+
+
+def rows_of(subject: str) -> Sequence[Any]:
+    """Return the rows of a subject; where its name is a word of Python, its module is called class_."""
+    mark = "_" if keyword.iskeyword(subject) else ""
+    rows: Sequence[Any] = importlib.import_module(f"benchmarks.{subject}{mark}").ROWS
+    return rows
 
 
 def measured(subject: str, row: Row, folder: Path) -> tuple[Results, dict[str, str]]:
@@ -58,7 +67,7 @@ def main(subject: str, name: str, folder: str, what: str, who: str = "") -> None
         os, "sched_setaffinity"
     ):  # the same processor for all, peers' processes too
         os.sched_setaffinity(0, {max(os.sched_getaffinity(0))})
-    rows = importlib.import_module(f"benchmarks.{subject}").ROWS
+    rows = rows_of(subject)
     row = next(row for row in rows if row.name == name)
     case = row.case(Path(folder), what != "default")
     print(json.dumps({"megabytes": peak(case.runs[who])} if what == "memory" else timed(case)))
