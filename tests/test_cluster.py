@@ -29,16 +29,35 @@ test_cluster.graded({address!r}, Path({folder!r}), errands.slow)
 
 
 @contextmanager
-def clustered(workers, threads):
+def clustered(workers, threads, at_once=0):
+    """Start a scheduler, and so many workers: at once, or a little later."""
     knobs = {"processes": True, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
-    with LocalCluster(n_workers=workers, threads_per_worker=threads, **knobs) as running:
-        yield running
+    ended = threading.Event()
+    with LocalCluster(n_workers=at_once, threads_per_worker=threads, **knobs) as running:
+        keeper = threading.Thread(target=_keep, args=(running, workers, at_once, ended))
+        keeper.start()
+        try:
+            yield running
+        finally:
+            ended.set()
+            keeper.join()
+
+
+def _keep(running, workers, asked, ended):
+    """Ask for workers that are missing, too: a nanny gives up on one that was killed while it began."""
+    met = time.monotonic() - 100 * (asked == 0)
+    while not ended.wait(0.5):
+        if len(running.scheduler.workers) >= workers:
+            met = time.monotonic()
+        elif time.monotonic() > met + 10:
+            asked, met = max(asked + 1, workers), time.monotonic()
+            running.scale(asked)
 
 
 @pytest.fixture(scope="module")
 def address():
     """Start a scheduler and two workers, and return where they are."""
-    with clustered(2, 1) as running:
+    with clustered(2, 1, at_once=2) as running:
         yield running.scheduler_address
 
 
@@ -95,11 +114,9 @@ def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_do
 
 
 def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_used(tmp_path):
-    with clustered(0, 4) as running:
-        late = threading.Timer(1, running.scale, [1])
-        late.start()
+    with clustered(1, 4) as running:
+        assert not running.scheduler.workers
         done, results = graded(running.scheduler_address, tmp_path, errands.crowded)
-        late.join()
     (lost,) = [one for one in done if one.result is None]
     assert lost.piece.owner == "s3" and len(results) == 4
     assert [owner for owner, *_ in errands.begun(tmp_path / "class")].count("s3") == 4

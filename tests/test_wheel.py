@@ -35,8 +35,11 @@ def test_notebooks_specification_scripts_and_types_travel_in_the_wheel(wheel):
             assert file.relative_to(ROOT).as_posix() in names
 
 
-def test_the_installed_wheel_runs_the_demo_from_another_folder(wheel, tmp_path):
-    """The environment holds the wheel alone; what hdrlab depends on is lent by that of the tests."""
+def installed(wheel, tmp_path, words):
+    """Run a command of an environment that holds the wheel alone, and return the folder it ran in.
+
+    What hdrlab depends on is lent by the environment of the tests.
+    """
     venv.create(tmp_path / "env", with_pip=False, symlinks=True)
     python = next((tmp_path / "env").glob("[bS]*/python*"))
     site = next((tmp_path / "env").rglob("site-packages"))
@@ -48,7 +51,7 @@ def test_the_installed_wheel_runs_the_demo_from_another_folder(wheel, tmp_path):
         f"assert hdrlab.__file__.startswith({str(site)!r}), hdrlab.__file__\n"
         "assert list(materials.folder('notebooks').glob('*.ipynb'))\n"
         "assert (materials.folder('tests') / 'laws.py').exists()\n"
-        "cli.run(['demo', '--out', 'results'])"
+        f"cli.run({words!r})"
     )
     elsewhere = tmp_path / "elsewhere"
     elsewhere.mkdir()
@@ -57,4 +60,14 @@ def test_the_installed_wheel_runs_the_demo_from_another_folder(wheel, tmp_path):
         [python, "-I", "-c", code], cwd=elsewhere, env=environment, capture_output=True, text=True
     )
     assert ran.returncode == 0, ran.stderr
+    return elsewhere
+
+
+def test_the_installed_wheel_runs_the_demo_from_another_folder(wheel, tmp_path):
+    elsewhere = installed(wheel, tmp_path, ["demo", "--out", "results"])
     assert (elsewhere / "results" / "report.html").exists()
+
+
+def test_the_installed_wheel_makes_the_toy_class_from_another_folder(wheel, tmp_path):
+    elsewhere = installed(wheel, tmp_path, ["course", "toy", "class"])
+    assert len(list((elsewhere / "class" / "submissions").iterdir())) == 12

@@ -6,8 +6,8 @@ workers    the same by one, two and four workers of a Dask cluster
 books      what is done beside the grading, where all results are there: it may not grow faster than the class
 
 What fifty thousand would take is told from what one takes here, on as many processors of this kind: hours of
-the workers, which they share, and beside these what the command's own process does alone, which is the limit of
-how many it keeps busy. Four workers on two processors tell what more workers cost, and not what they gain. The
+the workers, which they share, and beside these what the command's own process does alone, which limits how
+many it keeps busy. Four workers on two processors tell what more workers cost, and not what they gain. The
 figures are those of `hdrlab grade` in the strict tier; see `grading`.
 """
 

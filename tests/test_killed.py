@@ -1,0 +1,226 @@
+"""Kill -9 at random moments, of the run, of what it has started, of a cluster's workers: no result changes.
+
+The class is small and its checks are few. It is graded by the command that instructors use, in the practice
+tier: what is tried here are processes that end.
+"""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import threading
+import time
+import zipfile
+from contextlib import suppress
+from datetime import UTC, datetime
+from pathlib import Path
+
+import pytest
+import test_cluster
+
+from hdrlab.course import classroom, grading, journal, results
+from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Homework, Task
+
+PLAN = """
+[late]
+free_days = 10
+points_a_day = 1
+[hw2]
+title = "T"
+due = 2026-10-23T23:59:00Z
+tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]
+"""
+HIDDEN = """
+import pytest
+
+@pytest.mark.points(2)
+def test_the_middle_counts_most(subject):
+    assert subject.hat(256).argmax() in (127, 128)
+"""
+GOOD = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
+FLAT = "import numpy as np\n\ndef hat(n=256):\n    return np.ones(n)\n"
+LETHAL = "import os\n\ndef hat(n=256):\n    os._exit(0)\n"
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """Make a class of four: a good one, a wrong one, one that ends its process, and an archive."""
+    home = tmp_path_factory.mktemp("class")
+    (home / "in").mkdir()
+    (home / "checks").mkdir()
+    for name, source in {"b1": GOOD, "b2": FLAT, "b3": LETHAL}.items():
+        (home / "in" / f"{name}.py").write_text(source)
+    with zipfile.ZipFile(home / "in" / "b4.zip", "w") as archive:
+        archive.writestr("hw2.py", GOOD)
+    (home / "checks" / "test_hat.py").write_text(HIDDEN)
+    (home / "roster.csv").write_text("student,name\nb1,Ada\nb2,Bo\nb3,Cy\nb4,Di\nb5,Ed\n")
+    (home / "plan.toml").write_text(PLAN)
+    return home
+
+
+def begin(home, out, *more):
+    words = ["grade", "in", "--homework", "hw2", "--tier", "practice", "--plan", "plan.toml", "-o", str(out)]
+    words += ["--roster", "roster.csv", "--hidden", "checks", *more]
+    scratch = home / "scratch"
+    scratch.mkdir(exist_ok=True)
+    environment = os.environ | {"TMPDIR": str(scratch)}
+    command = [sys.executable, "-m", "hdrlab", *words]
+    return subprocess.Popen(
+        command, cwd=home, env=environment, stderr=subprocess.PIPE, start_new_session=True
+    )
+
+
+def contents(folder):
+    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+def finished(home, out):
+    """Run to the end, and return what is there."""
+    run = begin(home, out)
+    said = run.communicate(timeout=300)[1].decode()
+    assert run.returncode == 0 and "warning" not in said, said
+    return contents(out)
+
+
+def family(pid):
+    """Return the processes that have come from this one."""
+    parents = {}
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        with suppress(OSError):
+            parents[int(entry)] = int(Path(f"/proc/{entry}/stat").read_text().rpartition(")")[2].split()[1])
+    found = [pid]
+    for one in found:
+        found += [child for child, parent in parents.items() if parent == one]
+    return found[1:]
+
+
+def besieged(run, rng, most, others=list):
+    """Kill the run, or one that it has started, or one of the others, until it ends; return how often."""
+    kills = 0
+    while kills < most:
+        with suppress(subprocess.TimeoutExpired):
+            run.wait(rng.uniform(0.2, 4.0))
+            break
+        started = [*family(run.pid), *others()]
+        with suppress(ProcessLookupError):
+            os.kill(rng.choice(started) if started and rng.random() < 0.6 else run.pid, signal.SIGKILL)
+        kills += 1
+    return kills
+
+
+def graded(home, out, rng, most, *more, others=list):
+    """Run, besieged, again and again until all are graded; return what is there, and the number of kills."""
+    kills, told = 0, "warning"
+    while "warning" in told:  # of one that was killed three times: the next run grades it
+        run = begin(home, out, *more)
+        kills += besieged(run, rng, most - kills, others)
+        told = run.communicate(timeout=300)[1].decode()
+        assert run.returncode in (0, -signal.SIGKILL), told
+        told = "warning" if run.returncode else told
+    return contents(out), kills
+
+
+def left(scratch):
+    """Return the processes that have this folder for their files."""
+    found = []
+    for entry in filter(str.isdigit, os.listdir("/proc")):
+        with suppress(OSError):
+            if str(scratch).encode() in Path(f"/proc/{entry}/environ").read_bytes():
+                found.append(int(entry))
+    return found
+
+
+@pytest.fixture(scope="module")
+def whole(folder):
+    """Return what a run leaves that nobody has killed."""
+    return finished(folder, folder / "whole")
+
+
+PROC = pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="finds a run's processes in /proc")
+
+
+@PROC
+def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(folder, whole):
+    assert sum(name.startswith(("results/", "feedback/")) for name in whole) == 4 * 6
+    assert {"gradebook.csv", "canvas.csv", "what_if.csv", "class.html"} <= set(whole)
+    rng, kills, rounds = random.Random(9), 0, 0
+    while kills < 20:
+        rounds += 1
+        results, more = graded(folder, folder / f"round{rounds}", rng, 20 - kills)
+        assert results == whole
+        kills += more
+    assert not left(folder / "scratch")
+
+
+@PROC
+def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole, monkeypatch):
+    monkeypatch.setenv("TMPDIR", str(folder / "scratch"))
+    with test_cluster.clustered(2, 1, at_once=2) as running:
+        words = "--cluster", running.scheduler_address
+        undisturbed, _ = graded(folder, folder / "cluster", random.Random(1), 0, *words)
+        assert undisturbed == whole
+        results, kills = graded(folder, folder / "killed", random.Random(4), 6, *words, others=workers)
+    assert results == whole and kills
+
+
+def workers():
+    """Return the processes of a cluster that this one has started, and what they have started."""
+    return [
+        one
+        for child in family(os.getpid())
+        if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()
+        for one in (child, *family(child))
+    ]
+
+
+@pytest.fixture
+def killing():
+    """Return what kills the first process to come of this one whose command has some words, in a thread."""
+    threads = []
+
+    def begin(*words, below=False):
+        threads.append(threading.Thread(target=_kill, args=(words, below)))
+        threads[-1].start()
+
+    yield begin
+    for one in threads:
+        one.join()
+
+
+def _kill(words, below):
+    until = time.monotonic() + 60
+    while time.monotonic() < until:
+        for one in family(os.getpid()):
+            with suppress(OSError):
+                said = Path(f"/proc/{one}/cmdline").read_bytes()
+                victims = family(one) if below else [one]
+                if victims and all(word in said for word in words):
+                    return os.kill(victims[0], signal.SIGKILL)
+        time.sleep(0.01)
+
+
+SLOW = GOOD.replace("    return", "    import time\n    time.sleep(0.3)\n    return")
+HAT = Homework("hw2", "T", datetime(2026, 10, 23, tzinfo=UTC), (Task("hat", "core.weights.hat", 10),))
+
+
+@PROC
+def test_checks_that_are_ended_from_outside_are_no_result(tmp_path, killing):
+    (tmp_path / "b1.py").write_text(SLOW)
+    killing(b"pytest", b"--job")
+    with pytest.raises(ValueError, match="ended from outside, by signal 9"):
+        grading.grade(tmp_path / "b1.py", HAT, Conditions(tier="practice"))
+
+
+@PROC
+def test_a_function_whose_process_is_ended_from_outside_is_asked_again(tmp_path, killing):
+    (tmp_path / "b1.py").write_text(SLOW)
+    piece = journal.Piece("b1", tmp_path / "b1.py", "key")
+    grader = classroom.Grader(HAT, Conditions(tier="practice"))
+    killing(b"warden.py", below=True)
+    once = grading.grade(piece.path, HAT, grader.conditions)
+    assert "no answer" in {one.outcome for one in once.checks}
+    killing(b"warden.py", below=True)
+    result = results.from_json(grader.result(piece))
+    assert {one.outcome for one in result.checks} == {"holds"}
