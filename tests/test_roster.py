@@ -33,6 +33,7 @@ def test_students_and_teams_are_recognised(listed):
         ("student\nb1\nB1\n", "each student once"),
         ("student,team\nb1,7\nb2,7\nb3,7\n", "teams of 2"),
         ("student\n../b1\n", "line 2"),
+        ("student,team\nb1,7\nb2,../7\n", "line 3: expected a team's name"),
         ("student,name\nb1,Ada\n,Bo\n", "line 3"),
         ("student\nb1,Ada\n", "1 cells a row"),
         ("", "empty"),

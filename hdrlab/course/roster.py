@@ -14,7 +14,7 @@ from hdrlab.course.wording import plain
 
 TEAM = 2  # students at most
 NAME = 80  # characters
-FORBIDDEN = set('/\\:*?"<>|') | {chr(code) for code in range(32)}  # an id names files
+FORBIDDEN = set('/\\:*?"<>|') | {chr(code) for code in range(32)}  # an id or a team names files
 
 
 class Student(NamedTuple):
@@ -71,7 +71,7 @@ def read(path: str | Path) -> Roster:
     Raises
     ------
     ValueError
-        Where a student is missing or there twice, an id is none that can name a file, or a team is of three.
+        Where a student is missing or there twice, an id or a team cannot name a file, or a team is of three.
     """
     rows = sheets.read_csv(path)
     if not rows or "student" not in rows[0]:
@@ -84,9 +84,10 @@ def read(path: str | Path) -> Roster:
 def _students(path: str | Path, rows: list[dict[str, str]]) -> Iterator[Student]:
     for line, row in enumerate(rows, 2):
         id = plain(row["student"], NAME)
-        if not id or id[0] in ".-" or FORBIDDEN & set(id):
-            raise ValueError(f"{path}, line {line}: expected a student's id, got {row['student']!r}")
         team = plain(row.get("team", ""), NAME) or id
+        for what, name in (("student's id", id), ("team's name", team)):
+            if not name or name[0] in ".-" or FORBIDDEN & set(name):
+                raise ValueError(f"{path}, line {line}: expected a {what} that can name a file, got {name!r}")
         yield Student(id, plain(row.get("name", ""), NAME) or id, team, plain(row.get("email", ""), 200))
 
 
