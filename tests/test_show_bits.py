@@ -14,7 +14,9 @@ def texts(ax):
 
 
 def drawn(ax):
-    return "".join(text for text in texts(ax) if text in ("0", "1"))
+    """Return the bits that stand in the boxes, line by line."""
+    placed = [(y, x, line.get_marker().strip("$")) for line in ax.lines for x, y in line.get_xydata()]
+    return "".join(bit for _, _, bit in sorted(placed))
 
 
 def test_the_slides_first_pixel_is_its_four_bytes_and_their_values():

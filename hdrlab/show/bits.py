@@ -14,6 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike
@@ -77,16 +78,26 @@ def rows(fields: Sequence[Field], *, title: str = "") -> Axes:
     above = 0.35 if title else 0.08
     height = sum(tall) + above
     ax = picture_axes(WIDTH, height, (0.01, 0, 0.98, 1 - above / height))
+    digits: dict[str, list[tuple[float, float]]] = {"0": [], "1": []}
+    boxes, colours = [], []
     for (name, bits, said), y in zip(fields, np.cumsum([0, *tall]), strict=False):
-        colour = COLOURS.get(name.split()[0], COLOURS["mantissa"])
         long = len(bits) > LONG
         left, top = (0.38, y + ROW - 0.05) if long else (1.3, y)
-        for x in left + SIDE * np.arange(len(bits)):
-            ax.add_patch(Rectangle((x, top), SIDE, SIDE, facecolor=colour, edgecolor="#808080"))
-        for x, bit in enumerate(bits):
-            ax.text(left + SIDE * (x + 0.5), top + SIDE / 2, bit, fontsize=10, ha="center", va="center")
+        for x, bit in zip(left + SIDE * np.arange(len(bits)), bits, strict=True):
+            boxes.append(Rectangle((x, top), SIDE, SIDE))
+            digits[bit].append((x + SIDE / 2, top + SIDE / 2))
+        colours += [COLOURS.get(name.split()[0], COLOURS["mantissa"])] * len(bits)
         ax.text(0, y + SIDE / 2, name, fontsize=10, va="center")
         ax.text(1.3 if long else 1.4 + SIDE * len(bits), y + SIDE / 2, said, fontsize=10, va="center")
+    ax.add_collection(PatchCollection(boxes, facecolors=colours, edgecolors="#808080"))
+    look: dict[str, Any] = {
+        "color": "#1A1A1A",
+        "markersize": 7.0,
+        "markeredgewidth": 0.0,
+        "linestyle": "none",
+    }
+    for digit, at in digits.items():  # as markers: a text for each bit takes longer than all the rest
+        ax.plot(*np.reshape(at, (-1, 2)).T, marker=f"${digit}$", **look)
     ax.set(xlim=(0, WIDTH * 0.98), ylim=(sum(tall), -0.03))
     ax.text(0.012, 1 - 0.2 / height, title, fontsize=11, va="center", transform=ax.figure.transFigure)
     return ax
