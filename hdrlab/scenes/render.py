@@ -115,7 +115,7 @@ def rendered(
     *,
     height: int = 512,
     samples: int = 320,
-    rounds: int = 1,
+    rounds: int = 4,
     seed: int = 0,
     variant: str = "scalar_rgb",
 ) -> dict[str, Float]:
@@ -156,7 +156,7 @@ def main() -> None:
     parser.add_argument("-o", "--out", type=Path, help="an .exr file; NAME.exr, unless told")
     parser.add_argument("--height", type=int, default=512, help="of the picture, pixels (default: 512)")
     parser.add_argument("--samples", type=int, default=320, help="paths per pixel and light (default: 320)")
-    parser.add_argument("--rounds", type=int, default=1, help="of which the mean is taken (default: 1)")
+    parser.add_argument("--rounds", type=int, default=4, help="of which the mean is taken (default: 4)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument(
         "--variant", default="scalar_rgb", help="of Mitsuba; llvm_ad_rgb is quicker where LLVM is"
