@@ -8,7 +8,7 @@ import signal
 import time
 from pathlib import Path
 
-from hdrlab.course import journal
+from hdrlab.course.classroom import journal
 
 
 def pieces(folder, count=5, names="s"):

@@ -18,8 +18,8 @@ from benchmarks.class_ import grading, handed, judged
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
 from hdrlab.course import misconceptions, plan, results, sheets
+from hdrlab.course.classroom.roster import read
 from hdrlab.course.results import Check, Result
-from hdrlab.course.roster import read
 
 HW2 = {task.id for task in plan.read().homeworks["hw2"].tasks}
 

@@ -10,13 +10,15 @@ from html.parser import HTMLParser
 import pytest
 
 from hdrlab import cli
-from hdrlab.course import classroom, marks, overview, sheets
+from hdrlab.course import sheets
+from hdrlab.course.classroom import marks, overview
+from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.late import Handed
+from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.grading import Conditions
-from hdrlab.course.handins import Handin
-from hdrlab.course.late import Handed
 from hdrlab.course.plan import Homework, Late, Task
 from hdrlab.course.results import Check, Result
-from hdrlab.course.roster import Roster, Student
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
 HOMEWORK = Homework(

@@ -17,7 +17,7 @@ import pytest
 from distributed import Client, LocalCluster
 
 import hdrlab
-from hdrlab.course import cluster, journal, processes
+from hdrlab.course.classroom import cluster, journal, processes
 
 RUN = """
 import sys

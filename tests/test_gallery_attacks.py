@@ -23,8 +23,8 @@ if find_spec("starlette") is None:
     pytest.skip('the gallery needs pip install ".[class]"', allow_module_level=True)
 
 from hdrlab.course import gallery, sheets
+from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import app, bearers, collect, export, guard, pictures, store
-from hdrlab.course.roster import Roster, Student
 
 ORIGIN = {"origin": small.ADDRESS}
 ROSTER = Roster(tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m))

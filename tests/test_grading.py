@@ -11,7 +11,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hdrlab.course import feedback, gradebook, grading, handouts, inline, materials, plan, results
+from hdrlab.course import feedback, gradebook, grading, handouts, materials, plan, results
+from hdrlab.course.code import inline
 from hdrlab.course.grading import Conditions
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable

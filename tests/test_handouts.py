@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import handouts, materials, names, plan
+from hdrlab.course import handouts, materials, plan
+from hdrlab.course.code import names
 from hdrlab.course.plan import Task
 
 ROOT = Path(__file__).resolve().parents[1]

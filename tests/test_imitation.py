@@ -8,7 +8,8 @@ import inprocess
 import numpy as np
 import pytest
 
-from hdrlab.course import imitation, misconceptions, plan, submission
+from hdrlab.course import misconceptions, plan, submission
+from hdrlab.course.classroom import imitation
 
 HERE = Path(__file__).parent
 HOMEWORKS = plan.read().homeworks

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hdrlab.core import weights
-from hdrlab.course import inline, names, plan
+from hdrlab.course import plan
+from hdrlab.course.code import inline, names
 from hdrlab.response import debevec
 
 TASKS = [task for homework in plan.read().homeworks.values() for task in homework.tasks]

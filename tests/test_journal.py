@@ -13,8 +13,8 @@ from pathlib import Path
 import errands
 import pytest
 
-from hdrlab.course import handins, journal, processes
-from hdrlab.course.roster import Roster, Student
+from hdrlab.course.classroom import handins, journal, processes
+from hdrlab.course.classroom.roster import Roster, Student
 
 RUN = """
 import sys

@@ -19,7 +19,9 @@ from pathlib import Path
 import pytest
 import test_cluster
 
-from hdrlab.course import classroom, grading, journal, results
+from hdrlab.course import grading, results
+from hdrlab.course.classroom import journal
+from hdrlab.course.classroom import run as classroom
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework, Task
 

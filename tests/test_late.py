@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.course.late import Handed, accounts, lateness, what_if
+from hdrlab.course.classroom.late import Handed, accounts, lateness, what_if
 
 ANNA, BEN, CY = "anna", "ben", "cy"
 days, points = st.integers(0, 40), st.floats(0, 100)

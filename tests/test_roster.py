@@ -4,7 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.course import roster, sheets
+from hdrlab.course import sheets
+from hdrlab.course.classroom import roster
 from hdrlab.course.wording import plain
 
 

@@ -16,11 +16,14 @@ import pytest
 from copydetect import compare_files
 
 from hdrlab.cli import classroom as commands
-from hdrlab.course import alike, authored, classroom, closure, inline, materials, plan, sheets, similarity
-from hdrlab.course.authored import Work
+from hdrlab.course import materials, plan, sheets
+from hdrlab.course.classroom import alike, authored, similarity
+from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom.authored import Work
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.roster import Roster
+from hdrlab.course.code import closure, inline
 from hdrlab.course.grading import Conditions
-from hdrlab.course.handins import Handin
-from hdrlab.course.roster import Roster
 
 HW2 = plan.read().homeworks["hw2"]
 TASKS = [task.id for task in HW2.tasks]
@@ -229,8 +232,9 @@ def test_the_shown_pieces_make_up_the_text():
 def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tmp_path):
     names = ("loops", "gauge", "float32")
     program = (
-        "import sys; from pathlib import Path; from hdrlab.course import alike, plan\n"
-        "from hdrlab.course.handins import Handin\n"
+        "import sys; from pathlib import Path; from hdrlab.course import plan\n"
+        "from hdrlab.course.classroom import alike\n"
+        "from hdrlab.course.classroom.handins import Handin\n"
         "out, *files = map(Path, sys.argv[1:]); out.mkdir()\n"
         "handins = {f'{k}{n}': Handin('', (), f, None, '') for k in 'ba' for n, f in enumerate(files)}\n"
         "list(alike.write_steps(out, plan.read().homeworks['hw2'], handins))\n"
@@ -291,8 +295,8 @@ def test_a_class_too_large_to_compare_is_told_so_and_not_compared(tmp_path, monk
 def test_without_copydetect_a_line_says_what_to_install(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "copydetect", None)
     for name in ("alike", "similarity"):
-        monkeypatch.delitem(sys.modules, f"hdrlab.course.{name}")
-        monkeypatch.delattr(f"hdrlab.course.{name}")
+        monkeypatch.delitem(sys.modules, f"hdrlab.course.classroom.{name}")
+        monkeypatch.delattr(f"hdrlab.course.classroom.{name}")
     said = compared(tmp_path, capsys)
     assert 'similar.html needs copydetect: pip install "hdrlab[class]"' in said
     assert not (tmp_path / "similar.html").exists()

@@ -6,8 +6,9 @@ import json
 import numpy as np
 import pytest
 
-from hdrlab.course import names, submission
-from hdrlab.course.closure import Cell
+from hdrlab.course import submission
+from hdrlab.course.code import names
+from hdrlab.course.code.closure import Cell
 
 TASKS = ["gsolve", "merge"]
 

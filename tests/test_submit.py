@@ -12,12 +12,12 @@ from PIL import Image
 
 from hdrlab import cli
 from hdrlab.capture import camera, scenes
-from hdrlab.course import project, review, words
-from hdrlab.course import report as reports
-from hdrlab.course import submit as handing
+from hdrlab.course.archives.unpack import unpack
+from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import collect
-from hdrlab.course.roster import Roster, Student
-from hdrlab.course.unpack import unpack
+from hdrlab.course.projects import project, review, words
+from hdrlab.course.projects import report as reports
+from hdrlab.course.projects import submit as handing
 from hdrlab.io import curves, radiance
 from hdrlab.io.decode import look
 

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 
 from hdrlab import cli
-from hdrlab.course import misconceptions, plan, results, sheets, toy
+from hdrlab.course import misconceptions, plan, results, sheets
+from hdrlab.course.classroom import toy
 from hdrlab.course.sandbox import tiers
 
 HOMEWORK = plan.read().homeworks[toy.HOMEWORK]

@@ -5,8 +5,8 @@ import stat
 import pytest
 from traps import FILES, TRAPS, info, tarred, zipped
 
-from hdrlab.course.members import LIMITS, Limits, Refused
-from hdrlab.course.unpack import unpack
+from hdrlab.course.archives.members import LIMITS, Limits, Refused
+from hdrlab.course.archives.unpack import unpack
 
 SMALL = Limits(members=20, total=200_000, one=100_000, depth=4, name=60, ratio=50)
 

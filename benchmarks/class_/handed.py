@@ -21,7 +21,8 @@ from types import ModuleType
 from typing import NamedTuple
 
 from benchmarks.measure import ROOT
-from hdrlab.course import imitation, plan, sheets, toy
+from hdrlab.course import plan, sheets
+from hdrlab.course.classroom import imitation, toy
 from hdrlab.course.plan import Homework
 
 TESTS = ROOT / "tests"

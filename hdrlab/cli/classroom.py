@@ -10,10 +10,10 @@ import click
 from hdrlab.cli import common
 
 if TYPE_CHECKING:
-    from hdrlab.course.classroom import Course
+    from hdrlab.course.classroom.handins import Handin
+    from hdrlab.course.classroom.journal import Crew, Done, Piece
+    from hdrlab.course.classroom.run import Course
     from hdrlab.course.grading import Conditions
-    from hdrlab.course.handins import Handin
-    from hdrlab.course.journal import Crew, Done, Piece
     from hdrlab.course.plan import Homework
 
 
@@ -32,7 +32,8 @@ class Options(NamedTuple):
 
 def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> None:
     """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course import classroom, handins, journal, overview
+    from hdrlab.course.classroom import handins, journal, overview
+    from hdrlab.course.classroom import run as classroom
 
     times = classroom.times(asked.received) if asked.received else {}
     found = handins.find(folder, course.roster, times)
@@ -55,7 +56,8 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> N
 
 def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Options) -> "list[Done]":
     """Return what became of each submission; its feedback is written as soon as its result is there."""
-    from hdrlab.course import classroom, journal
+    from hdrlab.course.classroom import journal
+    from hdrlab.course.classroom import run as classroom
 
     folder = out / "results"
     before, rest = ([], [*wanted]) if asked.regrade else journal.parted(folder, wanted)
@@ -73,7 +75,7 @@ def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Optio
 def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> None:
     """Write what is alike among all that was handed in, also what was graded before."""
     try:
-        from hdrlab.course import alike
+        from hdrlab.course.classroom import alike
     except ImportError as error:
         click.echo(f'note: similar.html needs {error.name}: pip install "hdrlab[class]"', err=True)
         return
@@ -86,7 +88,8 @@ def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> No
 
 def _crew(course: "Course", asked: Options) -> "Crew":
     """Return those who grade: processes of this machine, or the workers of a cluster."""
-    from hdrlab.course import classroom, processes
+    from hdrlab.course.classroom import processes
+    from hdrlab.course.classroom import run as classroom
     from hdrlab.course.sandbox import doctor
 
     grader = classroom.Grader(course.homework, course.conditions, classroom.hidden(course.conditions.hidden))
@@ -98,7 +101,7 @@ def _crew(course: "Course", asked: Options) -> "Crew":
     if asked.jobs is not None:
         raise ValueError("expected --jobs or --cluster: a cluster grades as many at a time as it has threads")
     try:
-        from hdrlab.course import cluster
+        from hdrlab.course.classroom import cluster
     except ImportError as error:
         raise ValueError(f'expected {error.name}: pip install "hdrlab[cluster]"') from None
     return cluster.Cluster(asked.cluster, grader.result, grader.ready)
@@ -106,9 +109,10 @@ def _crew(course: "Course", asked: Options) -> "Crew":
 
 def course_of(homework: "Homework", conditions: "Conditions", plan: Path | None, asked: Options) -> "Course":
     """Return what a class is graded by, read from the files that were named."""
-    from hdrlab.course import classroom, marks
     from hdrlab.course import plan as plans
-    from hdrlab.course import roster as lists
+    from hdrlab.course.classroom import marks
+    from hdrlab.course.classroom import roster as lists
+    from hdrlab.course.classroom import run as classroom
 
     if asked.roster is None:
         raise ValueError("expected --roster, which says who is in the class")

@@ -52,7 +52,7 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
     """
     from contextlib import closing
 
-    from hdrlab.course import roster as lists
+    from hdrlab.course.classroom import roster as lists
     from hdrlab.course.gallery import collect, store
 
     students = lists.read(roster)
@@ -90,8 +90,8 @@ def links(
     """
     from contextlib import closing
 
-    from hdrlab.course import roster as lists
     from hdrlab.course import sheets
+    from hdrlab.course.classroom import roster as lists
     from hdrlab.course.gallery import export, store
 
     emails = {one.id: one.email for one in lists.read(roster).students} if roster else {}

@@ -191,7 +191,7 @@ def export(
 @click.argument("folder", type=common.FILE)
 def toy(folder: Path) -> None:
     """Make a toy class in FOLDER: a dozen submissions of hw2, good, late, wrong and hostile, to be graded."""
-    from hdrlab.course import toy as classes
+    from hdrlab.course.classroom import toy as classes
     from hdrlab.course.sandbox import doctor
 
     made = classes.write(folder)

@@ -18,8 +18,8 @@ def report(project: Path, example: bool) -> None:
     The artifact (artifact.jpg), the bracket (photographs/), the response (response.csv) and the radiance map
     (map.hdr) are placed by themselves. The page travels alone.
     """
-    from hdrlab.course import project as projects
-    from hdrlab.course import report as reports
+    from hdrlab.course.projects import project as projects
+    from hdrlab.course.projects import report as reports
     from hdrlab.io.terminal import elapsed
 
     words = project / projects.WORDS[0]
@@ -47,9 +47,9 @@ def submit(project: Path, out: Path, keep_metadata: bool, anyway: bool) -> None:
     Pictures go in without location, serial numbers and the notes of their makers; their pixels and exposures
     stay as they are.
     """
-    from hdrlab.course import project as projects
-    from hdrlab.course import review
-    from hdrlab.course import submit as handing
+    from hdrlab.course.projects import project as projects
+    from hdrlab.course.projects import review
+    from hdrlab.course.projects import submit as handing
 
     found = projects.look(project)
     found = found._replace(files=tuple(one for one in found.files if one.resolve() != out.resolve()))

@@ -7,8 +7,9 @@ the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and
 from collections.abc import Sequence
 from typing import Any
 
-from hdrlab.course import closure, feedback, grading, handouts, plan, results
-from hdrlab.course.closure import Cell
+from hdrlab.course import feedback, grading, handouts, plan, results
+from hdrlab.course.code import closure
+from hdrlab.course.code.closure import Cell
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework
 from hdrlab.course.results import Result

@@ -4,7 +4,7 @@ import ast
 import re
 from functools import cache
 
-from hdrlab.course import source
+from hdrlab.course.code import source
 from hdrlab.course.plan import Task
 
 SECTION = re.compile(r"\n\n(?=[A-Z][a-z]+\n-{3,}\n)")  # of a docstring

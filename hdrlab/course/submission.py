@@ -10,7 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course.closure import Cell, closed
+from hdrlab.course.code.closure import Cell, closed
 
 LARGEST = 50_000_000  # bytes: a notebook with pictures has a few
 MOST_CODE = 1_000_000  # characters in all cells

@@ -16,7 +16,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course import handouts, inline, materials, stubs, submission
+from hdrlab.course import handouts, materials, stubs, submission
+from hdrlab.course.code import inline
 from hdrlab.course.plan import Homework, Plan, Task
 from hdrlab.io.files import replacing
 

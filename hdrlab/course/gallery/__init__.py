@@ -44,7 +44,7 @@ header injection       one host's name, redirects to constants, strict parsing  
 forged client address  a proxy is believed where one is stated                     a_forged_client_address
 flood by a voter       so many requests and ballots of each session                a_flood
 formulas in a table    cells are text                                              formulas_in_a_table
-archive with traps     see hdrlab.course.unpack                                    an_archive_with_traps
+archive with traps     see hdrlab.course.archives.unpack                           an_archive_with_traps
 =====================  ==========================================================  ======================
 
 What it does not stop: somebody who is given another's link votes with it, and who can read the network votes

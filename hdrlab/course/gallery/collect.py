@@ -13,10 +13,10 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course import unpack
+from hdrlab.course.archives import unpack
+from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.gallery import pictures, store
-from hdrlab.course.project import MANIFEST
-from hdrlab.course.roster import Roster
+from hdrlab.course.projects.project import MANIFEST
 from hdrlab.course.wording import plain
 
 TITLE, CAPTION = 60, 280  # characters

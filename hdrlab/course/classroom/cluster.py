@@ -23,9 +23,9 @@ import distributed
 from distributed import Client, Future, KilledWorker
 
 import hdrlab
-from hdrlab.course import alone as process
-from hdrlab.course.journal import Ending, Piece
-from hdrlab.course.processes import LOOK, PATIENCE
+from hdrlab.course.classroom import alone as process
+from hdrlab.course.classroom.journal import Ending, Piece
+from hdrlab.course.classroom.processes import LOOK, PATIENCE
 
 CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
 LONELY = 120.0  # seconds without any worker, after which the run ends

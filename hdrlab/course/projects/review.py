@@ -14,9 +14,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.course.members import LIMITS, Limits, Member, Refused, check_names, check_sizes
-from hdrlab.course.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
-from hdrlab.course.words import ASKED
+from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, check_names, check_sizes
+from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
+from hdrlab.course.projects.words import ASKED
 from hdrlab.io import radiance
 from hdrlab.io.decode import look
 

@@ -10,7 +10,8 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-from hdrlab.course import handouts, inline, materials, names, source
+from hdrlab.course import handouts, materials
+from hdrlab.course.code import inline, names, source
 from hdrlab.course.plan import Homework
 
 ABOUT = ("TASK", "MISCONCEPTION")  # what a wrong file says of itself

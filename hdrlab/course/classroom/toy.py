@@ -16,7 +16,8 @@ from datetime import timedelta
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import imitation, materials, plan, sheets
+from hdrlab.course import materials, plan, sheets
+from hdrlab.course.classroom import imitation
 from hdrlab.course.plan import Homework
 from hdrlab.io.files import replacing
 

@@ -6,7 +6,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course.names import Use, bound, free
+from hdrlab.course.code.names import Use, bound, free
 
 HOUSE = "hdrlab"
 

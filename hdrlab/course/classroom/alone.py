@@ -50,7 +50,7 @@ def run(
     order = pickle.dumps([one for one in sys.path if one]) + pickle.dumps((work, piece))
     with tempfile.TemporaryDirectory(prefix="hdrlab-piece-", ignore_cleanup_errors=True) as scratch:
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "hdrlab.course.alone", str(os.getpid())],
+            [sys.executable, "-P", "-m", "hdrlab.course.classroom.alone", str(os.getpid())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -13,15 +13,17 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import gradebook, grading, journal, materials, results, sheets, unpack
+from hdrlab.course import gradebook, grading, materials, results, sheets
+from hdrlab.course.archives import unpack
+from hdrlab.course.archives.members import Refused
+from hdrlab.course.classroom import journal
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.journal import Done, Piece
+from hdrlab.course.classroom.late import Handed
+from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.grading import Conditions
-from hdrlab.course.handins import Handin
-from hdrlab.course.journal import Done, Piece
-from hdrlab.course.late import Handed
-from hdrlab.course.members import Refused
 from hdrlab.course.plan import Homework, Late
 from hdrlab.course.results import Result
-from hdrlab.course.roster import Roster
 from hdrlab.course.sandbox import doctor
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.subject import LOST

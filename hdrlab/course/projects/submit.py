@@ -9,8 +9,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import hdrlab
-from hdrlab.course import privacy
-from hdrlab.course.project import MANIFEST, Project
+from hdrlab.course.projects import privacy
+from hdrlab.course.projects.project import MANIFEST, Project
 from hdrlab.io.files import replacing
 
 VERSION = 1

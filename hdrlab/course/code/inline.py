@@ -9,7 +9,7 @@ import ast
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
-from hdrlab.course.source import Key, key_of, module, statements, targets
+from hdrlab.course.code.source import Key, key_of, module, statements, targets
 
 
 class Block(NamedTuple):

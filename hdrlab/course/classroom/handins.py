@@ -10,7 +10,7 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course.roster import Roster
+from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.wording import plain
 
 KINDS = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")

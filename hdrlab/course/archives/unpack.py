@@ -16,8 +16,8 @@ import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
-from hdrlab.course import tarball
-from hdrlab.course.members import (
+from hdrlab.course.archives import tarball
+from hdrlab.course.archives.members import (
     LIMITS,
     Limits,
     Member,

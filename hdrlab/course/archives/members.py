@@ -46,7 +46,7 @@ def check_names(names: Sequence[str], limits: Limits = LIMITS) -> list[PurePosix
     ('photographs', 'a.jpg')
     >>> check_names(["../../etc/passwd"])
     Traceback (most recent call last):
-    hdrlab.course.members.Refused: '../../etc/passwd' leads out of the archive's folder
+    hdrlab.course.archives.members.Refused: '../../etc/passwd' leads out of the archive's folder
     """
     if len(names) > limits.members:
         raise Refused(f"it has {len(names)} members, expected at most {limits.members}")

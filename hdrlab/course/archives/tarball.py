@@ -11,7 +11,7 @@ from contextlib import closing
 from pathlib import Path
 from typing import IO, Any
 
-from hdrlab.course.members import (
+from hdrlab.course.archives.members import (
     PIECE,
     Limits,
     Member,

@@ -8,11 +8,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course import sheets
-from hdrlab.course.handins import Handin
-from hdrlab.course.late import Handed, accounts, lateness
-from hdrlab.course.late import what_if as late_days
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.late import Handed, accounts, lateness
+from hdrlab.course.classroom.late import what_if as late_days
+from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.plan import Homework, Late
-from hdrlab.course.roster import Roster
 
 COLUMNS = (
     *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),

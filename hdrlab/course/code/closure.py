@@ -11,7 +11,7 @@ import warnings
 from collections.abc import Iterable, Sequence
 from typing import NamedTuple
 
-from hdrlab.course import names
+from hdrlab.course.code import names
 
 TIMED = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")  # magics over plain Python
 

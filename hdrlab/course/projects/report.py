@@ -13,8 +13,8 @@ import numpy as np
 from markupsafe import Markup
 
 from hdrlab.core.arrays import Array
-from hdrlab.course import words
-from hdrlab.course.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
+from hdrlab.course.projects import words
+from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
 from hdrlab.io import curves, photos, radiance
 from hdrlab.io.decode import look
 from hdrlab.io.exposure import Exposure

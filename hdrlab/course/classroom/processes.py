@@ -7,8 +7,8 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import Self
 
-from hdrlab.course import alone as process
-from hdrlab.course.journal import Ending, Piece
+from hdrlab.course.classroom import alone as process
+from hdrlab.course.classroom.journal import Ending, Piece
 
 PATIENCE = 1800.0  # seconds for one try of a piece
 LOOK = 0.5  # seconds to wait for an ending

@@ -1,0 +1,8 @@
+"""A student's own photograph: the page about it, and all of it in one archive.
+
+project          the folder: words, photographs, radiance map, artifact
+words, report    what was written, and the page made of it
+review           what is missing, in plain words
+exif, privacy    photographs without places and serial numbers
+submit           the archive
+"""
