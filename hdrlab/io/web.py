@@ -23,7 +23,7 @@ def webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
     return iio.imwrite("<bytes>", _rgb(image), extension=".webp", quality=quality, method=2)
 
 
-def jpeg(image: Image, *, quality: int = 90) -> bytes:
+def jpeg(image: Image, *, quality: int = 80) -> bytes:
     """Return `image` as JPEG, the quickest to encode, with full colour resolution so that thin lines stay."""
     return iio.imwrite("<bytes>", _rgb(image), extension=".jpg", quality=quality, subsampling=0)
 

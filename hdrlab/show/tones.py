@@ -63,17 +63,26 @@ def maps(
     figure, places = _row(arrays, titled=any(each))
     for (name, place), v in zip(zip(each, places, strict=True), arrays, strict=True):
         ax = figure.add_axes(place)
-        shown = ax.imshow(v, cmap=colours, norm=norm, interpolation="nearest")
+        ax.imshow(v, cmap=colours, norm=norm, interpolation="nearest")
         ax.set_title(name, fontsize=11, pad=4)
         bare(ax)
     height = figure.get_size_inches()[1]
     bar = figure.add_axes((0.08, 0.47 / height, 0.84, 0.14 / height))
-    ticks: Any = range(len(names)) if names else MaxNLocator(7, steps=[1, 2, 5, 10])
-    drawn = figure.colorbar(shown, cax=bar, orientation="horizontal", label=label, ticks=ticks)
-    if names:
-        drawn.set_ticklabels([str(name) for name in names])
-        bar.minorticks_off()
+    _draw_scale(bar, norm, colours, names)
+    bar.set_xlabel(label)
     return figure
+
+
+def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object]) -> None:
+    """Draw the colours of a scale, with its numbers or the names of its classes below."""
+    low, high = (-0.5, len(names) - 0.5) if names else map(float, norm.inverse(np.array([0.0, 1.0])))
+    each = np.arange(len(names)) if names else np.linspace(low, high, 256)
+    bar.imshow(each[None], cmap=colours, norm=norm, extent=(low, high, 0, 1), aspect="auto")
+    bar.yaxis.set_visible(False)
+    if names:
+        bar.set_xticks(range(len(names)), [str(name) for name in names])
+    else:
+        bar.xaxis.set_major_locator(MaxNLocator(7, steps=[1, 2, 5, 10]))
 
 
 def trims(

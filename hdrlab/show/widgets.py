@@ -109,7 +109,9 @@ class Tuner(anywidget.AnyWidget):
     _css = STYLE
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)  # each position's text
-    at = traitlets.List(traitlets.Int()).tag(sync=True)  # the browser moves this
+    at = traitlets.List(traitlets.Int()).tag(
+        sync=True, echo_update=False
+    )  # the browser moves this, and knows
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
     frame = traitlets.Bytes().tag(sync=True)  # JPEG
     alt = traitlets.Unicode().tag(sync=True)
