@@ -151,7 +151,7 @@ def test_a_moving_visitor_is_where_the_reference_saw_her_and_without_a_ghost(wal
     Z, t = walk.bracket.images, walk.bracket.times
     H, E = patches.synthesise(Z, t, G), merge(Z, t, G)
     truth = walk.moments[1]
-    assert psnr(H, truth) > psnr(E, truth) + 2
+    assert psnr(H, truth) > psnr(E, truth) + 1.5
     for reference in (0, 2):
         H = patches.synthesise(Z, t, G, reference=reference)
         assert psnr(H, walk.moments[reference]) > psnr(E, walk.moments[reference])
