@@ -8,6 +8,7 @@ from fractions import Fraction
 from html.parser import HTMLParser
 
 import pytest
+from hats import GOOD, PLAN
 
 from hdrlab import cli
 from hdrlab.course import sheets
@@ -25,7 +26,7 @@ HOMEWORK = Homework(
     "hw2", "The response curve", DUE, (Task("hat", "core.weights.hat", 50), Task("g", "x.g", 50))
 )
 ROSTER = Roster((Student("b1", "=Ada", "t"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
-RULE = Late(10, 1.0)
+COURSE = classroom.Course(ROSTER, HOMEWORK, Conditions(), Late(10, 1.0))
 
 
 def handin(team, students, days, path=None):
@@ -49,7 +50,8 @@ def result(student, holds, misconceptions=None):
 
 def test_each_member_of_a_team_pays_with_their_own_days():
     before = [Handed("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 3))]
-    rows = marks.marks(ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0}, RULE, before)
+    course = COURSE._replace(before=before)
+    rows = marks.marks(course, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0})
     assert [(row.late, row.excused, row.penalty, row.score, row.left) for row in rows[:2]] == [
         (4, 2, 2.0, 78.0, 0),
         (4, 4, 0.0, 80.0, 6),
@@ -58,7 +60,7 @@ def test_each_member_of_a_team_pays_with_their_own_days():
 
 
 def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
-    rows = marks.marks(ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 7)}, {"t": 80.0}, RULE)
+    rows = marks.marks(COURSE, {"t": handin("t", ("b1", "b2"), 7)}, {"t": 80.0})
     sheets.write_csv(tmp_path / "gradebook.csv", marks.COLUMNS, rows)
     assert marks.read([tmp_path / "gradebook.csv"]) == [
         Handed("hw2", 7, ("b1",), 80.0),
@@ -70,7 +72,7 @@ def test_a_gradebook_holds_what_the_next_one_needs(tmp_path):
 
 
 def test_canvas_gets_a_line_of_points_and_no_formula():
-    rows = marks.marks(ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0}, RULE)
+    rows = marks.marks(COURSE, {"t": handin("t", ("b1", "b2"), 0)}, {"t": 80.0})
     lines = list(csv.reader(sheets.csv_text(*marks.canvas(rows, HOMEWORK)).splitlines()))
     assert lines[0][:4] == ["Student", "ID", "SIS User ID", "SIS Login ID"] and lines[0][5].startswith("hw2")
     assert lines[1][0] == "Points Possible" and float(lines[1][5]) == 100
@@ -79,13 +81,14 @@ def test_canvas_gets_a_line_of_points_and_no_formula():
 
 def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
     before = [Handed("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 10))]
-    given = ROSTER, HOMEWORK, {"t": handin("t", ("b1", "b2"), 4)}, {"t": 80.0}, RULE, before
-    header, rows = marks.what_if(*given)
+    course, points = COURSE._replace(before=before), {"t": 80.0}
+    header, rows = marks.what_if(course, points)
     table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
     assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
     assert [table["b2"][f"late {days}"] for days in (0, 10, 14)] == [80, 80, 76]
     assert [table["b3"][f"late {days}"] for days in (0, 3)] == [100, 97]  # nothing came: were it all right
-    scores = {row.student: row.score for row in marks.marks(*given)}
+    came = marks.marks(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
+    scores = {row.student: row.score for row in came}
     assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
 
 
@@ -145,18 +148,6 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
 def test_a_grader_can_be_sent_to_another_process():
     grader = classroom.Grader(HOMEWORK, Conditions())
     assert pickle.loads(pickle.dumps(grader.result)).__self__ == grader
-
-
-PLAN = """
-[late]
-free_days = 10
-points_a_day = 1
-[hw2]
-title = "T"
-due = 2026-10-23T23:59:00Z
-tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]
-"""
-GOOD = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
 
 
 @pytest.fixture

@@ -18,6 +18,7 @@ from pathlib import Path
 
 import pytest
 import test_cluster
+from hats import GOOD, PLAN
 
 from hdrlab.course import grading, results
 from hdrlab.course.classroom import journal
@@ -25,15 +26,6 @@ from hdrlab.course.classroom import run as classroom
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework, Task
 
-PLAN = """
-[late]
-free_days = 10
-points_a_day = 1
-[hw2]
-title = "T"
-due = 2026-10-23T23:59:00Z
-tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]
-"""
 HIDDEN = """
 import pytest
 
@@ -41,7 +33,6 @@ import pytest
 def test_the_middle_counts_most(subject):
     assert subject.hat(256).argmax() in (127, 128)
 """
-GOOD = "import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
 FLAT = "import numpy as np\n\ndef hat(n=256):\n    return np.ones(n)\n"
 LETHAL = "import os\n\ndef hat(n=256):\n    os._exit(0)\n"
 

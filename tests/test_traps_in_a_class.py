@@ -1,6 +1,7 @@
 """Archives with traps in what a class has handed in: each is refused in one line, the others are graded."""
 
 import pytest
+from hats import GOOD, PLAN
 from traps import TRAPS, zipped
 
 from hdrlab import cli
@@ -8,14 +9,6 @@ from hdrlab.course import results, sheets
 
 LISTED = ("link", "absolute", "drive", "climbs", "device", "pipe", "bomb", "share bytes", "larger than")
 NAMES = [name for name in TRAPS if any(word in name for word in LISTED)]
-GOOD = b"import numpy as np\n\ndef hat(n=256):\n    return n - 1 - abs(2 * np.arange(n) - n + 1)\n"
-PLAN = """
-[late]
-[hw2]
-title = "T"
-due = 2026-10-23T23:59:00Z
-tasks = [{ id = "hat", function = "core.weights.hat", points = 10 }]
-"""
 
 
 def test_each_trap_is_refused_in_one_line_and_the_rest_of_the_class_is_graded(tmp_path, monkeypatch):
@@ -28,8 +21,8 @@ def test_each_trap_is_refused_in_one_line_and_the_rest_of_the_class_is_graded(tm
         if trap:
             TRAPS[trap](tmp_path / "in" / f"{student}.zip")
     for student in ("first", "last"):
-        (tmp_path / "in" / f"{student}.py").write_bytes(GOOD)
-    zipped(tmp_path / "in" / "zip.zip", {"mine/hat.py": GOOD})
+        (tmp_path / "in" / f"{student}.py").write_text(GOOD)
+    zipped(tmp_path / "in" / "zip.zip", {"mine/hat.py": GOOD.encode()})
     words = ["grade", "in", "--homework", "hw2", "--roster", "roster.csv", "--plan", "plan.toml"]
     with pytest.raises(SystemExit) as ended:  # nothing of an archive runs before it is judged
         cli.run([*words, "--tier", "practice", "-o", "out", "--jobs", "2"])

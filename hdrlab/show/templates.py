@@ -1,14 +1,19 @@
-"""Templates of pages. What they show comes from file names and from readers, so all of it is escaped."""
+"""Templates of pages. What they show comes from file names and from readers, so all of it is escaped.
+
+A page that stands by itself, with all it needs, extends `page.html`: it fetches nothing and runs nothing.
+"""
 
 from pathlib import Path
 
 import jinja2
 
+HERE = Path(__file__).parent
+
 
 def templates(folder: Path) -> jinja2.Environment:
-    """Return the templates of a folder: everything is escaped, and a name that is not known is an error."""
+    """Return the templates of a folder: all is escaped, and a name that is not known is an error."""
     return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(folder),
+        loader=jinja2.FileSystemLoader([folder, HERE]),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

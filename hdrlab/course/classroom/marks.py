@@ -3,7 +3,7 @@
 A row of the gradebook holds what the next homework's needs, so gradebooks add up over a term.
 """
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -11,8 +11,8 @@ from hdrlab.course import sheets
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.late import Handed, accounts, lateness
 from hdrlab.course.classroom.late import what_if as late_days
-from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.plan import Homework, Late
+from hdrlab.course.classroom.run import Course
+from hdrlab.course.plan import Homework
 
 COLUMNS = (
     *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),
@@ -40,25 +40,17 @@ class Mark(NamedTuple):
     note: str = ""
 
 
-def marks(
-    roster: Roster,
-    homework: Homework,
-    handins: Mapping[str, Handin],
-    points: Mapping[str, float],
-    late: Late,
-    before: Iterable[Handed] = (),
-) -> list[Mark]:
+def marks(course: Course, handins: Mapping[str, Handin], points: Mapping[str, float]) -> list[Mark]:
     """Return a row for each student of the roster.
 
     Parameters
     ----------
-    roster, homework : of whom, and of what
+    course : of whom, of what, and by which rule for what comes late
     handins : what counts of each team
     points : of the work, by team; a team without is noted
-    late : the course's rule
-    before : what was handed in for earlier homeworks, in the order they were due
     """
-    handed = [*before]
+    homework, late = course.homework, course.late
+    handed = [*course.before]
     for team, one in handins.items():
         days = lateness(homework.due, one.received)
         handed.append(Handed(homework.name, days, one.students, points.get(team, 0.0)))
@@ -66,7 +58,7 @@ def marks(
     left = {bill.student: bill.left for bill in bills}
     mine = {bill.student: bill for bill in bills if bill.project == homework.name}
     rows = []
-    for id, name, team, _ in roster.students:
+    for id, name, team, _ in course.roster.students:
         who, of = (id, name, team, homework.name), homework.points
         if id not in mine:
             grace = left.get(id, late.free_days)
@@ -81,29 +73,22 @@ def marks(
     return rows
 
 
-def what_if(
-    roster: Roster,
-    homework: Homework,
-    handins: Mapping[str, Handin],
-    points: Mapping[str, float],
-    late: Late,
-    before: Iterable[Handed] = (),
-) -> tuple[list[str], list[list[sheets.Cell]]]:
+def what_if(course: Course, points: Mapping[str, float]) -> tuple[list[str], list[list[sheets.Cell]]]:
     """Return header and rows of a table: each student's score, had the work come so many days late.
 
     Work that has not come, or is not graded, is taken for one that earns all points. The parameters are those
     of `marks`.
     """
-    teams = {team: tuple(one.id for one in members) for team, members in roster.teams().items()}
+    homework, late = course.homework, course.late
+    teams = {team: tuple(one.id for one in members) for team, members in course.roster.teams().items()}
     work = {team: points.get(team, homework.points) for team in teams}
     supposed = [Handed(homework.name, 0, members, work[team]) for team, members in teams.items()]
-    table = late_days(
-        [*before, *supposed], homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day
-    )
+    handed = [*course.before, *supposed]
+    table = late_days(handed, homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day)
     header = ["student", "name", "team", "homework", "work", *(f"late {days}" for days in DAYS)]
     rows: list[list[sheets.Cell]] = [
         [one.id, one.name, one.team, homework.name, work[one.team], *(by[one.id].score for _, by in table)]
-        for one in roster.students
+        for one in course.roster.students
     ]
     return header, rows
 

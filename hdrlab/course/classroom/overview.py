@@ -63,12 +63,11 @@ def write(
     course, handins, counted : by what, what counts of each team, and what came of it
     notes : of what was left out, or could not be graded
     """
-    given = course.roster, course.homework, handins, counted.points, course.late, course.before
-    rows = marks.marks(*given)
+    rows = marks.marks(course, handins, counted.points)
     tables: dict[str, tuple[Sequence[str], Sequence[Sequence[sheets.Cell]]]] = {
         "gradebook.csv": (marks.COLUMNS, rows),
         "canvas.csv": marks.canvas(rows, course.homework),
-        "what_if.csv": marks.what_if(*given),
+        "what_if.csv": marks.what_if(course, counted.points),
     }
     files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]
     journal.write(out / "class.html", page(course.homework, counted, notes).encode())

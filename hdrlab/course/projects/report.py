@@ -67,7 +67,7 @@ def write_report(project: Project) -> Written:
     text = (
         templates(Path(__file__).parent)
         .get_template(TEMPLATE)
-        .render(title=title, about=project.about, hero=found.get("artifact"), parts=parts, lang="en")
+        .render(title=title, about=project.about, hero=found.get("artifact"), parts=parts)
     )
     page = project.folder / PAGE
     with replacing(page) as temporary:
