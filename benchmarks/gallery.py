@@ -17,6 +17,7 @@ import sys
 import time
 from contextlib import closing
 from pathlib import Path
+from random import Random
 from typing import Any, NamedTuple
 from urllib.parse import urlencode, urlsplit
 
@@ -114,53 +115,68 @@ def start(room: Path, port: int = 0) -> tuple[subprocess.Popen[bytes], str]:
     raise RuntimeError("the gallery did not start")
 
 
-async def voted(address: str, links: dict[str, str], *, within: float, changes: int, together: bool) -> Voted:
-    """Let everybody vote, and return what they saw. A server that dies ends it."""
-    from random import Random
+class Voter:
+    """Somebody who comes, looks and votes; the seconds of it and the ballots go into `done`."""
 
-    random, gate = Random(7), asyncio.Barrier(len(links)) if together else None
-    done = Voted({"wall": [], "picture": [], "ballot": []}, {}, {}, 0)
-    refused = 0
+    def __init__(self, address: str, who: str, token: str, done: Voted) -> None:
+        self.one, self.who, self.token, self.done = Connection(address), who, token, done
+        self.refused = 0
 
-    async def timed(kind: str, one: Connection, *asked: Any) -> tuple[int, bytes]:
+    async def timed(self, kind: str, *asked: Any) -> tuple[int, bytes]:
+        """Return an answer, and note how long it took."""
         begun = time.perf_counter()
-        answer = await one.ask(*asked)
-        done.seconds[kind].append(time.perf_counter() - begun)
+        answer = await self.one.ask(*asked)
+        self.done.seconds[kind].append(time.perf_counter() - begun)
         return answer
 
-    async def voter(who: str, token: str, come: float) -> None:
-        nonlocal refused
-        one = Connection(address)
+    async def look(self) -> tuple[str, list[str]]:
+        """Enter, open the wall and some pictures; return the key of ballots, and the marks of pictures."""
+        await self.one.ask("POST", f"/enter/{self.token}")
+        _, page = await self.timed("wall", "GET", "/")
+        text = page.decode()
+        marks = [part[:24] for part in text.split('name="mark" value="')[1:]]
+        for mark in marks[:PICTURES]:
+            await self.timed("picture", "GET", f"/picture/{mark}/small")
+        return text.split('name="key" value="')[1][:64], marks
+
+    async def vote(self, key: str, chosen: list[str]) -> None:
+        """Send a ballot, and note what became of it."""
+        form = urlencode([("key", key), *(("mark", mark) for mark in chosen)]).encode()
+        self.done.sent[self.who] = chosen
+        status, _ = await self.timed("ballot", "POST", "/ballot", form, "application/json")
+        if status == 200:
+            self.done.last[self.who] = chosen
+        self.refused += status != 200
+
+    def leave(self) -> None:
+        """Close the connection."""
+        if self.one.streams:
+            self.one.streams[1].close()
+
+
+async def voted(address: str, links: dict[str, str], *, within: float, changes: int, together: bool) -> Voted:
+    """Let everybody vote, and return what they saw. A server that dies ends it."""
+    random, gate = Random(7), asyncio.Barrier(len(links)) if together else None
+    done = Voted({"wall": [], "picture": [], "ballot": []}, {}, {}, 0)
+    voters = [Voter(address, who, token, done) for who, token in links.items()]
+
+    async def visit(voter: Voter, come: float) -> None:
         try:
             await asyncio.sleep(come)
-            await one.ask("POST", f"/enter/{token}")
-            _, page = await timed("wall", one, "GET", "/")
-            text = page.decode()
-            key = text.split('name="key" value="')[1][:64]
-            marks = [part[:24] for part in text.split('name="mark" value="')[1:]]
-            for mark in marks[:PICTURES]:
-                await timed("picture", one, "GET", f"/picture/{mark}/small")
+            key, marks = await voter.look()
             for change in range(changes):
                 if gate and not change:
                     await gate.wait()
-                chosen = sorted(marks[3 * change : 3 * change + 3])
-                form = urlencode([("key", key), *(("mark", mark) for mark in chosen)]).encode()
-                done.sent[who] = chosen
-                status, _ = await timed("ballot", one, "POST", "/ballot", form, "application/json")
-                if status == 200:
-                    done.last[who] = chosen
-                else:
-                    refused += 1
+                await voter.vote(key, sorted(marks[3 * change : 3 * change + 3]))
                 if not gate:
                     await asyncio.sleep(random.uniform(0.2, 1.0))
         except (OSError, EOFError):
             return
         finally:
-            if one.streams:
-                one.streams[1].close()
+            voter.leave()
 
-    await asyncio.gather(*(voter(who, token, random.uniform(0, within)) for who, token in links.items()))
-    return done._replace(refused=refused)
+    await asyncio.gather(*(visit(voter, random.uniform(0, within)) for voter in voters))
+    return done._replace(refused=sum(voter.refused for voter in voters))
 
 
 def judged(room: Path, seen: Voted) -> dict[str, Any]:
