@@ -1,6 +1,7 @@
 """The sandbox in its tiers: it answers alike in all, keeps in what it says it keeps in, and fails closed."""
 
 import ctypes
+import itertools
 import os
 import re
 import shutil
@@ -500,6 +501,22 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
     strict.bubblewrap.cache_clear()
     without.setattr(shutil, "which", lambda name: None)
     assert not doctor.examine("strict").works and "apt install bubblewrap" in doctor.examine("strict").remedy
+
+
+@pytest.mark.parametrize("ended, works", [(doctor.TRIES - 1, True), (doctor.TRIES, False)])
+def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, ended, works):
+    starts = itertools.count()
+
+    def launch(control):
+        if next(starts) >= ended:
+            return practice.launch(control)
+        words = [sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]
+        return running.Launched(running.start(words, {}), lambda: None)
+
+    monkeypatch.setitem(tiers.TIERS, "practice", lambda: practice.sandbox()._replace(launch=launch))
+    finding = doctor.examine("practice")
+    assert finding.works == works and next(starts) == doctor.TRIES
+    assert works or finding[3:] == ("the practice sandbox did not start: it was ended by signal 9", "")
 
 
 def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_container_tier_serves():

@@ -22,7 +22,8 @@ def no_tier(reason: str) -> ValueError:
 
     helps = "; ".join(filter(None, (doctor.remedy(reason), "hdrlab doctor says more")))
     line = reason.strip().partition("\n")[0].rstrip(".")
-    return ValueError(f"{line}; {helps}. For practice alone, and not for credit: --tier practice")
+    other = "" if "practice" in line else ". For practice alone, and not for credit: --tier practice"
+    return ValueError(f"{line}; {helps}{other}")
 
 
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:

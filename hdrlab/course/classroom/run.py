@@ -100,9 +100,8 @@ class Grader(NamedTuple):
 
 @cache
 def _ready(tier: str) -> None:
-    """Try a tier; the second time, if the first was disturbed."""
+    """Try a tier."""
     found = doctor.examine(tier)
-    found = found if found.works else doctor.examine(tier)
     if not found.works:
         raise Unavailable(found.says)
 

@@ -20,6 +20,8 @@ from hdrlab.course import channel
 
 START = 60.0  # seconds in which a sandbox must have started, on a machine however busy
 CLEAR = 10.0  # seconds in which a check must have been cleared away; else the sandbox is started anew
+SETTLE = 1.0  # seconds for a process to end that has closed its control
+SIGNALLED = 128  # and a signal's number: what a launcher ends with when a signal has ended its own
 LIMITS = {  # per process, named as in the module resource
     "CPU": 60,  # seconds
     "AS": 2 << 30,  # bytes of address space
@@ -161,11 +163,16 @@ class Running:
         return value
 
     def _last_words(self) -> str:
-        """Return the last line that the process wrote to stderr, when it has ended."""
+        """Return the last line that the process wrote to stderr, or the signal that has ended it."""
         process = self._launched.process
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(SETTLE)
+        ended = process.poll() or 0
         process.kill()
         _, said = process.communicate()
         lines = (said or b"").decode(errors="replace").strip().splitlines()
+        if not lines and (ended < 0 or ended > SIGNALLED):
+            return f"it was ended by signal {-ended if ended < 0 else ended - SIGNALLED}"
         return lines[-1][-500:] if lines else ""
 
     def close(self) -> None:
