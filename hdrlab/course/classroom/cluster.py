@@ -21,6 +21,7 @@ from typing import NamedTuple, Self
 import dask
 import distributed
 from distributed import Client, Future, KilledWorker
+from distributed.comm import resolve_address
 
 import hdrlab
 from hdrlab.course.classroom import alone as process
@@ -123,6 +124,7 @@ class Cluster:
 
     def __enter__(self) -> Self:
         try:
+            resolve_address(self._address)  # first: a Client that cannot read it is left behind, half made
             self._client = Client(self._address, timeout=CONNECT, set_as_default=False)
         except (OSError, ValueError) as error:
             why = f": {error}" if isinstance(error, ValueError) else ""
