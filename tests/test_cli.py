@@ -243,7 +243,7 @@ def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(
 
 def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
     called = []
-    monkeypatch.setattr("subprocess.call", lambda command: called.append(command) or 0)
+    monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", called.append)
     assert hdrlab("lab", "--folder", tmp_path / "mine", "--", "--port", "9000") == 0
     first = next(part for part in called[0] if part.startswith("--LabApp.default_url="))
     assert (tmp_path / "mine" / first.removeprefix("--LabApp.default_url=/lab/tree/")).is_file()

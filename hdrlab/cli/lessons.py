@@ -1,6 +1,5 @@
 """Commands that begin with nothing: a demonstration, and the notebooks."""
 
-import sys
 from pathlib import Path
 
 import click
@@ -30,12 +29,12 @@ def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
 
     What you changed in your copy stays. OPTIONS go to JupyterLab.
     """
-    import subprocess
-
     from hdrlab.course import materials
 
     new = materials.copy_course(folder)
     click.echo(f"{folder}: {len(new)} new notebooks")
     if not copy_only:
         where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
-        sys.exit(subprocess.call([sys.executable, "-m", "jupyterlab", *where, *options]))
+        from jupyterlab.labapp import LabApp
+
+        LabApp.launch_instance([*where, *options])
