@@ -27,6 +27,7 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets"], {"show"}),
     "IPython": {"show", "course"},
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
+    "jupyterlab": {"cli"},
     **dict.fromkeys(["mitsuba", "drjit"], {"scenes"}),
     **dict.fromkeys(
         ["nbformat", "nbclient", "sphinx", "docutils", "ziamath", "latex2mathml"], {"course"}
