@@ -3,7 +3,7 @@
 from pathlib import Path
 
 import pytest
-from laboratory import PATIENCE, changed_by
+from laboratory import DIGEST, PATIENCE, changed_by
 
 NOTEBOOKS = sorted(path.name for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 
@@ -52,7 +52,10 @@ def move_play(page, widget):
 
 
 def move_tune(page, widget):
+    """Each slider was put back, so the picture is the one that the cell made: no later cell has a say."""
+    before = widget.evaluate(DIGEST)
     move_sliders(page, widget, lambda: until_answered(page, widget))
+    assert widget.evaluate(DIGEST) == before
 
 
 def until_answered(page, widget):
