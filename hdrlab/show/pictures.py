@@ -173,7 +173,8 @@ def _is_picture(shape: tuple[int, ...]) -> bool:
 
 
 def _pixels(figure: Any) -> NDArray[np.uint8]:
-    canvas = FigureCanvasAgg(figure)
+    known = type(figure.canvas) is FigureCanvasAgg  # which knows the widths of words from the picture before
+    canvas = figure.canvas if known else FigureCanvasAgg(figure)
     again.paint(canvas)
     if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
         sys.modules["matplotlib.pyplot"].close(figure)

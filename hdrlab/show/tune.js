@@ -4,6 +4,20 @@ const PATIENCE = 3000; // ms without an answer before a page that had a kernel c
 
 const same = (a, b) => a.length === b.length && a.every((value, i) => value === b[i]);
 
+// A Blob goes through another process, which takes longer than to decode. Pages that are not secure have no other way.
+async function decodeJpeg(bytes) {
+  if (!globalThis.ImageDecoder) return decode(bytes, "image/jpeg");
+  const decoder = new ImageDecoder({ data: bytes, type: "image/jpeg" });
+  try {
+    const { image } = await decoder.decode();
+    const bitmap = await createImageBitmap(image);
+    image.close();
+    return bitmap;
+  } finally {
+    decoder.close();
+  }
+}
+
 function render({ model, el }) {
   const root = start(el, "tune");
   const [names, values] = [model.get("names"), model.get("values")];
@@ -24,7 +38,7 @@ function render({ model, el }) {
     const [at, stored] = [model.get("at"), model.get("stored_at")];
     const away = stored.map((other) => distance(other, at));
     const nearest = away.indexOf(Math.min(...away));
-    view.show(decode(model.get("stored")[nearest], "image/jpeg"), `${model.get("alt")}, ${texts(stored[nearest])}`);
+    view.show(decodeJpeg(model.get("stored")[nearest]), `${model.get("alt")}, ${texts(stored[nearest])}`);
     note.textContent = `No Python answers: the nearest stored picture, ${texts(stored[nearest])}.`;
   }
 
@@ -33,7 +47,7 @@ function render({ model, el }) {
   }
 
   function showFrame() {
-    view.show(decode(model.get("frame"), "image/jpeg"), `${model.get("alt")}, ${texts(model.get("shown"))}`);
+    view.show(decodeJpeg(model.get("frame")), `${model.get("alt")}, ${texts(model.get("shown"))}`);
     note.textContent = model.get("problem");
   }
 
