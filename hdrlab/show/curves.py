@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.errors import HIGH, LOW
-from hdrlab.show.plots import SAMPLES, axes
+from hdrlab.show.plots import SAMPLES, axes, fixed
 
 Dashes = str | tuple[int, tuple[float, ...]]
 LINES: tuple[tuple[str, Dashes], ...] = (
@@ -59,7 +59,7 @@ def lines(
             raise ValueError(f"expected {label} at the {x.shape} places, got {describe(y)}")
         ax.plot(x, y, linestyle=style, color=colour, linewidth=1.8, label=label)
     ax.set(xlabel=across, ylabel=up, yscale=scale)
-    ax.set(**{name: ends for name, ends in (("xlim", span), ("ylim", limits)) if ends is not None})
+    fixed(ax, span, limits)
     if scale == "log":  # minor ticks and powers in mathematical type take longer than all the rest
         ax.minorticks_off()
         ax.yaxis.set_major_formatter("{x:g}")
@@ -68,9 +68,17 @@ def lines(
 
 
 def deviations(
-    found: Mapping[str, ArrayLike], truth: ArrayLike, *, limit: float = 0.5, ax: Axes | None = None
+    found: Mapping[str, ArrayLike],
+    truth: ArrayLike,
+    *,
+    limit: float = 0.5,
+    span: tuple[float, float] | None = None,
+    ax: Axes | None = None,
 ) -> Axes:
-    """Draw how many stops each g found lies above the true one, over exposure, at the levels 10 to 250."""
+    """Draw how many stops each g found lies above the true one, over exposure, at the levels 10 to 250.
+
+    `limit` and `span` fix the axes, as in `lines`.
+    """
     stops = np.asarray(truth, np.float64)[LOW : HIGH + 1] / np.log(2)
     off = {name: np.asarray(g)[LOW : HIGH + 1] / np.log(2) - stops for name, g in found.items()}
     ax = ax or axes()
@@ -78,7 +86,7 @@ def deviations(
     for (colour, style), (name, y) in zip(LINES[1:], off.items(), strict=False):
         ax.plot(stops, y, linestyle=style, color=colour, linewidth=1.6, label=name)
     ax.set(xlabel="true exposure, stops from that of level 128", ylabel="found less true, stops")
-    ax.set(ylim=(-limit, limit))
+    fixed(ax, span, (-limit, limit))
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
 

@@ -65,6 +65,17 @@ def bare(ax: Axes) -> Axes:
     return ax
 
 
+def fixed(
+    ax: Axes, span: tuple[float, float] | None = None, limits: tuple[float, float] | None = None
+) -> Axes:
+    """Fix the ends of x by `span` and those of y by `limits`, where given: a slider then moves no ticks."""
+    if span is not None:
+        ax.set_xlim(span)
+    if limits is not None:
+        ax.set_ylim(limits)
+    return ax
+
+
 def seconds(time: float) -> str:
     """Return an exposure time as a camera shows it: '1/60 s', '2 s'.
 

@@ -20,7 +20,7 @@ from hdrlab.capture.ranges import Held
 from hdrlab.capture.transfer import Transfer
 from hdrlab.core.arrays import describe
 from hdrlab.core.picture import as_picture
-from hdrlab.show.plots import axes, picture_axes
+from hdrlab.show.plots import axes, fixed, picture_axes
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
 ORANGE, BLUE = np.array([213, 94, 0], np.uint8), np.array([0, 114, 178], np.uint8)
@@ -84,8 +84,17 @@ def _logarithmic(ax: Axes) -> Axes:
     return ax
 
 
-def transfer(found: Transfer, *, ax: Axes | None = None) -> Axes:
-    """Draw a photon transfer curve: variance over signal, the line through it, and what was left out."""
+def transfer(
+    found: Transfer,
+    *,
+    span: tuple[float, float] | None = None,
+    limits: tuple[float, float] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw a photon transfer curve: variance over signal, the line through it, and what was left out.
+
+    `span` and `limits` fix the axes, so that a slider turns the line and nothing else.
+    """
     ax = ax or axes()
     S, V, used = np.maximum(found.S, 0), found.V, found.used
     ax.plot(S[used], V[used], "o", color="#D55E00", label="pairs that are used")
@@ -93,6 +102,7 @@ def transfer(found: Transfer, *, ax: Axes | None = None) -> Axes:
     line = np.array([0, S.max()])
     ax.plot(line, V[0] + line / found.gain, "-", color="#1A1A1A", label=f"slope 1 / {found.gain:.3g}")
     ax.set(xlabel="signal S, levels above black", ylabel="variance V, levels squared")
+    fixed(ax, span, limits)
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
 
