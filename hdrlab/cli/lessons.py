@@ -34,7 +34,7 @@ def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     new = materials.copy_course(folder)
     click.echo(f"{folder}: {len(new)} new notebooks")
     if not copy_only:
-        where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
         from jupyterlab.labapp import LabApp
 
+        where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
         LabApp.launch_instance([*where, *options])

@@ -67,13 +67,12 @@ def bare(ax: Axes) -> Axes:
 
 def fixed(
     ax: Axes, span: tuple[float, float] | None = None, limits: tuple[float, float] | None = None
-) -> Axes:
+) -> None:
     """Fix the ends of x by `span` and those of y by `limits`, where given: a slider then moves no ticks."""
     if span is not None:
         ax.set_xlim(span)
     if limits is not None:
         ax.set_ylim(limits)
-    return ax
 
 
 def seconds(time: float) -> str:

@@ -100,7 +100,7 @@ class Grader(NamedTuple):
 
 @cache
 def _ready(tier: str) -> None:
-    """Try a tier."""
+    """Raise Unavailable where a tier cannot be had; a process asks once."""
     found = doctor.examine(tier)
     if not found.works:
         raise Unavailable(found.says)

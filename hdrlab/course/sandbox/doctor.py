@@ -14,6 +14,7 @@ from hdrlab.course.sandbox import practice, tiers
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.subject import NoAnswer, Subject
 
+TRIES = 3  # of a tier that does not start: somebody may have ended it
 BREAK_OUT = """
 import ctypes, os
 def tried(secret, target):
@@ -37,7 +38,6 @@ SWITCHES = (  # of Linux, which keep ordinary users from namespaces: file, the v
     ("kernel/unprivileged_userns_clone", "0", "sysctl kernel.unprivileged_userns_clone=1"),
     ("user/max_user_namespaces", "0", "sysctl user.max_user_namespaces=10000"),
 )
-TRIES = 3  # of a tier that does not start: somebody may have ended it
 INSTALL = {
     "bwrap": "install bubblewrap 0.8 or later (Debian, Ubuntu: apt install bubblewrap)",
     "bubblewrap": "install bubblewrap 0.8 or later; Debian 12 and Ubuntu 24.04 have it",
