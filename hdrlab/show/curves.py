@@ -62,9 +62,14 @@ def lines(
     fixed(ax, span, limits)
     if scale == "log":  # minor ticks and powers in mathematical type take longer than all the rest
         ax.minorticks_off()
-        ax.yaxis.set_major_formatter("{x:g}")
+        ax.yaxis.set_major_formatter(_short)
     ax.legend(loc=legend, framealpha=0.9)
     return ax
+
+
+def _short(x: float, _: object) -> str:
+    """Return a power of ten in five letters at most: more would reach into the axis's name."""
+    return f"{x:g}" if x >= 1e-3 else f"{x:.0e}"
 
 
 def deviations(
