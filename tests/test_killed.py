@@ -78,12 +78,18 @@ def finished(home, out):
     return contents(out)
 
 
-def family(pid):
-    """Return the processes that have come from this one."""
-    parents = {}
+def processes(file):
+    """Return what this file of /proc says of each process; one may end while it is asked, and is left out."""
+    told = {}
     for entry in filter(str.isdigit, os.listdir("/proc")):
         with suppress(OSError):
-            parents[int(entry)] = int(Path(f"/proc/{entry}/stat").read_text().rpartition(")")[2].split()[1])
+            told[int(entry)] = Path(f"/proc/{entry}/{file}").read_bytes()
+    return told
+
+
+def family(pid):
+    """Return the processes that have come from this one."""
+    parents = {one: int(told.rpartition(b")")[2].split()[1]) for one, told in processes("stat").items()}
     found = [pid]
     for one in found:
         found += [child for child, parent in parents.items() if parent == one]
@@ -120,12 +126,7 @@ def graded(home, out, rng, most, *more, others=list):
 
 def left(scratch):
     """Return the processes that have this folder for their files."""
-    found = []
-    for entry in filter(str.isdigit, os.listdir("/proc")):
-        with suppress(OSError):
-            if str(scratch).encode() in Path(f"/proc/{entry}/environ").read_bytes():
-                found.append(int(entry))
-    return found
+    return [one for one, told in processes("environ").items() if str(scratch).encode() in told]
 
 
 @pytest.fixture(scope="module")
@@ -147,6 +148,9 @@ def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(fo
         results, more = graded(folder, folder / f"round{rounds}", rng, 20 - kills)
         assert results == whole
         kills += more
+    until = time.monotonic() + 20
+    while left(folder / "scratch") and time.monotonic() < until:
+        time.sleep(0.05)
     assert not left(folder / "scratch")
 
 
@@ -163,12 +167,9 @@ def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole, 
 
 def workers():
     """Return the processes of a cluster that this one has started, and what they have started."""
-    return [
-        one
-        for child in family(os.getpid())
-        if b"spawn_main" in Path(f"/proc/{child}/cmdline").read_bytes()
-        for one in (child, *family(child))
-    ]
+    said = processes("cmdline")
+    spawned = [child for child in family(os.getpid()) if b"spawn_main" in said.get(child, b"")]
+    return [one for child in spawned for one in (child, *family(child))]
 
 
 @pytest.fixture
@@ -188,11 +189,11 @@ def killing():
 def _kill(words, below):
     until = time.monotonic() + 60
     while time.monotonic() < until:
+        said = processes("cmdline")
         for one in family(os.getpid()):
-            with suppress(OSError):
-                said = Path(f"/proc/{one}/cmdline").read_bytes()
-                victims = family(one) if below else [one]
-                if victims and all(word in said for word in words):
+            victims = family(one) if below else [one]
+            if victims and all(word in said.get(one, b"") for word in words):
+                with suppress(ProcessLookupError):
                     return os.kill(victims[0], signal.SIGKILL)
         time.sleep(0.01)
 
