@@ -21,6 +21,7 @@ from hdrlab.align.bitmaps import Offset, Words
 from hdrlab.align.mtb import State
 from hdrlab.align.pairs import Verdict
 from hdrlab.core.arrays import describe
+from hdrlab.show.nearest import show
 from hdrlab.show.plots import picture_axes
 
 Image = NDArray[np.uint8]
@@ -47,7 +48,7 @@ def difference(fixed: Words, moving: Words, offset: Offset, width: int, *, title
     moved = judge.move(moving, offset)
     error = float(bitmaps.error(bitmaps.disagreement(fixed, moved)))
     ax = _under(fixed.shape[1] / width, above=0.32 + 0.21 * title.count("\n"))
-    ax.imshow(_picture(fixed, moved, width), interpolation="nearest", aspect="auto")
+    show(ax, _picture(fixed, moved, width))
     ax.set_title(title or f"moved by {_pair(offset)}: {100 * error:.2f} % of the bits differ", fontsize=11)
     return ax
 
@@ -77,7 +78,7 @@ def nine(state: State) -> Figure:
         place = (left / WIDTH, 1 - (top + 0.22 + tall) / total, side / WIDTH, tall / total)
         ax = figure.add_axes(place)
         picture = _picture(fixed, judge.move(moving, offset), state.width)
-        ax.imshow(picture, interpolation="nearest", aspect="auto")
+        show(ax, picture)
         ax.set_title(f"{_pair(offset)}: {100 * error:.2f} %", fontsize=10, pad=2)
         ax.set(xticks=(), yticks=())
         framed = BEST if (row, column) == best else CENTRE if (row, column) == (1, 1) else "#D9D9D9"

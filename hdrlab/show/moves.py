@@ -18,6 +18,7 @@ from hdrlab.align import criterion
 from hdrlab.align.cerman import State
 from hdrlab.core.arrays import describe
 from hdrlab.show.figures import false_colour
+from hdrlab.show.nearest import show
 from hdrlab.show.plots import bare, picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have
@@ -41,7 +42,7 @@ def difference(X: ArrayLike, H: ArrayLike, *, title: str = "") -> Axes:
     d, e = differences(X, H)
     tall = WIDTH * d.shape[0] / d.shape[1]
     ax = picture_axes(WIDTH, tall + 0.4, (0, 0, 1, tall / (tall + 0.4)))
-    ax.imshow(false_colour(d, -REACH, REACH, colours=COLOURS), interpolation="nearest", aspect="auto")
+    show(ax, false_colour(d, -REACH, REACH, colours=COLOURS))
     ax.set_title(f"{title}error e = {e:.4f}", fontsize=11)
     return ax
 
@@ -72,7 +73,7 @@ def level(state: State) -> Figure:
     total = tall + 2.3
     figure = Figure(figsize=(WIDTH, total), dpi=100)
     above = figure.add_axes((0, 1.9 / total, 1, tall / total))
-    above.imshow(false_colour(d, -REACH, REACH, colours=COLOURS), interpolation="nearest", aspect="auto")
+    show(above, false_colour(d, -REACH, REACH, colours=COLOURS))
     bare(above)
     size = f"{d.shape[1]} × {d.shape[0]} pixels"
     above.set_title(f"level {state.level}, {size}: error e = {found:.4f}", fontsize=11)

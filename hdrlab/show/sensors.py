@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.colors import Normalize
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
@@ -20,6 +21,7 @@ from hdrlab.capture.ranges import Held
 from hdrlab.capture.transfer import Transfer
 from hdrlab.core.arrays import describe
 from hdrlab.core.picture import as_picture
+from hdrlab.show.nearest import show
 from hdrlab.show.plots import axes, fixed, picture_axes
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
@@ -140,7 +142,7 @@ def titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, widt
     high = width * shown.shape[0] / shown.shape[1]
     lines = 0.25 * (text.count("\n") + 1) + 0.12
     ax = picture_axes(width, high + lines, (0, 0, 1, high / (high + lines)))
-    ax.imshow(shown, cmap="gray", vmin=0, vmax=255, interpolation="nearest", aspect="auto")
+    show(ax, shown, colours="gray", norm=Normalize(0, 255))
     if ring is not None and 0 < np.asarray(ring, float).mean() < 1:
         edge = ax.contour(np.asarray(ring, float), [0.5], colors="white", linewidths=1.2)
         edge.set_path_effects([withStroke(linewidth=3, foreground="black")])
