@@ -10,7 +10,7 @@ import pytest
 from matplotlib.figure import Figure
 
 from hdrlab.io import web
-from hdrlab.show import again, plots, widgets
+from hdrlab.show import again, plots, tones, widgets
 from hdrlab.show.pictures import render
 
 
@@ -472,7 +472,20 @@ def bare(k):
     return ax
 
 
-@pytest.mark.parametrize("draw", [fixed, running, beneath, bare])
+def mapped(k):
+    """Draw two maps under names of their own, above a scale that changes at last."""
+    v = np.sin(np.arange(600.0).reshape(20, 30) / (k + 9))
+    return tones.maps({f"number {k}": v, "": -v}, label="sines", span=(-1, 1 + k // 2))
+
+
+def named(k):
+    """Draw a map of classes."""
+    return tones.maps(
+        {"": np.arange(600).reshape(20, 30) % (k + 1)}, label="case", names=["one", "two", "three", "four"]
+    )
+
+
+@pytest.mark.parametrize("draw", [fixed, running, beneath, bare, mapped, named])
 def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw):
     kept = again.Kept()
     for k in (0, 1, 1, 3, 2, 0):
@@ -480,7 +493,7 @@ def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw
 
 
 def test_the_ground_is_kept_where_the_axes_stay_and_painted_anew_where_they_change():
-    for draw, stays in ((fixed, True), (running, False)):
+    for draw, stays in ((fixed, True), (mapped, True), (named, True), (running, False)):
         kept = again.Kept()
         again.drawn(draw, 0, render, kept)
         ((_, before),) = kept.ground.values()

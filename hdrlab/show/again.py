@@ -1,9 +1,9 @@
 """Axes that are drawn on again: most of a line plot's time goes into making its axes and their ticks.
 
-`widgets.play` and `widgets.tune` draw many plots one after the other. Inside `drawn`, `plots.axes` hands out
-the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would leave behind.
-`paint` keeps the pixels of their ground, which is the paper with ticks, numbers and grid: where these are
-the same as in the picture before, only what stands upon them is drawn.
+`widgets.play` and `widgets.tune` draw many plots one after the other. Inside `drawn`, `plots.axes` and its
+kin hand out the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would leave
+behind. `paint` keeps the pixels of their ground, which is the paper with ticks, numbers and grid: where these
+are the same as in the picture before, only what stands upon them is drawn.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -18,15 +18,15 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 State = TypeVar("State")
-Size = tuple[float, ...]  # of the figure, inches, and where in it the Axes lie if not in the usual place
+Size = tuple[float, ...]  # of the figure, inches, and where in it its Axes lie if not in the usual place
 
 
 class Kept:
     """Axes between two pictures, by size: `spare` ones, those handed `out` since, pixels of their ground."""
 
     def __init__(self) -> None:
-        self.spare: dict[Size, Axes] = {}
-        self.out: dict[Size, tuple[Axes, object]] = {}
+        self.spare: dict[Size, list[Axes]] = {}
+        self.out: dict[Size, tuple[list[Axes], list[object]]] = {}
         self.ground: dict[Size, tuple[object, Any]] = {}
 
 
@@ -55,31 +55,33 @@ def drawn(
     return frame
 
 
-def take(size: Size) -> Axes | None:
-    """Return spare Axes of this size, wiped, or None; nobody gets the same ones in one picture."""
+def take(size: Size) -> list[Axes]:
+    """Return the spare Axes of a figure of this size, wiped, or none; a picture gets them once."""
     kept = _kept.get()
-    ax = kept.spare.pop(size, None) if kept else None
-    return ax and handed_out(size, wiped(ax))
+    spare = kept.spare.pop(size, []) if kept else []
+    return handed_out(size, *map(wiped, spare)) if spare else []
 
 
-def handed_out(size: Size, ax: Axes) -> Axes:
-    """Return these Axes of `plots.axes`, and remember how they look."""
+def handed_out(size: Size, *axes: Axes) -> list[Axes]:
+    """Return the Axes of a figure, and remember how they look."""
     if kept := _kept.get():
-        kept.out[size] = (ax, look(ax))
-    return ax
+        kept.out[size] = (list(axes), [look(ax) for ax in axes])
+    return list(axes)
 
 
 def keep(kept: Kept, drawn: object) -> None:
     """Keep the Axes of a picture for the next one, if it has no others and wiping makes them as new."""
-    for size, (ax, as_new) in kept.out.items():
-        if getattr(drawn, "figure", None) is ax.figure and alone(ax) and look(ax) == as_new:
-            kept.spare[size] = ax
+    for size, (axes, as_new) in kept.out.items():
+        mine = getattr(drawn, "figure", None) is axes[0].figure
+        if mine and alone(axes) and [look(ax) for ax in axes] == as_new:
+            kept.spare[size] = axes
 
 
-def alone(ax: Axes) -> bool:
+def alone(axes: list[Axes]) -> bool:
     """Return whether the figure has nothing but these Axes."""
-    figure: Any = ax.figure
-    return figure.axes == [ax] and not (ax.child_axes or figure.texts or figure.legends or figure.images)
+    figure: Any = axes[0].figure
+    more = (figure.texts, figure.legends, figure.images, *(ax.child_axes for ax in axes))
+    return figure.axes == axes and not any(more)
 
 
 def look(ax: Axes) -> object:
@@ -118,30 +120,34 @@ def wiped(ax: Axes) -> Axes:
 def paint(canvas: FigureCanvasAgg) -> None:
     """Draw the canvas's figure; where its ground is that of the picture before, only what stands upon it."""
     kept, figure = _kept.get(), canvas.figure
-    mine = [(size, *out) for size, out in kept.out.items() if out[0].figure is figure] if kept else []
-    if kept is None or not mine or not separable(mine[0][1], mine[0][2]):
+    mine = [(size, *out) for size, out in kept.out.items() if out[0][0].figure is figure] if kept else []
+    if kept is None or not mine or not separable(*mine[0][1:]):
         canvas.draw()
         return
-    size, ax, as_new = mine[0]
-    ground = [figure.patch, ax.patch, ax.xaxis, ax.yaxis]
-    marks = (as_new, ax.get_facecolor(), ticks(ax.xaxis), ticks(ax.yaxis))
+    size, axes, as_new = mine[0]
+    ground = [figure.patch, *(part for ax in axes for part in (ax.patch, ax.xaxis, ax.yaxis))]
+    marks = as_new, [(ax.get_facecolor(), ticks(ax.xaxis), ticks(ax.yaxis)) for ax in axes]
     before, pixels = kept.ground.get(size, (None, None))
     if before == marks:
         canvas.restore_region(pixels)
     else:
-        with hidden(child for child in ax.get_children() if child not in ground):
+        with hidden(child for ax in axes for child in ax.get_children() if child not in ground):
             canvas.draw()
         kept.ground[size] = (marks, canvas.copy_from_bbox(figure.bbox))
     with hidden(ground):
         figure.draw(canvas.get_renderer())
 
 
-def separable(ax: Axes, as_new: object) -> bool:
+def separable(axes: list[Axes], as_new: list[object]) -> bool:
     """Return whether the ground of Axes lies below all else, and is made of nothing but ticks and labels."""
+    plain = alone(axes) and all(ax.get_aspect() == "auto" for ax in axes)
+    return plain and [look(ax) for ax in axes] == as_new and all(map(_grounded, axes))
+
+
+def _grounded(ax: Axes) -> bool:
     ground = max(ax.xaxis.get_zorder(), ax.yaxis.get_zorder())
     above = (child for child in ax.get_children() if child not in (ax.patch, ax.xaxis, ax.yaxis))
-    plain = alone(ax) and ax.get_aspect() == "auto" and look(ax) == as_new
-    return plain and all(child.get_zorder() > ground for child in above)
+    return not ax.axison or all(child.get_zorder() > ground for child in above)
 
 
 def ticks(axis: Axis) -> object:

@@ -10,6 +10,9 @@ A stop is a factor of 2, a decade one of 10. Every function draws on `ax`, or on
 returns the Axes; nothing is shown or written here.
 """
 
+from collections.abc import Sequence
+from itertools import chain
+
 import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
@@ -32,6 +35,8 @@ SAMPLES = (
     ("#E69F00", "v"),
     ("#56B4E9", "*"),
 )
+Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
+
 UNITS = {"stops": 1.0, "decades": float(np.log10(2))}  # of a stop
 SIDE = 1000  # pixels: a larger map is drawn by means of k x k pixels
 
@@ -39,22 +44,34 @@ SIDE = 1000  # pixels: a larger map is drawn by means of k x k pixels
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
     """Return the Axes of a new figure (inches), always in the same place: played steps do not jump."""
     if spare := again.take((width, height)):
-        return spare
+        return spare[0]
     figure = Figure(figsize=(width, height), dpi=100)
     left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
     place = (left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height)
     ax = figure.add_axes(place)
     ax.grid(color="#D9D9D9", linewidth=0.6)
     ax.set_axisbelow(True)
-    return again.handed_out((width, height), ax)
+    return again.handed_out((width, height), ax)[0]
 
 
-def picture_axes(width: float, height: float, place: tuple[float, float, float, float]) -> Axes:
+def picture_axes(width: float, height: float, place: Place) -> Axes:
     """Return bare Axes for a picture, in a figure of this size (inches) at a place in parts of it."""
     if spare := again.take((width, height, *place)):
-        return spare
+        return spare[0]
     ax = bare(Figure(figsize=(width, height), dpi=100).add_axes(place))
-    return again.handed_out((width, height, *place), ax)
+    return again.handed_out((width, height, *place), ax)[0]
+
+
+def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place) -> list[Axes]:
+    """Return bare Axes for each of some maps, and those of the scale that they share, without an axis up."""
+    size = (width, height, *chain(*places, bar))
+    if spare := again.take(size):
+        return spare
+    figure = Figure(figsize=(width, height), dpi=100)
+    maps, scale = [bare(figure.add_axes(place)) for place in places], figure.add_axes(bar)
+    scale.set_axisbelow(True)
+    scale.yaxis.set_visible(False)
+    return again.handed_out(size, *maps, scale)
 
 
 def bare(ax: Axes) -> Axes:

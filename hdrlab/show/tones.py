@@ -10,7 +10,7 @@ zero, violet below, and white at zero.
 """
 
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, cast
 
 import matplotlib
 import numpy as np
@@ -24,7 +24,8 @@ from hdrlab.core.arrays import describe
 from hdrlab.core.colour import encode_srgb
 from hdrlab.show.curves import LINES
 from hdrlab.show.figures import MISSING, fit
-from hdrlab.show.plots import axes, bare
+from hdrlab.show.nearest import show
+from hdrlab.show.plots import axes, scaled_axes
 
 Float = NDArray[np.float64]
 
@@ -60,25 +61,20 @@ def maps(
     """
     arrays = _arrays(each)
     norm, colours = _scale(arrays, span, signed, len(names))
-    figure, places = _row(arrays, titled=any(each))
-    for (name, place), v in zip(zip(each, places, strict=True), arrays, strict=True):
-        ax = figure.add_axes(place)
-        ax.imshow(v, cmap=colours, norm=norm, interpolation="nearest")
+    *shown, bar = _row(arrays, titled=any(each))
+    for ax, name, v in zip(shown, each, arrays, strict=True):
+        show(ax, v, colours=colours, norm=norm)
         ax.set_title(name, fontsize=11, pad=4)
-        bare(ax)
-    height = figure.get_size_inches()[1]
-    bar = figure.add_axes((0.08, 0.47 / height, 0.84, 0.14 / height))
     _draw_scale(bar, norm, colours, names)
     bar.set_xlabel(label)
-    return figure
+    return cast(Figure, bar.figure)
 
 
 def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object]) -> None:
     """Draw the colours of a scale, with its numbers or the names of its classes below."""
     low, high = (-0.5, len(names) - 0.5) if names else map(float, norm.inverse(np.array([0.0, 1.0])))
     each = np.arange(len(names)) if names else np.linspace(low, high, 256)
-    bar.imshow(each[None], cmap=colours, norm=norm, extent=(low, high, 0, 1), aspect="auto")
-    bar.yaxis.set_visible(False)
+    show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1), zorder=1)
     if names:
         bar.set_xticks(range(len(names)), [str(name) for name in names])
     else:
@@ -164,13 +160,13 @@ def _scale(
     return Normalize(low, high if high > low else low + 1), colours
 
 
-def _row(arrays: list[Float], *, titled: bool) -> tuple[Figure, list[tuple[float, float, float, float]]]:
-    """Return a figure and where in it the maps stand; one is 5.4 inches wide, several have less each."""
+def _row(arrays: list[Float], *, titled: bool) -> list[Axes]:
+    """Return Axes for maps, and for their scale; one map is 5.4 inches wide, several have less each."""
     count, (h, w) = len(arrays), arrays[0].shape
     width = 5.4 if count == 1 else 3.4 * count
     across = (width - 0.1 * (count + 1)) / count
     tall, above = across * h / w, ABOVE if titled else 0.08
     height = above + tall + BELOW
-    figure = Figure(figsize=(width, height), dpi=100)
     lefts = (0.1 + k * (across + 0.1) for k in range(count))
-    return figure, [(left / width, BELOW / height, across / width, tall / height) for left in lefts]
+    places = [(left / width, BELOW / height, across / width, tall / height) for left in lefts]
+    return scaled_axes(width, height, places, (0.08, 0.47 / height, 0.84, 0.14 / height))
