@@ -18,6 +18,7 @@ from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 
 State = TypeVar("State")
+Picture = TypeVar("Picture")
 Size = tuple[float, ...]  # of the figure, inches, and where in it its Axes lie if not in the usual place
 
 
@@ -45,14 +46,14 @@ def reusing(kept: Kept) -> Iterator[None]:
 
 
 def drawn(
-    draw: Callable[[State], object], state: State, finish: Callable[[object], bytes], kept: Kept
-) -> bytes:
+    draw: Callable[[State], object], state: State, finish: Callable[[object], Picture], kept: Kept
+) -> Picture:
     """Return finish(draw(state)), drawn on spare Axes where there are some."""
     with reusing(kept):
-        picture = draw(state)
-        frame = finish(picture)
-    keep(kept, picture)
-    return frame
+        shown = draw(state)
+        picture = finish(shown)
+    keep(kept, shown)
+    return picture
 
 
 def take(size: Size) -> list[Axes]:

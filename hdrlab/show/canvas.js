@@ -37,10 +37,12 @@ function slider(parent, name, count) {
 function picture(parent) {
   const canvas = element(parent, "canvas", { role: "img", "aria-label": "" });
   let asked = 0;
-  function paint(bitmap, alt) {
-    if (canvas.width !== bitmap.width) canvas.width = bitmap.width;
-    if (canvas.height !== bitmap.height) canvas.height = bitmap.height;
-    canvas.getContext("2d").drawImage(bitmap, 0, 0);
+  function paint(pixels, alt) {
+    const [width, height] = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
+    if (canvas.width !== width) canvas.width = width;
+    if (canvas.height !== height) canvas.height = height;
+    if (pixels instanceof ImageData) canvas.getContext("2d").putImageData(pixels, 0, 0);
+    else canvas.getContext("2d").drawImage(pixels, 0, 0);
     canvas.setAttribute("aria-label", alt);
   }
   return {
@@ -50,6 +52,7 @@ function picture(parent) {
       const turn = ++asked;
       const decoded = bitmap instanceof Promise ? await bitmap : bitmap;
       if (turn === asked) paint(decoded, alt);
+      if (decoded.displayWidth) decoded.close(); // a VideoFrame is shown once, and holds memory until then
     },
   };
 }

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 Extent = tuple[float, float, float, float]  # left, right, bottom, top, in the units of the Axes
 
 
-class Nearest(AxesImage):
+class _Nearest(AxesImage):
     """A picture (H, W) or (H, W, 3) on linear Axes."""
 
     def make_image(
@@ -49,12 +49,12 @@ def show(
     norm: Any = None,
     extent: Extent | None = None,
     zorder: float = 0,
-) -> Nearest:
+) -> AxesImage:
     """Draw a picture, its first row on top; values (H, W) have `colours`, whose ends the `norm` says.
 
     The limits of the Axes follow the picture, whose pixels have a side of 1 unless an `extent` is given.
     """
-    image = Nearest(ax, cmap=colours, norm=norm, origin="upper", extent=extent, zorder=zorder)
+    image = _Nearest(ax, cmap=colours, norm=norm, origin="upper", extent=extent, zorder=zorder)
     image.set_data(picture)
     image.set_clip_path(ax.patch)
     image.set_extent(image.get_extent())

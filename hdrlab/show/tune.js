@@ -2,20 +2,35 @@
 
 const PATIENCE = 3000; // ms without an answer before a page that had a kernel counts as one without
 
+const JPEG = 0xffd8; // how one begins
+
 const same = (a, b) => a.length === b.length && a.every((value, i) => value === b[i]);
+
+// Runs of one colour, as `web.runs` wrote them: painted at once, where a JPEG would have to wait for its decoder.
+function unroll(bytes) {
+  const words = new Uint32Array(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+  const image = new ImageData(words[0], words[1]);
+  const pixels = new Uint32Array(image.data.buffer);
+  for (let [k, at] = [2, 0]; k < words.length; k++) {
+    const end = at + (words[k] >>> 24), colour = words[k] | 0xff000000;
+    while (at < end) pixels[at++] = colour;
+  }
+  return image;
+}
 
 // A Blob goes through another process, which takes longer than to decode. Pages that are not secure have no other way.
 async function decodeJpeg(bytes) {
   if (!globalThis.ImageDecoder) return decode(bytes, "image/jpeg");
   const decoder = new ImageDecoder({ data: bytes, type: "image/jpeg" });
   try {
-    const { image } = await decoder.decode();
-    const bitmap = await createImageBitmap(image);
-    image.close();
-    return bitmap;
+    return (await decoder.decode()).image;
   } finally {
     decoder.close();
   }
+}
+
+function opened(bytes) {
+  return bytes.getUint16(0) === JPEG ? decodeJpeg(bytes) : unroll(bytes);
 }
 
 function render({ model, el }) {
@@ -47,7 +62,7 @@ function render({ model, el }) {
   }
 
   function showFrame() {
-    view.show(decodeJpeg(model.get("frame")), `${model.get("alt")}, ${texts(model.get("shown"))}`);
+    view.show(opened(model.get("frame")), `${model.get("alt")}, ${texts(model.get("shown"))}`);
     note.textContent = model.get("problem");
   }
 

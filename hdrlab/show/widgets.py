@@ -21,6 +21,7 @@ import traitlets
 from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
+from hdrlab.io.web import Image
 from hdrlab.show import again, positions
 from hdrlab.show.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.lens import Brush, brush
@@ -113,16 +114,16 @@ class Tuner(anywidget.AnyWidget):
         sync=True, echo_update=False
     )  # the browser moves this, and knows
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
-    frame = traitlets.Bytes().tag(sync=True)  # JPEG
+    frame = traitlets.Bytes().tag(sync=True)  # as `web.quick` makes it
     alt = traitlets.Unicode().tag(sync=True)
     problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
     answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
     stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
-    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)
+    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)  # JPEG
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
     area = traitlets.List(traitlets.Float()).tag(sync=True)  # left, top, width, height of what is pressed
 
-    def __init__(self, picture: Callable[[list[int]], bytes], grids: positions.Grids, **traits: Any):
+    def __init__(self, picture: Callable[[list[int]], Image], grids: positions.Grids, **traits: Any):
         self._picture, self._grids = picture, grids
         texts = [[short(value) for value in grid] for grid in grids.values()]
         super().__init__(names=list(grids), values=texts, **traits)
@@ -138,7 +139,7 @@ class Tuner(anywidget.AnyWidget):
         at, frame, problem = list(self.at), self.frame, ""
         with undisturbed():
             try:
-                frame = self._picture(at)
+                frame = web.quick(self._picture(at))
             except Exception as error:  # it may be a student's function: its words belong beside the slider
                 problem = f"{type(error).__name__}: {error}"
             with self.hold_sync():
@@ -196,18 +197,19 @@ def tune(
 
     kept, area = again.Kept(), [0.0, 0.0, 1.0, 1.0]
 
-    def finish(drawn: object) -> bytes:
-        frame = web.jpeg(render(drawn))
+    def finish(drawn: object) -> Image:
+        image = render(drawn)
         area[:] = pictured(drawn)
-        return frame
+        return image
 
-    def picture(at: list[int]) -> bytes:
+    def picture(at: list[int]) -> Image:
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
             found = f(**positions.values(grids, at))
         return again.drawn(draw, found, finish, kept)
 
     at = positions.start(f, grids)
     few = positions.few(grids, at, stored)
-    frames = [picture(position) for position in few]
-    told = {"stored_at": few, "stored": frames, "point": list(point or ()), "area": area}
-    return Tuner(picture, grids, at=at, shown=at, frame=frames[0], alt=alt, **told)
+    images = [picture(position) for position in few]
+    kernelless = {"stored_at": few, "stored": [web.jpeg(image) for image in images]}
+    told = {"point": list(point or ()), "area": area, "frame": web.quick(images[0])}
+    return Tuner(picture, grids, at=at, shown=at, alt=alt, **kernelless, **told)

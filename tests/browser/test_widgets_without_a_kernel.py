@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from laboratory import open_widget
 
+from hdrlab.io import web
 from hdrlab.show import widgets
 
 
@@ -122,6 +123,24 @@ def test_an_answer_replaces_the_stored_picture(tuner):
     tuner.keyboard.press("ArrowLeft")
     assert tuner.evaluate("window.model.saved") == before + 1
     assert tuner.get_by_role("status").inner_text() == ""  # a kernel that has answered is waited for
+
+
+def test_an_answer_of_runs_is_painted_to_the_bit(tuner):
+    picture = np.random.default_rng(1).integers(0, 256, (40, 70, 3), dtype=np.uint8).repeat(9, axis=1)
+    tuner.evaluate(
+        """(runs) => {
+            const model = window.model, larger = new Uint8Array(runs.length + 11);
+            larger.set(runs, 7);
+            model.set("frame", new DataView(larger.buffer, 7, runs.length));
+            model.set("answers", model.get("answers") + 1);
+        }""",
+        list(web.runs(picture)),
+    )
+    shown = tuner.evaluate("""() => {
+        const canvas = document.querySelector("canvas");
+        return Array.from(canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height).data);
+    }""")
+    assert np.array_equal(np.reshape(shown, (40, 630, 4))[..., :3], picture)
 
 
 def test_a_press_on_the_picture_moves_both_sliders_of_its_place(page):

@@ -20,7 +20,7 @@ from hdrlab.io.files import replacing
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
 NOT_OWN = ("layout", "tabbable", "tooltip")  # traits of every widget
-PICTURES = ("frame", "frames", "picture", "pictures")  # where our widgets keep what they show
+PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
 EMBEDDED = re.compile(r'src="data:image/[a-z+]+;base64,([^"]+)"')
 
 
