@@ -27,6 +27,7 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import Array, as_mask, as_stack, as_times, levels
 from hdrlab.core.steps import last
 from hdrlab.radiance import agreement, deviation
+from hdrlab.radiance.deviation import Deviation
 from hdrlab.radiance.frames import Photographs, photographs
 from hdrlab.radiance.merge import Merged, merge_seen
 from hdrlab.radiance.regions import Box, Labels, Mask, blended, dilated, grown, labelled, padded, seam, seeds
@@ -70,12 +71,16 @@ class Ghosts(NamedTuple):
 def detect(
     taken: Photographs, w: ArrayLike, *, tau: float = TAU, edge: float = EDGE, margin: int
 ) -> tuple[Float, Mask]:
-    """Return the score (H, W) and the mask (H, W) of what moved; the knobs are those of `remove`.
+    """Return the score (H, W) and the mask (H, W) of what moved; the knobs are those of `remove`."""
+    return thresholded(deviation.deviation(taken, w), tau=tau, edge=edge, margin=margin)
+
+
+def thresholded(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[Float, Mask]:
+    """Return the score (H, W) of a deviation and the mask (H, W) of what moved.
 
     Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges counted for
     little, and then by the margin.
     """
-    found = deviation.deviation(taken, w)
     score = deviation.score(found, tau=tau, edge=edge)
     seed = seeds(score)
     if not seed.any():
