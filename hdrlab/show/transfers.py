@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.show.curves import LINES
-from hdrlab.show.plots import SAMPLES, axes
+from hdrlab.show.plots import SAMPLES, axes, fixed
 
 
 def comparagram(
@@ -105,9 +105,20 @@ def ladders(found: Mapping[str, tuple[ArrayLike, float]], *, ax: Axes | None = N
 
 
 def equations(
-    x: ArrayLike, y: ArrayLike, used: ArrayLike, k: float, *, against: float = 0.0, ax: Axes | None = None
+    x: ArrayLike,
+    y: ArrayLike,
+    used: ArrayLike,
+    k: float,
+    *,
+    against: float = 0.0,
+    span: tuple[float, float] | None = None,
+    limits: tuple[float, float] | None = None,
+    ax: Axes | None = None,
 ) -> Axes:
-    """Draw equations y = k x, less `against` times x, those thrown out pale, and the line of k."""
+    """Draw equations y = k x, less `against` times x, those thrown out pale, and the line of k.
+
+    `span` and `limits` fix the axes, so that a slider moves the equations and nothing else.
+    """
     x, y, used, ax = np.asarray(x), np.asarray(y), np.asarray(used, bool), ax or axes()
     off = y - against * x
     ax.plot(
@@ -117,6 +128,7 @@ def equations(
     ends = np.array([0, x.max(initial=1)])
     ax.plot(ends, (k - against) * ends, color="#D55E00", linewidth=1.8, label=f"k = {k:.4f}")
     less = f" less {against:g} times that of A" if against else ""
-    ax.set(xlabel="level in the darker frame A", ylabel=f"level in B{less}", xlim=(0, ends[1] * 1.02))
+    ax.set(xlabel="level in the darker frame A", ylabel=f"level in B{less}")
+    fixed(ax, span or (0, ends[1] * 1.02), limits)
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
