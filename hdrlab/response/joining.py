@@ -21,6 +21,7 @@ times less.
 """
 
 from collections.abc import Iterator, Sequence
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -50,6 +51,14 @@ class State(NamedTuple):
 def slope(g: Float) -> Float:
     """Return v = g' on the grid, nowhere below FLAT of its mean."""
     return np.maximum(np.gradient(g, GRID), FLAT * (g[-1] - g[0]))
+
+
+@lru_cache(maxsize=8)
+def on_grid(count: int) -> Float:
+    """Return S_k on the grid, which every round looks up."""
+    S = steps(GRID, count)
+    S.flags.writeable = False
+    return S
 
 
 def equations(
@@ -97,7 +106,7 @@ def turn(
     widest = int(np.argmax([np.ptp(one.M) for one in blends]))
     systems = equations(blends, p, v, count, widest, offset)
     c, cost = increments(systems, np.sqrt(smoothness) * bends(v, GRID, count), offset)
-    g = steps(GRID, count) @ c
+    g = on_grid(count) @ c
     if not g[-1] > g[0]:
         raise ValueError(
             "expected brightness that rises with irradiance, but the blends fit a flat curve best"
