@@ -31,6 +31,7 @@ Mask = NDArray[np.bool_]
 
 F = 8.0  # f-number of the benches
 COARSE = 96  # pixels: meters do not look closer, and the picture is only looked at
+SAMPLES = 500  # of a calibration: enough for pictures as small as those of the bench
 SENSOR = Sensor()
 
 
@@ -115,7 +116,7 @@ def calibrated(
     taken = camera.shoot(L, times, offsets=offsets, full_well=full_well, read_noise=5, rng=rng)
     found = pipeline.aligned(taken, "mtb")
     wrong = int(np.any(found.offsets - found.offsets[count // 2] != offsets, axis=1).sum())
-    both = [debevec.recover(one.images, one.times) for one in (taken, found.bracket)]
+    both = [debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)]
     return Calibrated(taken, wrong, both[0], both[1], responses.true_g())
 
 
