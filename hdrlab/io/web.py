@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 Image = NDArray[np.uint8]
 
-BYTES = 2 / 3  # for each pixel: runs that take more come later than a JPEG, which must first be decoded
+BYTES = 2 / 3  # for each pixel, at most: runs of a plot take fewer, those of a photograph more than its JPEG
 
 
 def webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
