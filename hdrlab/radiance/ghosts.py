@@ -68,15 +68,8 @@ class Ghosts(NamedTuple):
     score: Float
 
 
-def detect(
-    taken: Photographs, w: ArrayLike, *, tau: float = TAU, edge: float = EDGE, margin: int
-) -> tuple[Float, Mask]:
-    """Return the score (H, W) and the mask (H, W) of what moved; the knobs are those of `remove`."""
-    return thresholded(deviation.deviation(taken, w), tau=tau, edge=edge, margin=margin)
-
-
-def thresholded(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[Float, Mask]:
-    """Return the score (H, W) of a deviation and the mask (H, W) of what moved.
+def detect(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[Float, Mask]:
+    """Return the score (H, W) and the mask (H, W) of what moved; the knobs are those of `remove`.
 
     Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges counted for
     little, and then by the margin.
@@ -225,7 +218,7 @@ def remove(
     knobs |= {"top": top}
     E, seen = merge_seen(stack, seconds, g, w, valid=mask, **knobs) if merged is None else merged
     taken = photographs(stack, seconds, g, E, top=top, valid=mask)
-    score, moved = detect(taken, w, tau=tau, edge=edge, margin=margin)
+    score, moved = detect(deviation.deviation(taken, w), tau=tau, edge=edge, margin=margin)
     plain = E.reshape(taken.images.shape[1:])
     labels, frames = last(led_steps(taken, plain, moved, margin, reference=reference))
     alpha = seam(labels, margin // 2)
