@@ -25,18 +25,21 @@ FIRST_PICTURE = """async () => {
     return (performance.now() - start) / 1000;
 }"""
 
-# The alt text names the position, and is set in the moment in which the pixels are there: to read those back
-# on each frame of the display would take longer than what is measured.
+# The alt text names the position, and is set in the moment in which the pixels are there. To look for it on
+# each frame of the display would keep the page drawing, and the kernel waiting for a processor.
 WATCH = """([el, lost]) => {
     const canvas = el.querySelector("canvas"), text = canvas.getAttribute("aria-label");
     window.latency = new Promise((resolve) => {
         addEventListener("keydown", (event) => {
-            const look = () => {
-                const passed = performance.now() - event.timeStamp;
-                if (canvas.getAttribute("aria-label") !== text || passed > lost) resolve(passed);
-                else requestAnimationFrame(look);
-            };
-            requestAnimationFrame(look);
+            const passed = () => performance.now() - event.timeStamp;
+            const timer = setTimeout(() => resolve(passed()), lost);
+            const observer = new MutationObserver(() => {
+                if (canvas.getAttribute("aria-label") === text) return;
+                observer.disconnect();
+                clearTimeout(timer);
+                requestAnimationFrame(() => resolve(passed()));
+            });
+            observer.observe(canvas, { attributeFilter: ["aria-label"] });
         }, { capture: true, once: true });
     });
 }"""
