@@ -3,7 +3,6 @@
 The strict tier, and what it keeps out, have tests of their own.
 """
 
-import contextlib
 import shutil
 import subprocess
 import sys
@@ -11,6 +10,7 @@ import time
 from pathlib import Path
 
 import numpy as np
+import processes
 import pytest
 
 from hdrlab.course import feedback, gradebook, grading, handouts, materials, plan, results
@@ -159,16 +159,6 @@ def test_results_grow_check_by_check(tmp_path):
     assert len({one.max_score for one in steps}) == 1 and steps[-1].score == 10
 
 
-def running(folder):
-    """Return the processes whose environment names this folder, as where a grading has its scratch."""
-    found = []
-    for process in Path("/proc").glob("[0-9]*"):
-        with contextlib.suppress(OSError):  # it may have ended meanwhile
-            if str(folder).encode() in (process / "environ").read_bytes():
-                found.append(process.name)
-    return found
-
-
 @pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="processes are looked for in /proc")
 def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
     """Neither a file nor a process: a function that never ends is at work at that moment."""
@@ -180,12 +170,12 @@ def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
     steps = grading.grade_steps(file, of("hw2", "hat", "irradiance"), PRACTICE._replace(timeout=60))
     next(steps)  # hat comes first, and its other checks take a moment: then there is an endless one
     time.sleep(2)
-    assert running(scratch) and list(scratch.iterdir())
+    assert processes.of(scratch) and list(scratch.iterdir())
     steps.close()
     end = time.monotonic() + 20
-    while running(scratch) and time.monotonic() < end:
+    while processes.of(scratch) and time.monotonic() < end:
         time.sleep(0.05)
-    assert running(scratch) == [] and list(scratch.iterdir()) == []
+    assert processes.of(scratch) == [] and list(scratch.iterdir()) == []
 
 
 def test_a_tier_that_cannot_be_had_is_an_error_and_no_other_takes_its_place(graded, monkeypatch):

@@ -16,6 +16,7 @@ from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 
+import processes
 import pytest
 import test_cluster
 from hats import GOOD, PLAN
@@ -78,18 +79,9 @@ def finished(home, out):
     return contents(out)
 
 
-def processes(file):
-    """Return what this file of /proc says of each process; one may end while it is asked, and is left out."""
-    told = {}
-    for entry in filter(str.isdigit, os.listdir("/proc")):
-        with suppress(OSError):
-            told[int(entry)] = Path(f"/proc/{entry}/{file}").read_bytes()
-    return told
-
-
 def family(pid):
     """Return the processes that have come from this one."""
-    parents = {one: int(told.rpartition(b")")[2].split()[1]) for one, told in processes("stat").items()}
+    parents = {one: int(said.rpartition(b")")[2].split()[1]) for one, said in processes.told("stat").items()}
     found = [pid]
     for one in found:
         found += [child for child, parent in parents.items() if parent == one]
@@ -124,11 +116,6 @@ def graded(home, out, rng, most, *more, others=list):
     return contents(out), kills
 
 
-def left(scratch):
-    """Return the processes that have this folder for their files."""
-    return [one for one, told in processes("environ").items() if str(scratch).encode() in told]
-
-
 @pytest.fixture(scope="module")
 def whole(folder):
     """Return what a run leaves that nobody has killed."""
@@ -149,9 +136,9 @@ def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(fo
         assert results == whole
         kills += more
     until = time.monotonic() + 20
-    while left(folder / "scratch") and time.monotonic() < until:
+    while processes.of(folder / "scratch") and time.monotonic() < until:
         time.sleep(0.05)
-    assert not left(folder / "scratch")
+    assert not processes.of(folder / "scratch")
 
 
 @PROC
@@ -167,7 +154,7 @@ def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole, 
 
 def workers():
     """Return the processes of a cluster that this one has started, and what they have started."""
-    said = processes("cmdline")
+    said = processes.told("cmdline")
     spawned = [child for child in family(os.getpid()) if b"spawn_main" in said.get(child, b"")]
     return [one for child in spawned for one in (child, *family(child))]
 
@@ -189,7 +176,7 @@ def killing():
 def _kill(words, below):
     until = time.monotonic() + 60
     while time.monotonic() < until:
-        said = processes("cmdline")
+        said = processes.told("cmdline")
         for one in family(os.getpid()):
             victims = family(one) if below else [one]
             if victims and all(word in said.get(one, b"") for word in words):

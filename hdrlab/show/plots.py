@@ -24,6 +24,8 @@ from hdrlab.core.arrays import Array, as_stack, describe, levels
 from hdrlab.core.bracket import Bracket
 from hdrlab.show import again, figures
 
+Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
+
 # Okabe and Ito's colours. Line styles and markers differ too, so the channels also part in gray.
 CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
 GRAY = (("", "#1A1A1A", "-"),)
@@ -35,8 +37,6 @@ SAMPLES = (
     ("#E69F00", "v"),
     ("#56B4E9", "*"),
 )
-Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
-
 UNITS = {"stops": 1.0, "decades": float(np.log10(2))}  # of a stop
 SIDE = 1000  # pixels: a larger map is drawn by means of k x k pixels
 
