@@ -15,13 +15,13 @@ The response by least squares          response.debevec.gsolve, response.debevec
 ... without exact times                response.mitsunaga.recover, response.marginal.calibrate
 ... from histograms, from a series     response.grossberg.recover, response.mann.recover
 ... in the space of measured curves    response.space.recover
-... without a bracket                  response.wilburn, response.motion, response.chart
+... without a bracket                  calibration.wilburn, calibration.motion_blur, calibration.chart
 ... of RAW: none to recover            response.linear.recover
 Which pixels to use                    core.sampling, response.selection
 The radiance map                       radiance.merge.merge, radiance.bounds, radiance.estimates
-Does the map explain its photographs?  radiance.consistency, radiance.contradictions, radiance.times
+Does the map explain its photographs?  diagnostics.consistency, diagnostics.contradictions
 Exposure ratios of a linear camera     radiance.ratios.ratio
-What moved, and what the lens did      radiance.ghosts.remove, radiance.flare.remove
+What moved, and what the lens did      radiance.deghosting.ghosts.remove, radiance.flare.remove
 ... photographed with the truth        capture.movers.shoot, capture.flare.flare
 PFM, Radiance RGBE, OpenEXR            io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
 One curve for all pixels               tonemap.curves, tonemap.ward, tonemap.brush
@@ -49,8 +49,10 @@ __version__ = "0.1.0"
 CHAPTERS = [
     "align",
     "beyond",
+    "calibration",
     "capture",
     "core",
+    "diagnostics",
     "enhance",
     "io",
     "pipeline",

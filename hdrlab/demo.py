@@ -15,7 +15,7 @@ from hdrlab.capture import camera, responses
 from hdrlab.core.errors import Truth
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import write_radiance
-from hdrlab.show.report import write_report
+from hdrlab.show.pages.report import write_report
 
 STEPS = 9
 OPERATOR = "reinhard"

@@ -23,10 +23,12 @@
 # %%
 import numpy as np
 
-from hdrlab.capture import camera, responses, scenes
+from hdrlab.capture import camera, responses
+from hdrlab.capture.room import scenes
 from hdrlab.core import sampling
 from hdrlab.course.notebook import check
-from hdrlab.show import pictures, plots
+from hdrlab.show import plots
+from hdrlab.show.widgets import pictures
 
 # %% [markdown]
 # ## The photographs

@@ -14,9 +14,11 @@
 # %%
 import numpy as np
 
-from hdrlab.capture import camera, responses, scenes
+from hdrlab.capture import camera, responses
+from hdrlab.capture.room import scenes
 from hdrlab.course.notebook import check
-from hdrlab.show import pictures, plots
+from hdrlab.show import plots
+from hdrlab.show.widgets import pictures
 
 # %% [markdown]
 # ## The photographs

@@ -20,10 +20,10 @@
 # %%
 import numpy as np
 
-from hdrlab.capture import scenes
+from hdrlab.capture.room import scenes
 from hdrlab.core import colour
 from hdrlab.course.notebook import check
-from hdrlab.show import pictures
+from hdrlab.show.widgets import pictures
 
 # %% [markdown]
 # ## The scene

@@ -20,11 +20,13 @@ from pathlib import Path
 import numpy as np
 
 from hdrlab import pipeline
-from hdrlab.capture import camera, scenes
+from hdrlab.capture import camera
+from hdrlab.capture.room import scenes
 from hdrlab.core import colour
 from hdrlab.course.notebook import check
 from hdrlab.io import photos
-from hdrlab.show import pictures, plots
+from hdrlab.show import plots
+from hdrlab.show.widgets import pictures
 
 # %% [markdown] about="tonemap"
 # ## 1 · The operator ({points})

@@ -9,10 +9,11 @@ import pytest
 import hdrlab
 
 HOME = Path(hdrlab.__file__).parent
-CHAPTERS = ("io", "capture", "align", "response", "radiance", "tonemap", "enhance", "beyond")
+CHAPTERS = ("io", "capture", "align", "response", "calibration", "radiance", "tonemap", "enhance", "beyond")
 BELOW = {"core": set()}  # which rooms each room may use, beside itself
 BELOW |= {chapter: {"core"} for chapter in CHAPTERS}
-BELOW["pipeline"] = {"core", *CHAPTERS}
+BELOW["fast"] = BELOW["diagnostics"] = {"core", *CHAPTERS}
+BELOW["pipeline"] = {"core", *CHAPTERS, "fast", "diagnostics"}
 BELOW["scenes"] = {"core", "io", "capture"}
 BELOW["show"] = BELOW["pipeline"] | {"pipeline", "scenes"}
 BELOW["course"] = BELOW["demo"] = BELOW["show"] | {"show"}
@@ -28,7 +29,6 @@ ONLY_IN = {  # package -> rooms
     "IPython": {"show", "course"},
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
     "jupyterlab": {"cli"},
-    **dict.fromkeys(["mitsuba", "drjit"], {"scenes"}),
     **dict.fromkeys(
         ["nbformat", "nbclient", "sphinx", "docutils", "ziamath", "latex2mathml"], {"course"}
     ),  # the site
@@ -94,7 +94,11 @@ def test_a_module_uses_the_layers_below_it_alone(path):
 def test_what_is_read_here_are_the_imports():
     """The reader of imports sees plain ones, those from a package, and those inside functions."""
     found = {target for _, _, target in imports(HOME / "pipeline/__init__.py")}
-    assert {("numpy",), ("hdrlab", "radiance", "ghosts"), ("hdrlab", "radiance", "merge")} <= found
+    assert {
+        ("numpy",),
+        ("hdrlab", "radiance", "deghosting", "ghosts"),
+        ("hdrlab", "radiance", "merge"),
+    } <= found
     assert len(FILES) > 30
 
 

@@ -2,7 +2,7 @@
 
 right       the library's functions, as a notebook, a Python file or an archive
 equivalent  right, and written differently: the files of tests/equivalent
-mistake     a file of tests/wrong in place of a function, all others right
+mistake     a file of hdrlab/course/checks/mistakes in place of a function, all others right
 half        the first tasks alone
 blank       the handout, an empty file, a notebook cut short, no notebook at all
 attack      hostile: a file of tests/attacks in place of a function

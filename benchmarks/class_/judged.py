@@ -6,7 +6,8 @@ from pathlib import Path
 
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
-from hdrlab.course import misconceptions, results, sheets
+from hdrlab.course import results, sheets
+from hdrlab.course.checks import misconceptions
 from hdrlab.course.results import Result
 
 LARGE = 50_000  # submissions

@@ -23,7 +23,7 @@ from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.radiance import ghosts
+from hdrlab.radiance.deghosting import ghosts
 from hdrlab.radiance.merge import Merged, merge_seen
 
 CHANGE = 0.05  # of the radiance: less than that is hardly a figure's, but the shadow's of one

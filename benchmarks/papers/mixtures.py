@@ -22,9 +22,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hdrlab.calibration import joining, motion_blur, schedules, wilburn
+from hdrlab.calibration.blends import HIGH, LOW, POINTS, Blend, Joined, difference, unit
 from hdrlab.capture.responses import RESPONSES, as_response
-from hdrlab.response import joining, mitsunaga, motion, schedules, wilburn
-from hdrlab.response.blends import HIGH, LOW, POINTS, Blend, Joined, difference, unit
+from hdrlab.response import mitsunaga
 
 Float = NDArray[np.float64]
 Curve = Callable[[Float], Float]
@@ -114,7 +115,11 @@ def blur(
     found = []
     for k, f in enumerate(cameras):
         image = blurred(f, np.random.default_rng([seed, k]), lines=lines)
-        found.append(motion.join(image) if join is None else join(motion.blends(image, motion.ramps(image))))
+        found.append(
+            motion_blur.join(image)
+            if join is None
+            else join(motion_blur.blends(image, motion_blur.ramps(image)))
+        )
     return errors(cameras, found)
 
 
@@ -168,7 +173,10 @@ def figure7(
     """
     f, rng = as_response(name).f, np.random.default_rng(seed)
     pairs = [
-        [motion.left_right(blurred(f, rng, acceleration=a, lines=lines)).rmse for a in (0.0, acceleration)]
+        [
+            motion_blur.left_right(blurred(f, rng, acceleration=a, lines=lines)).rmse
+            for a in (0.0, acceleration)
+        ]
         for _ in range(trials)
     ]
     linear, accelerated = np.array(pairs).T

@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, at_most, real, spread
+from hdrlab.calibration.chart import NEUTRAL
 from hdrlab.io.emor import read_curves, read_emor
 from hdrlab.response import space
-from hdrlab.response.chart import NEUTRAL
 
 Float = NDArray[np.float64]
 PLACES = NEUTRAL[:5]  # the chart's grays but black: as exposures, where white is at 0.9 of the range

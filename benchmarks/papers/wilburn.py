@@ -13,8 +13,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_least, at_most, listed, real, spread
 from benchmarks.papers import mixtures as setup
+from hdrlab.calibration import motion_blur
 from hdrlab.io.emor import read_curves
-from hdrlab.response import motion
 
 Float = NDArray[np.float64]
 WAYS = {"display": setup.display, "blur": setup.blur}
@@ -67,8 +67,8 @@ def figure7(_: Path, *, trials: int = TRIALS) -> Mapping[str, ArrayLike]:
     """Return how often left and right edges tell linear motion from accelerated."""
     linear, accelerated = np.transpose(along(trial, range(trials), "motions"))
     return {
-        ACCEPTED: np.sum(linear < motion.AGREE),
-        REJECTED: np.sum(accelerated > motion.AGREE),
+        ACCEPTED: np.sum(linear < motion_blur.AGREE),
+        REJECTED: np.sum(accelerated > motion_blur.AGREE),
         "largest RMSE of linear, smallest of accelerated": [linear.max(), accelerated.min()],
     }
 

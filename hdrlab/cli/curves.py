@@ -76,7 +76,7 @@ def calibrate(
     from hdrlab import pipeline
     from hdrlab.io import curves
     from hdrlab.io import photos as files
-    from hdrlab.show import calibration
+    from hdrlab.show.plots import calibration
 
     for path in out:
         curves.suffix_of(path)  # an unknown suffix is better known before the work than after it
@@ -114,8 +114,8 @@ def _assembled(state: "Assembly", response: Any) -> "Assembly":
 def _one(
     state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None, rounds: int, seed: int
 ) -> None:
-    from hdrlab.response import bootstrap, residuals
-    from hdrlab.show import calibration
+    from hdrlab.diagnostics import bootstrap, residuals
+    from hdrlab.show.plots import calibration
 
     images, times, names, valid, _ = state.bracket
     assembly = _assembled(state, name)
@@ -139,7 +139,7 @@ def _one(
 def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
     from hdrlab.core.errors import well_seen
     from hdrlab.io import curves
-    from hdrlab.show import calibration
+    from hdrlab.show.plots import calibration
 
     found = {}
     for name in common.progress(METHODS, "methods"):

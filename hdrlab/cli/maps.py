@@ -63,7 +63,8 @@ def compare(source: Path, out: Path, operators: str | None, size: int, way: str,
     The operators see the map at up to --size pixels along a side: time and quality are of that size. For
     --way see `hdrlab tonemap --help`.
     """
-    from hdrlab.show import contact, figures, sheet
+    from hdrlab.show.pages import contact, sheet
+    from hdrlab.show.plots import figures
 
     sheet.check_suffix(out)
     names = operators.replace(" ", "").split(",") if operators else catalogue.names("tonemap")

@@ -93,7 +93,7 @@ def assemble(
         if picture:
             files.write_picture(picture, rendered)
         if report:
-            from hdrlab.show.report import write_report
+            from hdrlab.show.pages.report import write_report
 
             write_report(
                 report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": tonemap}

@@ -12,7 +12,7 @@ import jinja2
 from hdrlab.course import results
 from hdrlab.course.results import Check, Drawing, Result
 from hdrlab.io import web
-from hdrlab.show.templates import templates
+from hdrlab.show.pages.templates import templates
 
 MARKS = {"holds": "✓", "fails": "✗", "no answer": "✗"}
 

@@ -20,7 +20,8 @@ import scipy
 
 import hdrlab
 from hdrlab.core.steps import last
-from hdrlab.course import handouts, materials, plan, running, submission
+from hdrlab.course import handouts, plan, submission
+from hdrlab.course.checks import SPECIFICATION, running
 from hdrlab.course.plan import Homework
 from hdrlab.course.results import Check, Drawing, Result
 from hdrlab.course.sandbox import tiers
@@ -98,12 +99,11 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
 
 def _files(homework: Homework, hidden: Path | None) -> list[Path]:
     """Return the files with the checks of a homework, in its order, the hidden ones after each task's own."""
-    specification = materials.folder("tests") / "spec"
-    folders = [specification, *([] if hidden is None else [hidden.resolve()])]
+    folders = [SPECIFICATION, *([] if hidden is None else [hidden.resolve()])]
     files = [folder / f"test_{task.id}.py" for task in homework.tasks for folder in folders]
     present = [file for file in files if file.is_file()]
     if not present:
-        raise ValueError(f"expected checks for {homework.name} in {specification}, got none")
+        raise ValueError(f"expected checks for {homework.name} in {SPECIFICATION}, got none")
     return present
 
 
@@ -114,7 +114,7 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
         "seeds": _seeds(homework, conditions),
         "timeout": conditions.timeout,
         "draw": conditions.draw,
-        "specification": str(materials.folder("tests") / "spec"),
+        "specification": str(SPECIFICATION),
         "out": str(folder / "lines"),
         "grader": os.getpid(),
     }
@@ -164,7 +164,7 @@ def _drawn(line: dict[str, Any]) -> Drawing:
 
     They are drawn here and not beside the checks: a notebook has matplotlib at hand, which takes its time.
     """
-    from hdrlab.show import differences
+    from hdrlab.show.plots import differences
 
     differs, task = line["differs"], Path(line["ended"].partition("::")[0]).stem.removeprefix("test_")
     both = [np.frombuffer(base64.b64decode(differs[name]), "<f8") for name in ("expected", "came")]

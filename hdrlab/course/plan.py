@@ -1,7 +1,8 @@
 """The course's plan: homeworks, tasks, points and dates, read from plan.toml, and what each student draws.
 
 An instructor changes plan.toml, or gives the path of another. A task is a function of hdrlab: the solution is
-that function, the handout its signature, and the checks are in tests/spec/test_<id>.py.
+that function, the handout its signature, and the checks are in
+course/checks/specification/test_<id>.py.
 """
 
 import hmac

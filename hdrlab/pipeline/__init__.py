@@ -13,14 +13,14 @@ from numpy.typing import NDArray
 from hdrlab.core import catalogue, weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
+from hdrlab.diagnostics import consistency
+from hdrlab.diagnostics import exposure_times as timing
+from hdrlab.diagnostics.contradictions import contradictions, doubt
 from hdrlab.pipeline.assembly import Assembly, Method, Table
 from hdrlab.pipeline.pictures import develop, own_saturation
 from hdrlab.pipeline.registration import aligned, moved
-from hdrlab.radiance import consistency
 from hdrlab.radiance import flare as glare
-from hdrlab.radiance import ghosts as moving
-from hdrlab.radiance import times as timing
-from hdrlab.radiance.contradictions import contradictions, doubt
+from hdrlab.radiance.deghosting import ghosts as moving
 from hdrlab.radiance.merge import METHODS, Merged, merge_seen
 
 __all__ = [
@@ -69,10 +69,10 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         How the frames are merged, see `radiance.merge`.
     times : {"stated", "estimate"}
         "estimate" corrects rough times by the pixels, where that makes the frames agree better: see
-        `radiance.times`.
+        `diagnostics.exposure_times`.
     ghosts : {"none", "regions", "reference"}
         What becomes of what moved: it stays half transparent; in each region its best exposure leads, or the
-        middle photograph in all of them: see `radiance.ghosts`.
+        middle photograph in all of them: see `radiance.deghosting.ghosts`.
     flare : {"none", "veil"}
         Whether light that the lens scattered is taken off, where the map shows it: see `radiance.flare`.
 

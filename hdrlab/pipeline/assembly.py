@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hdrlab.core.bracket import Bracket
-from hdrlab.radiance import consistency
+from hdrlab.diagnostics import consistency
 
 Method = str | Callable[..., Any]
 Table = NDArray[np.float64]
@@ -25,7 +25,7 @@ class Assembly(NamedTuple):
     g : (n,) or (n, 3), response, ln exposure of each level
     E : (h, w) or (h, w, 3) float32, radiance
     seen : (h, w) uint8, how each pixel is known: flags of `radiance.bounds.Seen`
-    medians : (P, C, 256), what each frame says of each level: see `radiance.consistency`
+    medians : (P, C, 256), what each frame says of each level: see `diagnostics.consistency`
     notes : sentences, what to know about this map
     doubts : sentences, reasons not to trust it
     moves : (P, 3, 3), where each photograph was moved, rotation, scale and fractions of pixels included

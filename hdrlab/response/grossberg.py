@@ -25,7 +25,7 @@ from hdrlab.core.sampling import to_256
 from hdrlab.core.transfer import histogram, mid_step
 from hdrlab.response import linear
 from hdrlab.response.debevec import rising
-from hdrlab.response.plausible import checked
+from hdrlab.response.plausibility import checked
 from hdrlab.response.polynomial import basis, curve
 
 Float = NDArray[np.float64]

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_stack, as_times
 from hdrlab.core.transfer import mid_step
 from hdrlab.response.grossberg import histograms
-from hdrlab.response.plausible import checked
+from hdrlab.response.plausibility import checked
 
 Float = NDArray[np.float64]
 LOW = 12.0  # of 256 levels: below, rounding and noise bend a logarithm

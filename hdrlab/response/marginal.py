@@ -40,7 +40,7 @@ from hdrlab.response.likelihood import (
     table,
 )
 from hdrlab.response.pairs import HIGHEST
-from hdrlab.response.plausible import checked
+from hdrlab.response.plausibility import checked
 from hdrlab.response.polynomial import GRID, curve, rising, slope
 
 Float = NDArray[np.float64]

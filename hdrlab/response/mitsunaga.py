@@ -32,7 +32,7 @@ from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
 from hdrlab.response.pairs import HIGHEST, Moments, average, both, held, moments
-from hdrlab.response.plausible import checked
+from hdrlab.response.plausibility import checked
 from hdrlab.response.polynomial import basis, curve, misfit
 
 Float = NDArray[np.float64]

@@ -29,7 +29,7 @@ from hdrlab.core.sampling import by_rank, to_256
 from hdrlab.core.steps import last
 from hdrlab.response.debevec import rising
 from hdrlab.response.joint import Table, table, turned
-from hdrlab.response.plausible import checked
+from hdrlab.response.plausibility import checked
 
 Float = NDArray[np.float64]
 ENOUGH = 2**16  # pixels of a frame: an even choice of about so many has the ranks of all

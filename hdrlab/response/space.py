@@ -21,7 +21,7 @@ from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
 from hdrlab.response import families
 from hdrlab.response.debevec import rising
-from hdrlab.response.plausible import checked
+from hdrlab.response.plausibility import checked
 
 Float = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ depth  (H, W) float32, metres from the camera along its axis
 mover  radiance (H, W, 3) of a visitor, cd/m^2, already multiplied by the mask
 mask   (H, W) float32, the share of a pixel that the visitor hides, 0 to 1
 
-They were rendered by `hdrlab.scenes.render` out of `hdrlab.scenes.models`, and are read from OpenEXR files.
+They were rendered by `scenes.render` out of `scenes.models`, and are read from OpenEXR files.
 """
 
 from pathlib import Path

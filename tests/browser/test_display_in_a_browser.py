@@ -1,7 +1,7 @@
 """The page on which a screen shows mixtures of two lights, played in a browser."""
 
-from hdrlab.response import schedules
-from hdrlab.show.display import write_display
+from hdrlab.calibration import schedules
+from hdrlab.show.pages.display import write_display
 
 
 def test_the_page_plays_and_counts_its_frames(page, tmp_path):

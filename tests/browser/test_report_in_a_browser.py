@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab import pipeline
 from hdrlab.core.bracket import bracket
-from hdrlab.show.report import write_report
+from hdrlab.show.pages.report import write_report
 
 
 @pytest.fixture(scope="module")

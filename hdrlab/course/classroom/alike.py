@@ -24,7 +24,7 @@ from hdrlab.course.classroom.similarity import Likeness, Pair, Printed
 from hdrlab.course.code import inline
 from hdrlab.course.plan import Homework
 from hdrlab.io.files import replacing
-from hdrlab.show.templates import templates
+from hdrlab.show.pages.templates import templates
 
 PAGE = "alike_page.html"
 MOST = 1_000  # works that are compared: half a million pairs, a gigabyte

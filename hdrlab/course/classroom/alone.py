@@ -16,7 +16,7 @@ import time
 from collections.abc import Callable
 from typing import Any
 
-from hdrlab.course.running import LIBRARY
+from hdrlab.course.checks.running import LIBRARY
 from hdrlab.course.warden import DIE_WITH_PARENT, prctl
 
 TICK = 0.2  # seconds between two looks at whether it is to be ended

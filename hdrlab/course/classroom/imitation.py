@@ -1,6 +1,7 @@
 """What students hand in, imitated: the handout filled in, rightly or with a well-known mistake.
 
-What is right is the library's own function. A mistake is a file of tests/wrong; where it calls the library,
+What is right is the library's own function. A mistake is a file of `checks/mistakes`; where it calls the
+library,
 which no submission can import, a copy of that function stands beside it, under a name of its own.
 """
 
@@ -11,6 +12,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from hdrlab.course import handouts, materials
+from hdrlab.course.checks import MISTAKES
 from hdrlab.course.code import inline, names, source
 from hdrlab.course.plan import Homework
 
@@ -32,7 +34,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     Parameters
     ----------
     homework : whose tasks
-    mistakes : files of tests/wrong without .py, at most one for each task; the other tasks are right
+    mistakes : files of `checks/mistakes` without .py, at most one for each task; the other tasks are right
 
     Examples
     --------
@@ -59,7 +61,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
 
 def mistake(name: str) -> Mistake:
     """Return a wrong file, read and not run."""
-    file = materials.folder("tests") / "wrong" / f"{name}.py"
+    file = MISTAKES / f"{name}.py"
     text = file.read_text(encoding="utf8")
     body = ast.parse(text).body[1:]
     house: dict[str, str] = {}

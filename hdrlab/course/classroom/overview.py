@@ -18,7 +18,7 @@ from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.results import Outcome, Result
-from hdrlab.show.templates import templates
+from hdrlab.show.pages.templates import templates
 
 PAGE = "class_page.html"
 BINS = 10  # of the scores, each a tenth of the points

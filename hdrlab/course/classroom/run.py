@@ -13,9 +13,11 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import gradebook, grading, materials, results, sheets
+from hdrlab.course import gradebook, grading, results, sheets
 from hdrlab.course.archives import unpack
 from hdrlab.course.archives.members import Refused
+from hdrlab.course.checks import SPECIFICATION
+from hdrlab.course.checks.subject import LOST
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.journal import Done, Piece
@@ -26,7 +28,6 @@ from hdrlab.course.plan import Homework, Late
 from hdrlab.course.results import Result
 from hdrlab.course.sandbox import doctor
 from hdrlab.course.sandbox.running import Unavailable
-from hdrlab.course.subject import LOST
 
 READ = (".ipynb", ".py")
 MOST = 1 << 26  # bytes of hidden checks, which travel with each submission
@@ -152,7 +153,7 @@ def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
 
 def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
-    folders = [materials.folder("tests") / "spec", *([conditions.hidden] if conditions.hidden else [])]
+    folders = [SPECIFICATION, *([conditions.hidden] if conditions.hidden else [])]
     checks = [folder / f"test_{task.id}.py" for folder in folders for task in homework.tasks]
     files = grading.specification([check for check in checks if check.is_file()])
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])

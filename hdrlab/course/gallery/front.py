@@ -14,7 +14,7 @@ from starlette.responses import HTMLResponse, JSONResponse, Response
 from hdrlab.course.gallery import bearers, store, tokens
 from hdrlab.course.gallery.guard import Rate, Rates, Refusal
 from hdrlab.course.gallery.writer import Writer
-from hdrlab.show.templates import templates
+from hdrlab.show.pages.templates import templates
 
 HERE = Path(__file__).parent
 KEPT_FILES, KEPT_CARDS = 400, 4000  # in memory: what a class looks at again and again

@@ -13,7 +13,7 @@ import numpy as np
 from hdrlab.io import photos, web
 from hdrlab.io.decode import look
 from hdrlab.io.files import replacing
-from hdrlab.show.figures import fit
+from hdrlab.show.plots.figures import fit
 
 SIZES = {"small": 720, "large": 2400}  # pixels along a side, at most
 MOST_BYTES, MOST_PIXELS = 80_000_000, 64_000_000

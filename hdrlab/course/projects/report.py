@@ -19,8 +19,10 @@ from hdrlab.io import curves, photos, radiance
 from hdrlab.io.decode import look
 from hdrlab.io.exposure import Exposure
 from hdrlab.io.files import replacing
-from hdrlab.show import figures, plots, sections
-from hdrlab.show.templates import templates
+from hdrlab.show import plots
+from hdrlab.show.pages import sections
+from hdrlab.show.pages.templates import templates
+from hdrlab.show.plots import figures
 
 AFTER = {"bracket": "description", "curves": "algorithm", "map": "results"}  # figure -> section
 ALONE = {"bracket": "The bracket", "curves": "The response", "map": "The radiance map"}

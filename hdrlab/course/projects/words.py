@@ -19,7 +19,7 @@ from markupsafe import Markup, escape
 
 from hdrlab.course.wording import plain
 from hdrlab.io import photos, web
-from hdrlab.show import figures
+from hdrlab.show.plots import figures
 
 ASKED = {  # what the assignment asks for -> what a heading about it says
     "description": r"descri|overview|introduc|about|goal",

@@ -10,9 +10,9 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
+from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import practice, tiers
 from hdrlab.course.sandbox.running import Unavailable
-from hdrlab.course.subject import NoAnswer, Subject
 
 TRIES = 3  # of a tier that does not start: somebody may have ended it
 BREAK_OUT = """

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 from hdrlab.course.site import live, reference
 from hdrlab.course.site.execute import Done, library_key
 from hdrlab.io import web
-from hdrlab.show.figures import fit
+from hdrlab.show.plots.figures import fit
 
 PAGES = Path(__file__).parent / "pages"
 FRONT = PAGES / "front.ipynb"  # the picture of the first page

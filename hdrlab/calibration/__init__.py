@@ -1,0 +1,1 @@
+"""The response without a bracket: from a chart, a display, or a moving edge."""

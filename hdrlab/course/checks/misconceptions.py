@@ -1,0 +1,114 @@
+"""Which well-known mistake an answer comes from: it agrees with a wrong file, and not with the library.
+
+The folder `mistakes` holds a file for each mistake: the id of its TASK, the MISCONCEPTION as a sentence to
+the student, and the wrong function. All of them are asked what the student was asked. Wrong files are
+ours, and run here.
+
+call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
+difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
+"""
+
+import runpy
+import warnings
+from collections.abc import Callable, Sequence
+from functools import cache
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from hdrlab.course import plan
+from hdrlab.course.checks import MISTAKES
+from hdrlab.course.checks.compare import plain
+
+Call = tuple[Sequence[Any], dict[str, Any], Any]
+ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
+NEARER = 0.1  # the wrong answer explains all but this share of the student's difference to the library
+MOST = 1e3  # a difference beyond all measure, as of another shape
+
+
+class Misconception(NamedTuple):
+    """A wrong file: its name, the task, the sentence for the student, and the wrong function."""
+
+    name: str
+    task: str
+    sentence: str
+    function: Callable[..., Any]
+
+
+@cache
+def known() -> tuple[Misconception, ...]:
+    """Return all wrong files there are."""
+    return tuple(_read(path) for path in sorted(MISTAKES.glob("*.py")))
+
+
+def _read(path: Path) -> Misconception:
+    names = runpy.run_path(str(path))
+    return Misconception(path.stem, names["TASK"], names["MISCONCEPTION"], names[names["TASK"]])
+
+
+def recognise(task: str, calls: Sequence[Call]) -> str | None:
+    """Return the sentence of the misconception that explains a student's answers, or None."""
+    found = closest(task, calls)
+    return found.sentence if found else None
+
+
+def closest(task: str, calls: Sequence[Call]) -> Misconception | None:
+    """Return the misconception whose answers are those of the student in every call, or None.
+
+    Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.
+    """
+    right = plan.function(plan.read().task(task))
+    far = [difference(came, asked(right, given, named)) for given, named, came in calls]
+    if max(far, default=0) <= ROUNDING or all(came is None for _, _, came in calls):
+        return None
+    scores = [(_distance(one, calls, far), one) for one in known() if one.task == task]
+    agreeing = [(score, one) for score, one in scores if score is not None]
+    return min(agreeing, key=lambda pair: pair[0])[1] if agreeing else None
+
+
+def _distance(one: Misconception, calls: Sequence[Call], far: Sequence[float]) -> float | None:
+    """Return how far the student's answers are from the wrong ones in all, None where a call disagrees."""
+    total = 0.0
+    for (given, named, came), right in zip(calls, far, strict=True):
+        near = difference(came, asked(one.function, given, named))
+        if near > max(ROUNDING, NEARER * right):
+            return None
+        total += near
+    return total
+
+
+def asked(function: Callable[..., Any], given: Sequence[Any], named: dict[str, Any]) -> Any:
+    """Return what a trusted function answers, as plain arrays; None where it raises."""
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
+        warnings.simplefilter("ignore")
+        try:
+            return plain(function(*given, **named))
+        except Exception:  # a wrong function may fail in any way, and then it has no answer
+            return None
+
+
+def difference(a: Any, b: Any) -> float:
+    """Return the root mean square of a - b over that of b, the largest over the parts of an answer.
+
+    Examples
+    --------
+    >>> difference(np.ones(4), np.ones(4)), difference((np.ones(4), 3.0), (np.ones(4), 2.0))
+    (0.0, 0.5)
+    """
+    if isinstance(b, tuple | list):
+        if not isinstance(a, tuple | list) or len(a) != len(b):
+            return MOST
+        return max((difference(one, other) for one, other in zip(a, b, strict=True)), default=0.0)
+    if a is None or b is None or isinstance(b, bytes | str):
+        return 0.0 if type(a) is type(b) and a == b else MOST
+    a, b = np.asarray(a), np.asarray(b)
+    if a.shape != b.shape or a.dtype.kind not in "biuf" or b.dtype.kind not in "biuf":
+        return MOST
+    a, b = a.astype(np.float64), b.astype(np.float64)
+    if np.any(np.isfinite(a) != np.isfinite(b)):
+        return MOST
+    both = np.isfinite(a)
+    scale = np.sqrt(np.mean(b[both] ** 2)) if both.any() else 0.0
+    apart = np.sqrt(np.mean((a - b)[both] ** 2)) if both.any() else 0.0
+    return float(min(apart / scale, MOST)) if scale > 0 else (0.0 if apart == 0 else MOST)

@@ -1,0 +1,189 @@
+"""The grader's half of pytest: it gives the specification its subject, and writes down what became of it.
+
+The specification's files say `subject.gsolve(...)`. In the tests of hdrlab that is the library; here it is a
+student's code in another process. What is asked for stands in a job, a JSON file; what comes of it is written
+line by line into another, so that nothing is lost if this process is ended.
+"""
+
+import base64
+import json
+import os
+import re
+import signal
+from contextlib import ExitStack
+from fractions import Fraction
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from hdrlab.core.arrays import describe
+from hdrlab.course import plan, warden
+from hdrlab.course.checks import compare, misconceptions
+from hdrlab.course.checks.subject import NoAnswer, Subject
+from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.running import Unavailable
+
+CALLS = 20  # of a task that are kept to recognise a mistake by
+LONGEST = 1500  # characters of a message
+SAID = 4000  # characters of what a function printed
+WHERE = re.compile(r"\n *\+  where")  # begins what pytest adds to a plain assert
+ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  # of an object: it is another in each run
+DRAWN = 3_000_000  # values of an image that is drawn, at most
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Take the name of the job's file."""
+    parser.addoption("--job", help="JSON: what is to be checked, and how")
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Read the job, and know the specification's markers."""
+    config.addinivalue_line("markers", "points(n): what the promise is worth among those of its task")
+    config.addinivalue_line("markers", "hints(first, second, third): from a nudge to nearly the answer")
+    config.pluginmanager.register(Checking(config.getoption("--job")), "hdrlab-checking")
+
+
+class Missing:
+    """The subject of a task that was not handed in."""
+
+    said = ""
+
+    def __getattr__(self, name: str) -> Any:
+        raise NoAnswer(f"{name} is not in what was handed in", "missing")
+
+
+class Checking:
+    """One run of the checks: the job, the subject, and what is written down."""
+
+    def __init__(self, job: str) -> None:
+        self.job = json.loads(Path(job).read_text(encoding="utf8"))
+        self.open = ExitStack()
+        self.calls: dict[str, list[tuple[Any, ...]]] = {}
+        self.failed: set[str] = set()
+
+    def pytest_sessionstart(self) -> None:
+        """Start the sandbox first: it gets ready while the checks are collected."""
+        warden.prctl(warden.DIE_WITH_PARENT, signal.SIGKILL)  # if the grader is killed, this is to end, too
+        if os.getppid() != self.job["grader"]:
+            pytest.exit("the grader has ended")
+        sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])
+        self.submission = self.open.enter_context(Subject(sources, {}, sandbox, self.job["timeout"]))
+
+    @pytest.fixture
+    def subject(self, request: pytest.FixtureRequest) -> Subject | Missing:
+        """Return the student's functions, afresh: nothing that one check left behind serves the next."""
+        if _task(request.node) not in self.job["sources"]:
+            return Missing()
+        self.submission.fresh()
+        return self.submission
+
+    @pytest.fixture
+    def rng(self, request: pytest.FixtureRequest) -> np.random.Generator:
+        """What this student's inputs to this task are drawn from."""
+        return plan.generator(int(self.job["seeds"].get(_task(request.node), 0)))
+
+    def pytest_collection_finish(self, session: pytest.Session) -> None:
+        """Write down every check before the first is run."""
+        for item in session.items:
+            marks = [item.get_closest_marker(name) for name in ("points", "hints")]
+            points, hints = (() if mark is None else mark.args for mark in marks)
+            self._write(
+                check=_id(item),
+                task=_task(item),
+                name=item.originalname if isinstance(item, pytest.Function) else item.name,
+                promise=_promise(item),
+                points=str(Fraction(str(points[0] if points else 1))),
+                hints=[str(hint) for hint in hints],
+                hidden=self._is_hidden(item),
+            )
+
+    @pytest.hookimpl(wrapper=True)
+    def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
+        """Write down how a check ended."""
+        report = yield
+        if call.when == "setup" and call.excinfo is None:
+            return report
+        if call.when != "teardown" or call.excinfo is not None:
+            raised = None if call.excinfo is None else call.excinfo.value
+            self._ended(item, raised)
+        return report
+
+    def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
+        subject = getattr(item, "funcargs", {}).get("subject", Missing())
+        said = ADDRESS.sub("", subject.said)[:SAID]
+        if not self._is_hidden(item) and isinstance(subject, Subject):
+            kept = self.calls.setdefault(_task(item), [])
+            kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
+        if isinstance(raised, Unavailable):  # nothing can be said of the submission
+            self._write(unavailable=str(raised))
+            return
+        if raised is None:
+            self._write(ended=_id(item), outcome="holds", said=said)
+            return
+        if not self._is_hidden(item):
+            self.failed.add(_task(item))
+        outcome = "no answer" if isinstance(raised, NoAnswer) else "fails"
+        differs = _differs(raised) if self.job["draw"] else None
+        self._write(ended=_id(item), outcome=outcome, message=_message(raised), differs=differs, said=said)
+
+    def pytest_sessionfinish(self) -> None:
+        """Write down which well-known mistakes the answers show."""
+        for task in sorted(self.failed):
+            sentence = misconceptions.recognise(task, self.calls.get(task, []))
+            if sentence:
+                self._write(recognised=task, sentence=sentence)
+
+    def pytest_unconfigure(self) -> None:
+        """Close the sandbox."""
+        self.open.close()
+
+    def _is_hidden(self, item: pytest.Item) -> bool:
+        return item.path.parent != Path(self.job["specification"])
+
+    def _write(self, **line: Any) -> None:
+        with open(self.job["out"], "a", encoding="utf8") as out:
+            out.write(json.dumps(line) + "\n")
+
+
+def _id(item: pytest.Item) -> str:
+    """Return what tells a check from all others; pytest's own id may be the same for files of two folders."""
+    return f"{item.path}::{item.name}"
+
+
+def _task(item: pytest.Item) -> str:
+    return item.path.stem.removeprefix("test_")
+
+
+def _promise(item: pytest.Item) -> str:
+    """Return the promise in words: the first line of the test's docstring, or else its name."""
+    doc = getattr(getattr(item, "function", None), "__doc__", None)
+    name = item.originalname if isinstance(item, pytest.Function) else item.name
+    said = doc.strip().splitlines()[0] if doc else name.removeprefix("test_").replace("_", " ")
+    return said[:1].upper() + said[1:]
+
+
+def _message(raised: BaseException) -> str:
+    """Return why a check does not hold, in words."""
+    said = ADDRESS.sub("", WHERE.split(str(raised))[0]).strip()
+    if isinstance(raised, compare.Different) and raised.came is not None and np.ndim(raised.came):
+        return f"{said[:LONGEST]}\nYours: {describe(raised.came)}"
+    if isinstance(raised, compare.Different | NoAnswer):
+        return said[:LONGEST]
+    if isinstance(raised, AssertionError):
+        return (said or "The promise does not hold")[:LONGEST]
+    return f"The answer could not be compared: {type(raised).__name__}: {said}"[:LONGEST]
+
+
+def _differs(raised: BaseException) -> dict[str, Any] | None:
+    """Return the two arrays of a difference that can be drawn, as text."""
+    if not isinstance(raised, compare.Different) or raised.kind == "values":
+        return None
+    if raised.expected is None or raised.came is None or raised.expected.size > DRAWN:
+        return None
+    both = [np.asarray(one, "<f8") for one in (raised.expected, raised.came)]
+    if both[0].shape != both[1].shape:  # which the message says
+        return None
+    texts = [base64.b64encode(one.tobytes()).decode() for one in both]
+    return {"kind": raised.kind, "shape": both[0].shape, "expected": texts[0], "came": texts[1]}

@@ -1,0 +1,120 @@
+"""Ward's alignment: align(images, bits=6) -> offsets (P, 2), 0 for the image of middling brightness."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.course.checks.compare import finite, same
+
+MARGIN, H, W = 48, 160, 208
+
+
+def scene(rng, *, fine=0.05):
+    """Return a scene (H + 2 MARGIN, W + 2 MARGIN) of median 1: soft blobs, hard edges, fine texture."""
+    shape = (H + 2 * MARGIN, W + 2 * MARGIN)
+    soft = sum(s * gaussian_filter(rng.standard_normal(shape), s) for s in (3, 8, 20))
+    hard = np.zeros(shape)
+    for _ in range(40):
+        y, x, size = rng.integers(0, shape[0]), rng.integers(0, shape[1]), rng.integers(6, 40)
+        hard[y : y + size, x : x + size] += rng.normal()
+    lE = 0.8 * soft + 0.5 * hard + fine * rng.standard_normal(shape)
+    return np.exp(lE - np.median(lE))
+
+
+def photographs(rng, E, offsets, times, noise=0.004):
+    """Return the 8-bit photographs (P, H, W) that `offsets` lay on each other."""
+    taken = []
+    for (dy, dx), t in zip(offsets, times, strict=True):
+        X = 0.2 * t * E[MARGIN + dy : MARGIN + dy + H, MARGIN + dx : MARGIN + dx + W]
+        X = X + noise * np.sqrt(X + 0.01) * rng.standard_normal(X.shape)
+        taken.append((np.clip(X, 0, 1) ** (1 / 2.2) * 255 + 0.5).astype(np.uint8))
+    return np.stack(taken)
+
+
+def drawn(rng, least, most):
+    """Return an offset (dy, dx), each as far as that in either direction."""
+    return tuple(
+        int(s * n) for s, n in zip(rng.choice([-1, 1], 2), rng.integers(least, most + 1, 2), strict=True)
+    )
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "What is there to be moved?",
+    "The offsets are an array (P, 2), a row for each image.",
+    "The same image twice: zeros.",
+)
+def test_identical_photographs_stay_where_they_are(subject, rng):
+    images = photographs(rng, scene(rng), [(0, 0)], [1])
+    same(subject.align(np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
+
+
+@pytest.mark.points(6)
+@pytest.mark.hints(
+    "Look at the sign first: the offset says where the image must move, not where it has moved to.",
+    "At every level the best of nine is found, and twice that is where the next level begins.",
+    "XOR of the bitmaps, AND with both exclusion bitmaps, and count; the least count wins.",
+)
+def test_a_known_offset_is_found_two_stops_apart(subject, rng):
+    for times in ((1, 4), (4, 1)):
+        dy, dx = drawn(rng, 5, 20)
+        images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
+        came = finite(subject.align(images), (2, 2), what="the offsets")
+        same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Which candidate wins where all nine are equally good?",
+    "A scan that begins in the corner, and takes the first of equals, walks off diagonally, a pixel a level.",
+    "Begin with the centre, and move only for a count that is less.",
+)
+def test_in_a_tie_nothing_moves(subject, rng):
+    flat = np.full((2, 96, 128), int(rng.integers(60, 200)), np.uint8)
+    same(subject.align(flat), np.zeros((2, 2)), 0, what="the offsets of two even walls")
+    dx, levels = int(rng.choice([-6, 6])), gaussian_filter(rng.standard_normal(240), 2)
+    bars = (128 + 120 * levels / np.abs(levels).max()).astype(np.uint8)
+    images = np.stack([np.tile(bars[30 + d : 190 + d], (120, 1)) for d in (0, dx)])
+    came = finite(subject.align(images), (2, 2), what="the offsets")
+    same((came[1] - came[0])[0], 0, 0, what="dy of upright bars, which say nothing of it")
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "At which level is the picture compared with its median?",
+    "A bitmap made small is not the bitmap of the small picture: fine texture becomes noise.",
+    "Shrink the gray picture, and make threshold and bitmaps anew at every level.",
+)
+def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
+    dy, dx = drawn(rng, 17, 23)
+    images = photographs(rng, scene(rng, fine=1.6), [(0, 0), (dy, dx)], (1, 1.5))
+    came = finite(subject.align(images), (2, 2), what="the offsets")
+    same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "How far can an offset of n levels reach? 1 + 2 + 4 + ...",
+    "Each level doubles what the level above found, and adds at most 1.",
+    "Check that the coarsest level is used too, and that you double before you look around.",
+)
+def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
+    E, (dy, dx) = scene(rng), (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
+    came = finite(subject.align(photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4), (2, 2))
+    same(came[0] - came[1], [dy, dx], 0, what="the offset at 4 bits")
+    came = finite(subject.align(photographs(rng, E, [(1, -1), (0, 0)], (1, 2)), bits=1), (2, 2))
+    same(came[0] - came[1], [1, -1], 0, what="the offset at 1 bit")
+
+
+@pytest.mark.points(6)
+@pytest.mark.hints(
+    "Neighbours in brightness have bitmaps that are alike; the darkest and the brightest have not.",
+    "The offsets of pairs are summed along the chain, away from the image in the middle.",
+    "Sort by brightness to make the pairs, and give the offsets back in the order that the images came in.",
+)
+def test_a_bracket_is_aligned_along_its_neighbours_to_the_one_in_the_middle(subject, rng):
+    true = np.cumsum(rng.integers(-7, 8, (5, 2)), axis=0)
+    true -= true[2]
+    images = photographs(rng, scene(rng), true, 2.0 ** np.arange(-2, 3))
+    order = np.insert(rng.permutation([0, 1, 3, 4]), rng.integers(1, 5), 2)  # the middle is not first
+    same(subject.align(images[order]), true[order], 1, what="the offsets")

@@ -1,0 +1,128 @@
+"""Fattal's attenuation: attenuation_steps(lL, alpha, beta) -> states k, lL_k, slope, phi, Phi."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.course.checks.compare import Different, finite, parts, same, states
+from hdrlab.tonemap import fattal
+
+INNER = (slice(24, -24), slice(24, -24))
+
+
+def drawn(rng, shape=(128, 144)):
+    """Return log luminance: soft light, a few steep edges, a little texture."""
+    soft = gaussian_filter(rng.standard_normal(shape), 12)
+    y, x = np.indices(shape)
+    lamp = np.hypot(y - rng.integers(40, 88), x - rng.integers(40, 104)) < rng.integers(14, 24)
+    return (2 * soft / soft.std() + 3.0 * lamp + 0.05 * rng.standard_normal(shape)).astype(np.float32)
+
+
+def asked(subject, lL, **knobs):
+    """Return the states, and ln Phi of the last one, that of the picture itself."""
+    came = [parts(one, 5, what="a state") for one in states(subject.attenuation_steps(lL, **knobs))]
+    Phi = finite(came[-1][4], lL.shape, what="Phi").astype(float)
+    if not (Phi > 0).all():
+        raise Different(f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi, kind="image")
+    return came, np.log(Phi)
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "Halve the picture as long as its shorter side stays at 32 or more.",
+    "The coarsest comes first, the picture itself last.",
+    "128 x 144 pixels have three levels: 32, 64 and 128.",
+)
+def test_there_is_a_state_for_each_level(subject, rng):
+    lL = drawn(rng)
+    came, _ = asked(subject, lL, alpha=0.1, beta=0.9)
+    rows = np.array([np.shape(one[3])[0] for one in came])
+    same(rows, [32, 64, 128], 0, what="rows of phi, state by state")
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "On a ramp every slope is the mean slope.",
+    "There phi = 1 / alpha^(1 - beta) ... or its inverse? Slopes above alpha times the mean are made less.",
+    "phi = (a / slope) (slope / a)^beta, a = alpha mean, and Phi multiplies the phi of all levels.",
+)
+def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
+    c = float(rng.uniform(0.01, 0.05))
+    lL = np.broadcast_to(np.arange(160, dtype=np.float32) * np.float32(c), (128, 160)).copy()
+    came, lPhi = asked(subject, lL, alpha=0.1, beta=0.9)
+    same(len(came), 3, 0, what="levels of 128 x 160 pixels, none of them below 32")
+    same(
+        lPhi[INNER],
+        np.full(lPhi.shape, 0.3 * np.log(0.1))[INNER],
+        0.04,
+        what="ln Phi of a ramp",
+        picture=True,
+    )
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "With beta = 1 nothing is to change.",
+    "phi = (slope / a)^(beta - 1).",
+    "Another alpha multiplies all Phi by one number, for a is alpha times each level's own mean.",
+)
+def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
+    lL = drawn(rng)
+    _, none = asked(subject, lL, alpha=0.1, beta=1.0)
+    same(none, np.zeros(lL.shape), 1e-3, what="ln Phi with beta = 1", picture=True)
+    one, other = (asked(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
+    difference = other - one
+    same(
+        difference,
+        np.full(lL.shape, 3 * 0.2 * np.log(3)),
+        0.05,
+        what="what alpha 0.3 instead of 0.1 adds to ln Phi",
+    )
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Which slope belongs to which phi? Look at each level's picture beside its phi.",
+    "Phi_k = Phi_(k+1), enlarged, times phi_k: each level by its own slopes.",
+    "The mean, too, is that of the level's own slopes.",
+)
+def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
+    lL = drawn(rng)
+    came, _ = asked(subject, lL, alpha=0.1, beta=0.8)
+    for one in came:
+        slope = finite(one[2], np.shape(one[1]), what="the slope").astype(float)
+        phi = finite(one[3], np.shape(one[1]), what="phi").astype(float)
+        steep = slope > 0.2 * slope.mean()
+        expected = np.where(steep, (np.maximum(slope, 1e-9) / (0.1 * slope.mean())) ** -0.2, np.nan)
+        same(
+            np.log(phi),
+            np.log(expected),
+            0.02,
+            what=f"ln phi of level {int(one[0])}",
+            picture=True,
+            where=steep,
+        )
+        level, true = fattal.slope(one[1].astype(np.float32), 0), slope
+        inner = (slice(4, -4), slice(4, -4))
+        ratio = (true * level).sum() / (level * level).sum()
+        same(
+            (true / level.mean())[inner],
+            (ratio * level / level.mean())[inner],
+            0.25,
+            what="the slope",
+            picture=True,
+        )
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "Compare with the picture: dark in Phi is where the light jumps, at every scale.",
+    "Start at the coarsest level, enlarge, and multiply by the phi of the next finer one.",
+    "Enlarge by linear interpolation: repeated pixels leave blocks.",
+)
+def test_phi_of_the_picture_gathers_all_levels(subject, rng):
+    lL = drawn(rng)
+    _, lPhi = asked(subject, lL, alpha=0.1, beta=0.85)
+    truth = np.log(list(fattal.attenuation_steps(lL, alpha=0.1, beta=0.85))[-1].Phi)
+    soft = gaussian_filter(lPhi - truth, 3)
+    same(soft[INNER], np.zeros(lL.shape)[INNER], 0.2, what="ln Phi less the true one", picture=True)

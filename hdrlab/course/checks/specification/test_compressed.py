@@ -1,0 +1,57 @@
+"""Durand's compression: compressed(base, low, high, contrast) -> m (base - high)."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks.compare import same
+
+
+def drawn(rng):
+    """Return a base, and the levels that bound it."""
+    low = float(rng.uniform(-2, 0))
+    high = low + float(rng.uniform(3, 5))
+    return rng.uniform(low, high, (20, 30)).astype(np.float32), low, high
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "The range of the base, high - low decades, is to become c = log10(contrast) decades.",
+    "m = c / (high - low), and all logarithms have the base 10.",
+    "A natural logarithm would make c larger by a factor of 2.3.",
+)
+def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
+    base, low, high = drawn(rng)
+    for contrast in (50.0, 10.0):
+        m = np.log10(contrast) / (high - low)
+        came = subject.compressed(base, low, high, contrast=contrast)
+        same(
+            came - np.mean(came),
+            m * (base - base.mean()),
+            1e-3,
+            what="the compressed base less its mean",
+            picture=True,
+        )
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "Where does the bright end of the base go?",
+    "White is 1, whose logarithm is 0.",
+    "Subtract high from the base before you multiply.",
+)
+def test_the_bright_end_becomes_white(subject, rng):
+    base, low, high = drawn(rng)
+    ends = np.array([[low, high]], np.float32)
+    same(subject.compressed(ends, low, high, contrast=50.0), [[-np.log10(50), 0]], 1e-3, what="low and high")
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "A scene of little contrast: what does your m do to it?",
+    "No scene is stretched.",
+    "m is at most 1.",
+)
+def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
+    base, low, high = drawn(rng)
+    flat, high = low + (base - low) / 10, low + (high - low) / 10
+    same(subject.compressed(flat, low, high, contrast=50.0), flat - high, 1e-3, what="the base", picture=True)

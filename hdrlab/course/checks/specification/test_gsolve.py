@@ -1,0 +1,125 @@
+"""Debevec and Malik's system: gsolve(Z, B, smoothness, w) -> g, lE. Any gauge and any solver will do."""
+
+import numpy as np
+import pytest
+
+from hdrlab.capture import responses
+from hdrlab.core import weights
+from hdrlab.course.checks.compare import Different, finite, parts, same
+from hdrlab.response import debevec
+
+HAT = weights.hat()
+
+
+def samples(rng, N=50, P=5, *, response="film", noise=1.0):
+    """Return Z (N, P) and B (P,) of a camera, frames one and a half stops apart, noise in levels."""
+    lE, B = rng.uniform(-3, 3, N), 1.5 * np.log(2) * (np.arange(P) - P // 2)
+    M = responses.RESPONSES[response].f(np.clip(0.2 * np.exp(lE[:, None] + B), 0, 1))
+    return np.clip(np.round(255 * M + noise * rng.standard_normal(M.shape)), 0, 255).astype(int), B
+
+
+def asked(subject, Z, B, smoothness, w):
+    """Return g and lE of a subject, moved to the gauge g[n // 2] = 0: a constant in both is free."""
+    g, lE = parts(subject.gsolve(Z, B, smoothness, w), 2, what="g and lE")
+    g, lE = finite(g, (len(w),), what="g"), finite(lE, (len(Z),), what="lE")
+    g, lE = g.astype(float), lE.astype(float)
+    return g - g[len(w) // 2], lE - g[len(w) // 2]
+
+
+def same_curve(came, expected, tolerance=0.02):
+    same(came, expected, tolerance, what="g", kind="curve")
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "Two things come back: g and lE.",
+    "g has an entry for each level, lE one for each sample.",
+    "Split the solution x at n: x[:n] and x[n:].",
+)
+def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
+    Z, B = samples(rng, N=40)
+    asked(subject, Z, B, 30.0, HAT)
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Every sample in every frame gives one row, w (g(Z) - lE) = w B.",
+    "Column Z[i, j] holds w, column n + i holds -w, and the right-hand side w B[j], B in natural logarithms.",
+    "Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.",
+)
+def test_the_curve_of_a_film_camera_comes_out(subject, rng):
+    Z, B = samples(rng, N=100, noise=0)
+    g, _ = asked(subject, Z, B, 10.0, HAT)
+    middle = np.abs(np.arange(256) - 128) < 90
+    same(g, responses.true_g("film"), 0.08, what="g", kind="curve", where=middle)
+
+
+@pytest.mark.points(6)
+@pytest.mark.hints(
+    "Weights multiply whole rows: the left-hand side and the right-hand side.",
+    "The smoothness row of level z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0: lambda, and w(z) too.",
+    "Count your rows: N P of data, one for the gauge, n - 2 of smoothness.",
+)
+def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
+    Z, B = samples(rng)
+    g, lE = asked(subject, Z, B, 30.0, HAT)
+    truth = debevec.gsolve(Z, B, 30.0, HAT)
+    same_curve(g, truth.g)
+    same(lE, truth.lE, 0.02, what="lE")
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "What happens to your curve when the knob is turned from 1 to 300?",
+    "The printed listing shows a digit where lambda belongs.",
+    "Multiply every smoothness row by `smoothness`, once: a larger one makes g straighter.",
+)
+def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subject, rng):
+    Z, B = samples(rng, N=40)
+    bends, misses = [], []
+    for smoothness in (1.0, 10.0, 100.0, 1000.0):
+        g, lE = asked(subject, Z, B, smoothness, HAT)
+        bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
+        misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
+    if not (np.all(np.diff(bends) < 0) and np.all(np.diff(misses) > 0) and bends[-1] < 1e-2 * bends[0]):
+        raise Different(f"expected bends that become less with lambda, got {[f'{b:.3g}' for b in bends]}")
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "Does any line of yours look at the order of the frames?",
+    "B[j] belongs to column j of Z, wherever that column stands.",
+    "Do not sort Z or B by themselves.",
+)
+def test_the_order_of_the_frames_does_not_matter(subject, rng):
+    Z, B = samples(rng, N=40)
+    order = rng.permutation(len(B))
+    g, _ = asked(subject, Z[:, order], B[order], 30.0, HAT)
+    same_curve(g, debevec.gsolve(Z, B, 30.0, HAT).g)
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "Twice the time in every frame is half the irradiance, and the same curve.",
+    "A constant added to B must come out of lE, and leave g alone.",
+    "The right-hand side is w B[j]: B as it is given, neither its logarithm nor its exponential.",
+)
+def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
+    Z, B = samples(rng, N=40)
+    g, lE = asked(subject, Z, B + np.log(1000.0), 30.0, HAT)
+    truth = debevec.gsolve(Z, B, 30.0, HAT)
+    same_curve(g, truth.g)
+    same(lE, truth.lE - np.log(1000.0), 0.03, what="lE")
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "Is there a 256 in your code? The weights say how many levels there are.",
+    "n = len(w); the gauge sits at level n // 2.",
+    "The unknowns are g (n,) and then lE (N,): n + N columns.",
+)
+def test_any_number_of_levels_will_do(subject, rng):
+    Z, B = samples(rng, N=30)
+    w = weights.hat(16)
+    g, _ = asked(subject, Z // 16, B, 3.0, w)
+    same_curve(g, debevec.gsolve(Z // 16, B, 3.0, w).g)

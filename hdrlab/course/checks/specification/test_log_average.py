@@ -1,0 +1,63 @@
+"""How bright a scene is on the whole: log_average(L) -> Lav."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks.compare import Different, finite, same
+
+
+def drawn(rng):
+    return np.exp(1.5 * rng.standard_normal((40, 50))).astype(np.float32)
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "One number for the whole picture.",
+    "Not one for each row.",
+    "np.mean without an axis.",
+)
+def test_a_scene_has_one_average(subject, rng):
+    finite(subject.log_average(drawn(rng) + np.float32(1)), (), what="Lav")
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "One lamp must not decide how bright the whole scene is.",
+    "The mean of the logarithms, not the logarithm of the mean.",
+    "exp(mean(log(delta + L))): the paper's 1 / N stands inside exp.",
+)
+def test_it_is_the_geometric_mean(subject, rng):
+    L = drawn(rng)
+    truth = np.exp(np.log(L, dtype=float).mean())
+    same(np.log(finite(subject.log_average(L), (), what="Lav")), np.log(truth), 1e-3, what="ln Lav")
+    L = np.where(np.arange(L.size).reshape(L.shape) == 154, np.float32(1e6), L)  # one lamp
+    truth = np.exp(np.log(L, dtype=float).mean())
+    same(
+        np.log(finite(subject.log_average(L), (), what="Lav")), np.log(truth), 1e-3, what="ln Lav with a lamp"
+    )
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "What is log 0?",
+    "A small delta is added, so that black has a logarithm.",
+    "log(delta + L), with the delta inside.",
+)
+def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
+    L = drawn(rng)
+    L[:4] = 0
+    came = float(finite(subject.log_average(L), (), what="Lav"))
+    if not 0 < came < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()):
+        raise Different(f"Lav: expected above 0, and less than without the black pixels, got {came:.4g}")
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "Ten times the light: which number should come?",
+    "The unit of L is the unit of Lav.",
+    "Do not forget exp at the end.",
+)
+def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
+    L = drawn(rng)
+    one, ten = (float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10))
+    same(ten / one, 10.0, 0.01, what="Lav of 10 L, over that of L")

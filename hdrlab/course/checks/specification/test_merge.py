@@ -1,0 +1,154 @@
+"""The radiance map: merge(images, times, g, w) -> E (H, W[, 3])."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.capture import camera, responses
+from hdrlab.core import weights
+from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.radiance.merge import merge
+
+G = responses.true_g("gamma")
+TIMES = np.array([0.25, 0.5, 1.0])
+
+
+def smooth(rng, shape=(48, 64)):
+    """Return radiance (H, W) without single pixels that stand out, about 0.1 to 1."""
+    noise = gaussian_filter(rng.standard_normal(shape), 4)
+    return np.exp(0.5 * noise / noise.std() - 1).astype(np.float32)
+
+
+def photographs(rng, E, times=TIMES):
+    """Return 8-bit photographs (P, H, W) with noise, of levels 20 to 235: each frame measures all."""
+    M = responses.RESPONSES["gamma"].f(np.clip(0.3 * E * np.reshape(times, (-1,) + (1,) * E.ndim), 0, 1))
+    return np.clip(np.round(255 * M + 3 * rng.standard_normal(M.shape)), 20, 235).astype(np.uint8)
+
+
+def same_map(came, truth, tolerance=0.01, **knobs):
+    """Compare the logarithms of two maps: radiance is right or wrong by a factor."""
+    E = finite(came, truth.shape, what="E").astype(float)
+    if not np.all(E > 0):
+        raise Different(f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not", came=E)
+    same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "The map has the size of a photograph.",
+    "Sum over the frames, the first axis.",
+    "Nothing in it may be NaN, infinite or below 0.",
+)
+def test_every_pixel_has_a_finite_radiance(subject, rng):
+    images = photographs(rng, smooth(rng))
+    E = finite(subject.merge(images, TIMES, G), images.shape[1:], what="E")
+    if not (E >= 0).all():
+        raise Different(f"E: expected radiance of at least 0, got {float(E.min()):.3g}", came=E, kind="image")
+
+
+@pytest.mark.points(8)
+@pytest.mark.hints(
+    "Divide by the sum of the weights, not by the number of frames.",
+    "Each frame says ln E = g(Z) - ln t; the natural logarithm, as in g.",
+    "ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j), and E = exp(ln E).",
+)
+def test_it_is_the_weighted_mean_of_the_logarithms(subject, rng):
+    images = photographs(rng, smooth(rng))
+    same_map(subject.merge(images, TIMES, G), merge(images, TIMES, G))
+
+
+@pytest.mark.points(6)
+@pytest.mark.hints(
+    "Compare your map with the scene that the photographs were made of, not only by its looks.",
+    "A pixel of level 128 in a frame of 2 seconds has radiance exp(g[128]) / 2.",
+    "Is the exposure time subtracted as a natural logarithm, from each frame its own?",
+)
+def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
+    E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
+    times = camera.times_around(E, 7, stops=1)
+    taken = camera.shoot(E, times, response="gamma")
+    came = np.log(finite(subject.merge(taken.images, taken.times, G), E.shape, what="E").astype(float))
+    ratio = came - np.log(E)
+    same(ratio - np.median(ratio), np.zeros(E.shape), 0.06, what="ln E less that of the scene", picture=True)
+    step = np.log(finite(subject.merge(taken.images, 8 * taken.times, G), E.shape, what="E").astype(float))
+    same(step, came - np.log(8), 1e-3, what="ln E with times 8 times as long", picture=True)
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "Two frames may disagree. Whom does the map believe, and how much?",
+    "The argument w holds the weights; None stands for the hat.",
+    "Look up w[Z] for each pixel and frame, of the w that is given.",
+)
+def test_the_weights_that_are_given_are_used(subject, rng):
+    images = photographs(rng, smooth(rng))
+    for w in (weights.gaussian(), 0.05 + np.linspace(0, 1, 256) ** 2):
+        same_map(subject.merge(images, TIMES, G, w), merge(images, TIMES, G, w))
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "Does any line of yours take the first frame for the shortest?",
+    "times[j] belongs to images[j].",
+    "Sort both together, or neither.",
+)
+def test_the_order_of_the_frames_does_not_matter(subject, rng):
+    images = photographs(rng, smooth(rng))
+    order = [1, 2, 0]
+    same_map(subject.merge(images[order], TIMES[order], G), merge(images, TIMES, G))
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "Colour photographs are (P, H, W, 3).",
+    "Every channel is merged by the same formula; g may be (256, 3), a curve each.",
+    "g[Z[..., c], c] looks up the channel's own curve.",
+)
+def test_each_channel_is_read_by_its_own_curve(subject, rng):
+    images = np.stack([photographs(rng, smooth(rng)) for _ in range(3)], axis=-1)
+    g = np.stack([G, responses.true_g("linear"), responses.true_g("film")], axis=-1)
+    same_map(subject.merge(images, TIMES, g), merge(images, TIMES, g))
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "The lamp is clipped in every frame: its weights are all 0, and 0 / 0 is no radiance.",
+    "The shortest frame says the most: at least as bright as its highest level that is not clipped.",
+    "Where no frame measures a pixel that is clipped, take exp(g[top]) / t of the shortest frame.",
+)
+def test_a_clipped_sun_is_not_darker_than_the_sky_beside_it(subject, rng):
+    E = smooth(rng)
+    images = photographs(rng, E)
+    y, x = int(rng.integers(8, 36)), int(rng.integers(8, 50))
+    sun = (slice(y, y + 5), slice(x, x + 5))
+    images[(slice(None), *sun)] = 255
+    for order in ([0, 1, 2], [2, 0, 1]):
+        came = finite(subject.merge(images[order], TIMES[order], G), E.shape, what="E").astype(float)
+        least = np.exp(G[245]) / TIMES[0]
+        if not (came[sun] >= 0.9 * least).all():
+            lowest = float(came[sun].min())
+            raise Different(
+                f"E of a sun that is clipped in all frames: expected at least {least:.3g}, which the "
+                f"shortest frame tells, got {lowest:.3g}",
+                expected=merge(images, TIMES, G),
+                came=came,
+                kind="image",
+            )
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "And a corner that is black in every frame?",
+    "The longest frame says the most: at most as bright as its first level.",
+    "Whatever you take, it must be finite, and darker than what any frame measured.",
+)
+def test_a_corner_that_is_black_in_all_frames_stays_dark_and_finite(subject, rng):
+    images = photographs(rng, smooth(rng))
+    images[:, :6, :6] = 0
+    came = finite(subject.merge(images, TIMES, G), images.shape[1:], what="E").astype(float)
+    most = np.exp(G[20]) / TIMES[-1]
+    if not ((came[:6, :6] >= 0) & (came[:6, :6] <= most)).all():
+        raise Different(
+            f"E of a corner that is black in all frames: expected 0 to {most:.3g}", came=came, kind="image"
+        )
+    same_map(came[8:, 8:], merge(images, TIMES, G)[8:, 8:].astype(float))

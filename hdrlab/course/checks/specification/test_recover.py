@@ -1,0 +1,113 @@
+"""Mitsunaga and Nayar's response: recover(images, times) -> g, ln exposure of each level, g[128] = 0."""
+
+import numpy as np
+import pytest
+
+from hdrlab.capture import camera, responses
+from hdrlab.course.checks import laws
+from hdrlab.course.checks.compare import Different, finite, same
+
+SHOWN = slice(25, 246)
+
+
+def asked(subject, images, times, channels=(), **knobs):
+    """Return g, moved to g[128] = 0."""
+    g = finite(subject.recover(images, times, **knobs), (256, *channels), what="g").astype(float)
+    return g - g[128]
+
+
+def photographs(rng, response, frames=5, shape=(60, 80)):
+    """Return a Bracket a stop apart, hardly any noise."""
+    E = (10.0 ** rng.uniform(-1.5, 1.5, shape)).astype(np.float32)
+    return camera.shoot(E, camera.times_around(E, frames, stops=1), response=response, rng=rng)
+
+
+def same_curve(g, response, tolerance):
+    """Compare f = exp g, its unit fitted, over levels 10 to 250."""
+    truth = responses.true_g(response)
+    error = laws.curve_error(g, truth)
+    if not error <= tolerance:
+        raise Different(
+            f"g of the camera {response!r}: expected the true curve within {tolerance:.0%}, got {error:.1%}",
+            expected=truth,
+            came=g,
+            kind="curve",
+        )
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "One number for each of 256 levels.",
+    "ln 0 is not finite: what stands at level 0?",
+    "Give level 0 a part of what level 1 has.",
+)
+def test_every_level_has_a_finite_g(subject, rng):
+    taken = photographs(rng, "linear", frames=3)
+    asked(subject, taken.images, taken.times, order=3)
+
+
+@pytest.mark.points(7)
+@pytest.mark.hints(
+    "Plot f over M, from 0 to 1: it goes through (0, 0) and (1, 1).",
+    "With known ratios R the error sum (f(M_q) - R f(M_q+1))^2 is least squares in the coefficients.",
+    "Use samples between 0.05 and 0.98 in both frames alone, and let f(1) = 1 fix the scale.",
+)
+def test_the_curve_of_a_camera_comes_out(subject, rng):
+    for response in ("linear", "gamma"):
+        taken = photographs(rng, response)
+        same_curve(asked(subject, taken.images, taken.times, order=5), response, 0.025)
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "The ratio in eq. 5 is that of a frame to the next longer one: below 1.",
+    "R = t_q / t_q+1, and not its inverse.",
+    "Sort the frames by their times first.",
+)
+def test_frames_in_another_order_give_the_same_curve(subject, rng):
+    taken = photographs(rng, "gamma")
+    order = rng.permutation(len(taken.times))
+    shuffled = asked(subject, taken.images[order], taken.times[order], order=5)
+    same_curve(shuffled, "gamma", 0.025)
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "The method takes the times for rough. Which quantity does it correct?",
+    "With the curve known, R is the quotient of the sums of f over the two frames.",
+    "Take turns: coefficients, ratios, coefficients, until f moves by less than eps.",
+)
+def test_rough_times_are_corrected(subject, rng):
+    taken = photographs(rng, "linear", frames=4)
+    rough = taken.times * 1.1 ** np.arange(4)  # each a tenth more than it says
+    g = asked(subject, taken.images, rough, order=3)
+    same_curve(g, "linear", 0.015)
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "A level that is brighter can never mean less light.",
+    "ln f needs f above 0, and g that rises.",
+    "Clamp the increments of f from level to level before you take the logarithm.",
+)
+def test_the_curve_rises_at_all_levels(subject, rng):
+    for response in ("gamma", "film"):
+        taken = photographs(rng, response)
+        g = asked(subject, taken.images, taken.times, order=6)
+        if not np.all(np.diff(g) >= -1e-6):
+            raise Different(f"g: expected a curve that rises, got {np.sum(np.diff(g) < -1e-6)} falls", came=g)
+        same_curve(g, response, 0.05)
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Each channel has its own curve.",
+    "g of colour photographs is (256, 3).",
+    "Gray is what comes out in each of three equal channels.",
+)
+def test_three_equal_channels_have_the_curve_of_gray(subject, rng):
+    taken = photographs(rng, "gamma", frames=4)
+    rgb = asked(subject, np.stack([taken.images] * 3, axis=-1), taken.times, (3,), order=5)
+    gray = asked(subject, taken.images, taken.times, order=5)
+    same(rgb[SHOWN], np.stack([gray] * 3, axis=-1)[SHOWN], 0.02, what="g at levels 25 to 245")
+    same_curve(gray, "gamma", 0.025)

@@ -1,0 +1,77 @@
+"""Chiu's scale: scale(L, headroom, sigma) -> s (H, W), so that s L is the picture."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.course.checks.compare import Different, finite, same
+
+SIGMA = 4.0
+INNER = (slice(16, -16), slice(16, -16))  # away from the border, where a blur may do this or that
+
+
+def drawn(rng, shape=(60, 76)):
+    """Return luminance without hot pixels: soft light."""
+    lL = gaussian_filter(rng.standard_normal(shape), 5)
+    return np.exp(0.7 * lL / lL.std()).astype(np.float32)
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "A scale for each pixel: the shape of L.",
+    "A luminance that is blurred is above 0, and so is its inverse.",
+    "Nothing in it is NaN or infinite.",
+)
+def test_every_pixel_has_a_scale_above_0(subject, rng):
+    L = drawn(rng)
+    s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s")
+    if not (s > 0).all():
+        raise Different(f"s: expected scales above 0, got {float(s.min()):.3g}", came=s, kind="image")
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "An even wall of luminance L: how bright should it be shown?",
+    "s L = 1 / k: the neighbourhood comes out as one k-th of white.",
+    "s = 1 / (k blur(L)): no further factor L, which is a misprint.",
+)
+def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
+    for _ in range(2):
+        level, k = float(10 ** rng.uniform(-2, 3)), float(rng.uniform(2, 16))
+        L = np.full((40, 40), level, np.float32)
+        s = finite(subject.scale(L, headroom=k, sigma=SIGMA), L.shape, what="s").astype(float)
+        same(s * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Blur first, and divide then: the mean of 1 / L is another thing.",
+    "A Gaussian of `sigma` pixels.",
+    "s = 1 / (k blur(L)).",
+)
+def test_it_is_one_over_k_times_the_blur(subject, rng):
+    L = drawn(rng)
+    truth = 1 / (8 * gaussian_filter(L.astype(float), SIGMA))
+    s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s").astype(float)
+    same((s / truth)[INNER], np.ones(truth[INNER].shape), 0.08, what="s k blur(L)", picture=True)
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "Ten times the light in the whole scene: what becomes of s, and what of s L?",
+    "The scale is the inverse of a luminance.",
+    "s of 10 L is s / 10.",
+)
+def test_the_unit_of_luminance_cancels_in_the_picture(subject, rng):
+    L = drawn(rng)
+    one, ten = (
+        finite(subject.scale(factor * L, headroom=8.0, sigma=SIGMA), L.shape, what="s").astype(float)
+        for factor in (np.float32(1), np.float32(10))
+    )
+    same(
+        10 * ten * L,
+        one * L,
+        0.01 * float((one * L).max()),
+        what="s L with ten times the light",
+        picture=True,
+    )

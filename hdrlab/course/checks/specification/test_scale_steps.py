@@ -1,0 +1,95 @@
+"""Reinhard's neighbourhoods: scale_steps(blurred) -> states (width, centre, response, even, adaptation)."""
+
+import numpy as np
+import pytest
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.course.checks.compare import parts, same, states
+from hdrlab.tonemap import reinhard
+
+CLOSE = 2e-4  # a response so close to the threshold may fall on either side
+
+
+def drawn(rng, shape=(48, 64)):
+    """Return V1 at each of the nine widths, of a picture with edges and texture."""
+    y, x = np.indices(shape)
+    lit = (np.hypot(y - rng.integers(10, 38), x - rng.integers(10, 54)) < rng.integers(6, 12)) * 8.0
+    Lm = ((0.2 + lit) * np.exp(0.15 * rng.standard_normal(shape) + 0.02 * x)).astype(np.float32)
+    return [gaussian_filter(Lm, s / 4) for s in reinhard.WIDTHS]
+
+
+def asked(subject, blurred, **knobs):
+    """Return the states, each with its five parts."""
+    return [parts(one, 5, what="a state") for one in states(subject.scale_steps(blurred, **knobs))]
+
+
+def doubtful(truth, threshold=0.05):
+    """Return where a response lies so close to the threshold that rounding decides."""
+    return np.any([np.abs(np.abs(one.response) - threshold) < CLOSE for one in truth], axis=0)
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "The surround of one width is the centre of the next: eight responses out of nine blurs.",
+    "s in the formula is the width in pixels, 1, 1.6, 2.56, ..., and not the number of the step.",
+    "V = (V1 - V2) / (2^phi a / s^2 + V1).",
+)
+def test_each_response_compares_a_width_with_the_next(subject, rng):
+    blurred = drawn(rng)
+    truth, came = list(reinhard.scale_steps(blurred)), asked(subject, blurred)
+    same(len(came), 8, 0, what="states")
+    for one, true in zip(came, truth, strict=True):
+        same(one[2], true.response, 1e-3, what=f"V at width {true.width:.3g}", picture=True)
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "The widths are tried from small to large. When does a pixel stop?",
+    "Once |V| has reached the threshold the neighbourhood stays as it is, whatever larger widths say.",
+    "even = even & (|V| < threshold); the adaptation takes the centre where it is still even.",
+)
+def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
+    blurred = drawn(rng)
+    truth = list(reinhard.scale_steps(blurred))
+    came, sure = asked(subject, blurred), ~doubtful(truth)
+    scale = np.abs(truth[-1].adaptation).max()
+    same(
+        came[-1][4] / scale,
+        truth[-1].adaptation / scale,
+        1e-3,
+        what="the adaptation",
+        picture=True,
+        where=sure,
+    )
+    for one, true in zip(came, truth, strict=True):
+        same(one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure)
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "What does an even wall say at any width?",
+    "Its response is 0 everywhere, so it takes the largest width.",
+    "At the widest the adaptation is V1(26.8), the centre of the last step, not its surround.",
+)
+def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
+    level = float(rng.uniform(0.1, 2))
+    blurred = [np.full((12, 15), level * (1 + 1e-3 * k), np.float32) for k in range(9)]
+    came = asked(subject, blurred)
+    same(came[-1][4], blurred[7], 2e-4 * level, what="the adaptation of an even wall")
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "The knobs are the key a, the sharpening phi, and the threshold.",
+    "A higher phi makes V less sensitive: larger neighbourhoods.",
+    "2^phi a / s^2, with the knobs' own values.",
+)
+def test_the_knobs_are_used(subject, rng):
+    blurred = drawn(rng)
+    for knobs in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):
+        truth = list(reinhard.scale_steps(blurred, **knobs))
+        came = asked(subject, blurred, **knobs)
+        sure = ~doubtful(truth, knobs.get("threshold", 0.05))
+        scale = np.abs(truth[-1].adaptation).max()
+        what = f"the adaptation with {next(iter(knobs))}={next(iter(knobs.values()))}"
+        same(came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure)

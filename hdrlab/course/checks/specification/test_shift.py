@@ -1,0 +1,63 @@
+"""Moving photographs: shift(images, offsets) -> the images moved, and cut to what all of them show."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks.compare import same
+
+
+def views(rng, offsets, shape=(40, 50), channels=()):
+    """Return views of one picture that `offsets` (dy, dx) lay on each other, and the part that all show."""
+    margin = 12
+    H, W = shape
+    world = rng.integers(0, 256, (H + 2 * margin, W + 2 * margin, *channels), dtype=np.uint8)
+    images = [world[margin + dy : margin + dy + H, margin + dx : margin + dx + W] for dy, dx in offsets]
+    (top, left), (bottom, right) = np.maximum(offsets, 0).max(0), np.minimum(offsets, 0).min(0) + shape
+    return np.stack(images), world[margin + top : margin + bottom, margin + left : margin + right]
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "An offset (dy, dx) says where the image must move: down, and to the right.",
+    "After the move, what stood at (y, x) stands at (y + dy, x + dx).",
+    "The part that all show begins at the largest offset, and in image j at that less its own.",
+)
+def test_moved_images_lie_on_each_other(subject, rng):
+    offsets = np.array([[0, 0], [3, -5]])
+    images, common = views(rng, offsets)
+    same(subject.shift(images, offsets), np.stack([common, common]), 0, what="the moved images")
+
+
+@pytest.mark.points(5)
+@pytest.mark.hints(
+    "Where do the pixels at the border come from?",
+    "np.roll brings in at the left what left at the right.",
+    "Cut the images to the rectangle that every moved one covers.",
+)
+def test_nothing_comes_in_from_the_other_side(subject, rng):
+    offsets = rng.integers(-9, 10, (4, 2))
+    images, common = views(rng, offsets)
+    same(subject.shift(images, offsets), np.stack([common] * 4), 0, what="the moved images")
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "Three channels move together.",
+    "Only the first two axes of an image are places.",
+    "image[top:bottom, left:right] takes all channels along.",
+)
+def test_colour_moves_like_gray(subject, rng):
+    offsets = rng.integers(-6, 7, (3, 2))
+    images, common = views(rng, offsets, channels=(3,))
+    same(subject.shift(images, offsets), np.stack([common] * 3), 0, what="the moved images")
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "What is to be done where all offsets are the same?",
+    "All images move, and all show the same part of the picture then.",
+    "Only differences between offsets cost pixels, beside what leaves the frame of (0, 0).",
+)
+def test_images_that_need_not_move_stay_whole(subject, rng):
+    images, common = views(rng, np.zeros((3, 2), int))
+    same(subject.shift(images, np.zeros((3, 2), int)), np.stack([common] * 3), 0, what="the images")

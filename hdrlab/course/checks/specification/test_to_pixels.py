@@ -1,0 +1,70 @@
+"""Radiance as RGBE: to_pixels(E) -> (H, W, 4), three mantissas and the exponent that they share."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.io import rgbe
+
+
+def drawn(rng):
+    return (10.0 ** rng.uniform(-6, 6, (9, 11, 1)) * rng.uniform(0.02, 1, (9, 11, 3))).astype(np.float32)
+
+
+def asked(subject, E):
+    pixels = finite(subject.to_pixels(E), (*E.shape[:2], 4), what="the pixels").astype(float)
+    if not ((pixels >= 0) & (pixels <= 255) & (pixels == np.round(pixels))).all():
+        raise Different(f"expected whole numbers 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}")
+    return pixels
+
+
+@pytest.mark.points(1)
+@pytest.mark.hints(
+    "Three mantissas and an exponent.",
+    "The answer is (H, W, 4).",
+    "Whole numbers from 0 to 255.",
+)
+def test_every_pixel_is_four_bytes(subject, rng):
+    asked(subject, drawn(rng))
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Decode what you encoded: E = m / 256 2^(e - 128).",
+    "The exponent is that of the brightest channel; np.frexp gives it.",
+    "m = floor(256 E / 2^(e - 128)): do not forget the 256, nor the 128.",
+)
+def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
+    E = drawn(rng)
+    m, e = np.split(asked(subject, E), [3], axis=-1)
+    brightest = E.max(axis=-1, keepdims=True)
+    same(m / 256 * 2.0 ** (e - 128) / brightest, E / brightest, 1 / 127, what="E per its brightest channel")
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "How many of the mantissa's 256 values do you use?",
+    "The brightest channel's mantissa lies between 128 and 255.",
+    "The brightest channel is f 2^x with 0.5 <= f < 1, and e = x + 128.",
+)
+def test_the_largest_mantissa_is_128_or_more(subject, rng):
+    pixels = asked(subject, drawn(rng))
+    largest = pixels[..., :3].max(axis=-1)
+    if not (largest >= 128).all():
+        raise Different(f"expected a largest mantissa of 128 or more in every pixel, got {largest.min():g}")
+
+
+@pytest.mark.points(3)
+@pytest.mark.hints(
+    "Twice the light: what happens to the four bytes?",
+    "The mantissas stay, and the exponent grows by one. Black is (0, 0, 0, 0).",
+    "Take care of log2(0): use np.where for black pixels.",
+)
+def test_twice_the_light_is_one_more_in_the_exponent_and_black_is_zero(subject, rng):
+    E = drawn(rng)
+    E[2, 3] = 0
+    truth = rgbe.to_pixels(E).astype(float)
+    lit = E.max(axis=-1, keepdims=True) > 0
+    one, two = asked(subject, E), asked(subject, 2 * E)
+    same(two - one, lit * np.array([0, 0, 0, 1]), 0, what="what twice the light changes")
+    same(one[..., 3], truth[..., 3], 0, what="the exponents")

@@ -1,0 +1,76 @@
+"""Your own operator: tonemap(L) -> Ld in [0, 1], under the laws that every operator of hdrlab obeys."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks import laws
+from hdrlab.course.checks.compare import numbers
+
+
+def asked(subject):
+    """Return the subject's operator, its answer as float32, which is how pictures travel."""
+
+    def tonemap(L):
+        return numbers(subject.tonemap(L), what="Ld").astype(np.float32)
+
+    return tonemap
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Try your operator on black, on one lamp in the dark, on a single pixel.",
+    "0 / 0 and log 0 come from pictures that are all black, or all alike.",
+    "Clip the answer to 0 ... 1, and look after a maximum, a range or a mean of 0 before you divide by it.",
+)
+def test_it_stays_in_range_whatever_the_scene(subject):
+    laws.stays_in_range(asked(subject))
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "Does your operator remember anything?",
+    "Randomness without a seed, or a global that changes?",
+    "The same picture must give the same answer.",
+)
+def test_it_answers_the_same_twice(subject):
+    laws.answers_the_same_twice(asked(subject))
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "One pixel of a million times the light: what happens to all the others?",
+    "A maximum over the picture is a matter of one pixel.",
+    "Use a percentile, such as the 99.9th, instead of the maximum.",
+)
+def test_it_shrugs_off_a_hot_pixel(subject):
+    laws.shrugs_off_a_hot_pixel(asked(subject))
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Is what was bright still bright?",
+    "Compare the averages of large regions before and after: their ranks should hardly change.",
+    "A sign, or an inverse scale?",
+)
+def test_it_keeps_the_light_the_right_way_up(subject):
+    laws.keeps_the_light_the_right_way_up(asked(subject))
+
+
+@pytest.mark.points(4)
+@pytest.mark.hints(
+    "Radiance has no unit that is sacred: watts or candelas show the same scene.",
+    "Twice the luminance everywhere is the same picture.",
+    "Scale by a statistic of the picture itself: the log average, the median, a percentile.",
+)
+def test_the_unit_of_luminance_cancels(subject):
+    laws.exposure(asked(subject))
+
+
+@pytest.mark.points(2)
+@pytest.mark.hints(
+    "Which orders in memory does your code count on?",
+    "ravel, reshape and views of other strides all name the same pixels.",
+    "Begin with L = np.asarray(L, dtype=float).",
+)
+def test_it_takes_any_memory_layout(subject):
+    laws.takes_any_memory_layout(asked(subject))

@@ -1,0 +1,1 @@
+"""The lessons' functions, fast: same module and function name, same signature, same result."""

@@ -1,0 +1,1 @@
+"""What moved between the photographs, and a map without it."""

@@ -1,0 +1,120 @@
+"""How far the frames contradict each other at a pixel, and how much of that a still scene explains.
+
+Z   pixel levels         (P, H, W, C)
+x   estimates            (P, H, W, C), ln E of each frame alone: see `frames`
+w   weights              (n,), how far to trust a level
+v   weighted variance    (H, W), sum w (x - mean x)^2 / sum w; of logarithms, so exposure and unit drop out
+s2  noise                (H, W), sum w s2(Z) / sum w
+r   range                (H, W), of x over 3 x 3 pixels of a frame, sum w r / sum w
+
+Where an edge lies a little elsewhere in each frame, v is large too: under a shift of up to a pixel a frame's
+estimate changes by at most r, and so sqrt(v) stays below r / 2. A score counts what is left: sqrt(v) over
+what is tolerated, tau + 2 s + edge r.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, as_table
+from hdrlab.radiance.bounds import ROWS
+from hdrlab.radiance.deghosting.frames import Photographs
+
+Float = NDArray[np.float32]
+Tables = NDArray[np.complex64]
+
+
+class Deviation(NamedTuple):
+    """v, s2 and r, (H, W) float32 each, means over the channels; 0 where no frame measures a pixel."""
+
+    v: Float
+    s2: Float
+    r: Float
+
+
+def deviation(taken: Photographs, w: ArrayLike) -> Deviation:
+    """Return the weighted variance, and what noise and edges have to do with it.
+
+    A frame that clips one channel of a pixel is left out, as in the merge; where one frame alone measures a
+    pixel, v is 0.
+
+    Parameters
+    ----------
+    taken : Photographs, of `frames.photographs`
+    w : (n,), weights of the levels
+
+    Raises
+    ------
+    ValueError
+        For weights that mean nothing.
+
+    Examples
+    --------
+    >>> from hdrlab.radiance.deghosting.frames import photographs
+    >>> images = np.array([[[40, 40]], [[80, 160]]], np.uint8)  # the second pixel became twice as bright
+    >>> linear = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    >>> taken = photographs(images, [1, 2], linear, np.ones((1, 2)))
+    >>> np.sqrt(deviation(taken, np.ones(256)).v).round(3)
+    array([[0.   , 0.347]], dtype=float32)
+    """
+    pixels, tables = taken.images, moments(taken, w)
+    x = taken.x.astype(np.float32)
+    out = np.empty((3, *pixels.shape[1:3]), np.float32)
+    for start in range(0, out.shape[1], ROWS):
+        rows = slice(start, start + ROWS)
+        sums = np.zeros((2, *pixels[0, rows].shape), np.complex64)
+        spans = np.zeros(sums.shape[1:], np.float32)
+        for j, frame in enumerate(pixels[:, rows]):
+            counts = frame[..., 0] < taken.top
+            for c in range(1, frame.shape[-1]):  # a maximum over the channels would take ten times as long
+                counts &= frame[..., c] < taken.top
+            if taken.valid is not None:
+                counts &= taken.valid[j, rows]
+            low, high = extremes(pixels[j], rows)
+            for c, Z in enumerate(np.moveaxis(frame, -1, 0)):
+                first = tables[0, j, c].take(Z) * counts
+                sums[0, ..., c] += first
+                sums[1, ..., c] += tables[1, j, c].take(Z) * counts
+                spans[..., c] += first.real * (x[j, c].take(high[..., c]) - x[j, c].take(low[..., c]))
+        total = np.maximum(sums[0].real, 1e-9)
+        mean, square, s2 = sums[0].imag / total, sums[1].real / total, sums[1].imag / total
+        for one, values in zip(out, (np.maximum(square - mean**2, 0), s2, spans / total), strict=True):
+            one[rows] = values.mean(axis=-1)
+    return Deviation(*out)
+
+
+def moments(taken: Photographs, w: ArrayLike) -> Tables:
+    """Return the tables of w + i w x and of w x^2 + i w s2, (2, P, C, n): each costs a look-up a pixel."""
+    n = taken.x.shape[-1]
+    trust = as_table(w, n)
+    if trust.ndim != 1 or not np.all(trust >= 0) or not trust.any():
+        raise ValueError("expected weights (n,) that are not negative and not all 0")
+    z = np.arange(n)
+    trust = np.where((z > 0) & (z < taken.top), trust / trust.max(), 0)
+    x = taken.x - np.median(taken.x[..., n // 2])  # about 0, where float32 is finest
+    return np.stack([trust + 1j * trust * x, trust * x**2 + 1j * trust * taken.s2]).astype(np.complex64)
+
+
+def extremes(frame: Array, rows: slice) -> tuple[Array, Array]:
+    """Return the lowest and the highest level in the 3 x 3 pixels around each of some rows."""
+    last = len(frame) - 1
+    above, below = max(rows.start - 1, 0), min(rows.stop, last) + 1
+    slab = np.pad(frame[above:below], [(rows.start == 0, rows.stop > last), (1, 1), (0, 0)], mode="edge")
+    low, high = slab, slab
+    for axis in (0, 1):
+        low, high = (_three(one, axis, best) for one, best in ((low, np.minimum), (high, np.maximum)))
+    return low, high
+
+
+def _three(values: Array, axis: int, best: np.ufunc) -> Array:
+    """Return the best of each three neighbours along an axis."""
+    v = np.moveaxis(values, axis, 0)
+    return np.moveaxis(best(best(v[:-2], v[1:-1]), v[2:]), 0, axis)
+
+
+def score(found: Deviation, *, tau: float, edge: float) -> Float:
+    """Return sqrt(v) / (tau + 2 s + edge r): above 1, neither noise nor an edge explains it all."""
+    v, s2, r = found
+    tolerated = np.float32(tau) + 2 * np.sqrt(s2) + np.float32(edge) * r
+    return (np.sqrt(v) / tolerated).astype(np.float32)

@@ -1,0 +1,121 @@
+"""Do the photographs bear out the response that was made of them? Else times or frames are grossly wrong.
+
+images  photographs   (P, H, W[, 3])
+t       times         (P,) seconds, as stated
+Z       ranks         (N, P, C), levels of equal rank in every frame: see `core.sampling`
+g       response      (256,) or (256, 3), ln exposure of each level
+miss    stops         (P - 1,), by how much g(Z_j+1) - g(Z_j) departs from ln t_j+1 / t_j; median of size
+
+Whatever it is given, least squares gives a curve. Three things show that it is none of a camera: light that
+grows fainter as the exposure grows longer; neighbours that the curve itself leaves stops apart; and a curve
+that spans more stops than any camera's, which is how two frames with a wrong ratio explain each other. The
+limits are wide: times that are off by a stop or two give a curve, and the map a doubt, see
+`contradictions`. Times that are off by a factor of 100 give an error, with one exception. A linear
+camera, under ratios of 400 for 4, looks like one with a gamma of 4.3, and nothing in its photographs says
+that there is no such thing.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times
+from hdrlab.core.bracket import short_to_long
+from hdrlab.core.errors import HIGH, LOW
+from hdrlab.core.sampling import by_rank
+
+Float = NDArray[np.float64]
+MISS = 4.0  # stops: a bracket with wrong times that is still worth a map (and a doubt) comes to 1.8
+MOST = 3.0  # stops, where half of three pairs or more miss by so much
+NOISE = 2  # levels by which equal ranks may differ, even where two histograms are one
+WIDEST = 10.2  # stops between the INNER levels, of 201 measured curves and of our formulas
+SPAN = 13.0  # stops there: stated times that were off by a stop or two made a bracket's curve span 12.3
+INNER = (
+    30,
+    225,
+)  # away from shoulder and toe, where film that was scanned has a floor, and the curve a cliff
+RANKS, FEWEST = 1000, 30  # ranks, and how many of them two frames must both hold, to be compared
+ENOUGH = 2**14  # pixels of a frame, on an even grid
+
+
+def ranks(stack: Array, valid: NDArray[np.bool_] | None) -> NDArray[np.intp]:
+    """Return Z (N, P, C) of an even choice of the pixels."""
+    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / ENOUGH)))
+    few = slice(None), slice(None, None, every), slice(None, None, every)
+    seen = None if valid is None or not valid[few].all(axis=0).any() else valid[few]
+    Z = by_rank(stack[few], RANKS, valid=seen)
+    return Z.reshape(*Z.shape[:2], -1)
+
+
+def neighbours(Z: NDArray[np.intp], t: Float, g: Float) -> tuple[Float, Float]:
+    """Return miss and how often the longer of two frames is the darker one, (P - 1,) each, t rising.
+
+    NaN where two frames hold too few ranks between the levels 10 and 250, or have the same time.
+    """
+    channel = np.arange(Z.shape[-1])
+    inside = (Z >= LOW) & (Z <= HIGH)
+    both = inside[:, 1:] & inside[:, :-1] & (np.diff(t) > 0)[:, None]
+    apart = np.abs(np.diff(g[Z, channel], axis=1) - np.diff(np.log(t))[:, None]) / np.log(2)
+    darker = np.diff(Z, axis=1) < -NOISE
+    told = both.sum(axis=(0, 2)) >= FEWEST
+    miss, fainter = np.full(len(told), np.nan), np.full(len(told), np.nan)
+    for j in np.flatnonzero(told):
+        miss[j], fainter[j] = np.median(apart[:, j][both[:, j]]), np.mean(darker[:, j][both[:, j]])
+    return miss, fainter
+
+
+def checked(g: Float, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> Float:
+    """Return g as it is, or raise a ValueError that says where the photographs contradict it.
+
+    Parameters
+    ----------
+    g : (256,) or (256, 3) float
+        A response, ln exposure of each level.
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        The photographs it was recovered from.
+    times : (P,) float
+        Their exposure times in seconds, as stated.
+    valid : (P, H, W) bool, optional
+        False where a photograph holds no picture.
+
+    Raises
+    ------
+    ValueError
+        Where a longer exposure is the darker one, where two neighbours are left more than MISS stops apart,
+        or half of them more than MOST, and where the curve spans more than SPAN stops.
+
+    Examples
+    --------
+    >>> g = np.log(np.maximum(np.arange(256), 0.25) / 128)  # a linear camera
+    >>> images = np.stack([np.arange(20, 84), np.arange(40, 168, 2)]).astype(np.uint8).reshape(2, 8, 8)
+    >>> checked(g, images, [1, 2]) is g
+    True
+    >>> checked(g, images, [1, 200])  # doctest: +ELLIPSIS
+    Traceback (most recent call last):
+    ValueError: expected times that the photographs bear out: between 1 s and 200 s the response ...
+    """
+    stack = as_stack(images)
+    t, curve = as_times(times, len(stack)), as_table(g, 256).reshape(256, -1)
+    order = short_to_long(stack, t)
+    Z, t = ranks(stack, as_mask(valid, stack))[:, order], t[order]
+    miss, fainter = neighbours(Z, t, np.broadcast_to(curve, (256, Z.shape[-1])))
+    said = "expected times that the photographs bear out: "
+    if np.any(fainter > 0.5):
+        raise ValueError(f"{said}{_pair(t, fainter)} the longer exposure is the darker photograph")
+    told = miss[np.isfinite(miss)]
+    if np.any(told > MISS) or (len(told) > 2 and np.median(told) > MOST):
+        raise ValueError(
+            f"{said}{_pair(t, miss)} the response found is {told.max():.1f} stops off, "
+            "which a time or an order of frames that is wrong would explain"
+        )
+    span = float(np.max(curve[INNER[1]] - curve[INNER[0]]) / np.log(2))
+    if span > SPAN:
+        raise ValueError(
+            f"{said}under these the camera would span {span:.0f} stops from level {INNER[0]} to {INNER[1]}, "
+            f"where none is known beyond {WIDEST:.0f}"
+        )
+    return g
+
+
+def _pair(t: Float, values: Float) -> str:
+    j = int(np.nanargmax(values))
+    return f"between {t[j]:.4g} s and {t[j + 1]:.4g} s"

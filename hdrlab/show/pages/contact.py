@@ -1,0 +1,101 @@
+"""The contact sheet: one scene through every operator, with time, quality and statistics under each picture.
+
+E        radiance            (H, W[, 3]), any linear unit
+L, Ld    luminance, display luminance     (H, W)
+
+The time is that of the operator alone: luminance in, display luminance out. `sheet` draws what is found here.
+"""
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from time import perf_counter
+
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab import pipeline
+from hdrlab.core import catalogue, colour
+from hdrlab.core.arrays import as_radiance
+from hdrlab.core.picture import statistics
+from hdrlab.pipeline import Method
+from hdrlab.show.pages.sheet import SIDE, Entry, draw
+from hdrlab.tonemap import quality
+
+
+def entry_steps(
+    E: ArrayLike,
+    operators: Sequence[str] | Mapping[str, Method] | None = None,
+    *,
+    way: str = "ratio",
+    clock: Callable[[], float] = perf_counter,
+) -> Iterator[Entry]:
+    """Yield the Entry of each operator; the parameters are those of `contact_sheet`."""
+    E = as_radiance(E)
+    L = colour.luminance(E)
+    for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
+        begun = clock()
+        Ld = tonemap(L)
+        seconds = clock() - begun
+        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap), way=way)
+        yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
+
+
+def contact_sheet(
+    E: ArrayLike,
+    operators: Sequence[str] | Mapping[str, Method] | None = None,
+    *,
+    way: str = "ratio",
+    title: str = "",
+    columns: int | None = None,
+    side: int = SIDE,
+) -> Figure:
+    """Return one scene through every operator, with time, TMQI and statistics under each picture.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3)
+        Radiance, any linear unit.
+    operators : names, or labels with an operator each; optional
+        Which, and in which order: all, sorted, unless told. A label's operator is a name or your own function
+        `tonemap(L) -> Ld` in [0, 1].
+    way : {"ratio", "chroma"}
+        What becomes of colours that a display does not have: see `core.colour.render`.
+    title : str
+        Above the sheet, and in its alt text.
+    columns : int, optional
+        Pictures in a row; so many that the sheet is broad rather than tall, unless told.
+    side : int
+        Pixels of a picture's longer side on the sheet. Operators work on all pixels of `E`.
+
+    Returns
+    -------
+    Figure, labelled with its alt text
+
+    Raises
+    ------
+    ValueError
+        For radiance that is not finite or negative, and for names that no operator has.
+
+    References
+    ----------
+    Yeganeh and Wang, Objective quality assessment of tone-mapped images, IEEE TIP 22(2), 2013.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import scenes
+    >>> sheet = contact_sheet(scenes.room((48, 72)), ["reinhard"], title="the room")
+    >>> sheet.get_label()[:68]
+    'Contact sheet of the room: one scene through 1 tone-mapping operator'
+    """
+    return draw(entry_steps(E, operators, way=way), title=title, columns=columns, side=side)
+
+
+def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str, Callable[..., NDArray]]:
+    """Return label -> function, or raise a ValueError, before the first operator has run."""
+    if operators is None:
+        operators = catalogue.names("tonemap")
+    if isinstance(operators, str):
+        raise ValueError(f"expected a list of operators, got the text {operators!r}")
+    named = operators if isinstance(operators, Mapping) else {name: name for name in operators}
+    if not named:
+        raise ValueError(f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none")
+    return {label: catalogue.method("tonemap", method) for label, method in named.items()}

@@ -1,0 +1,98 @@
+"""The report on a radiance map: one page that travels alone, with what was found and how far to trust it.
+
+What the page says is in `sections`, how it says it in the template `report.html`; its pictures travel in it.
+Nothing on the page is fetched, and nothing on it runs.
+"""
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import describe
+from hdrlab.core.errors import Truth
+from hdrlab.io.files import replacing
+from hdrlab.pipeline import Assembly
+from hdrlab.show.pages import sections
+from hdrlab.show.pages.templates import templates
+from hdrlab.show.plots import figures
+
+PAGE = "report.html"
+
+
+def write_report(
+    folder: str | Path,
+    assembly: Assembly,
+    picture: ArrayLike,
+    *,
+    recipe: str | Mapping[str, Any] = "",
+    truth: Truth | None = None,
+) -> Path:
+    """Write `report.html` into a folder, which is made where it is missing, and return the page's path.
+
+    Parameters
+    ----------
+    folder : path
+        A page that stands there is replaced when the new one is complete.
+    assembly : Assembly
+        All that `pipeline.assemble` found.
+    picture : (h, w) or (h, w, 3) uint8
+        The tone-mapped map, as `pipeline.develop` returns it.
+    recipe : str or mapping
+        How it was made, beyond what the assembly knows: methods and knobs, by name.
+    truth : Truth, optional
+        Adds the errors of radiance, response and offsets.
+
+    Raises
+    ------
+    ValueError
+        For an assembly that is not finished or without light, a picture or a truth that does not fit it.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> from hdrlab import pipeline
+    >>> from hdrlab.capture import camera, scenes
+    >>> assembly = pipeline.assemble(camera.shoot(scenes.room((48, 72)), [0.01, 0.04, 0.16], rng=1))
+    >>> picture = pipeline.develop(assembly.E)
+    >>> write_report(tempfile.mkdtemp(), assembly, picture, recipe={"tonemap": "reinhard"}).name
+    'report.html'
+    """
+    page = Path(folder) / PAGE
+    text = _page(assembly, np.asarray(picture), recipe, truth)
+    page.parent.mkdir(parents=True, exist_ok=True)
+    with replacing(page) as temporary:
+        temporary.write_text(text, encoding="utf8")
+    return page
+
+
+def _page(
+    assembly: Assembly, picture: np.ndarray, recipe: str | Mapping[str, Any], truth: Truth | None
+) -> str:
+    stage, bracket, offsets, g, E, seen, medians, notes, doubts, *_ = assembly
+    if g is None or E is None or seen is None or medians is None:
+        raise ValueError(f"expected a finished assembly, got one after the stage {stage!r}")
+    if picture.dtype != np.uint8 or picture.shape[:2] != seen.shape or picture.shape[2:] not in ((), (3,)):
+        raise ValueError(f"expected a uint8 picture of {seen.shape} pixels, got {describe(picture)}")
+    return (
+        templates(Path(__file__).parent)
+        .get_template(PAGE)
+        .render(
+            notes=notes,
+            doubts=doubts,
+            picture=figures.photograph(
+                picture, 1600, "The picture: the radiance map, tone-mapped for a display"
+            ),
+            facts=sections.facts(E, seen, medians),
+            bracket=sections.bracket(bracket, offsets),
+            response=sections.response(g, truth),
+            radiance=sections.radiance(E),
+            known=sections.known(seen, picture),
+            moving=sections.moving(assembly.moving, picture),
+            agreement=sections.agreement(bracket, medians),
+            errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
+            recipe=sections.recipe(bracket, recipe),
+        )
+    )

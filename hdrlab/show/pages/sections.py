@@ -1,0 +1,182 @@
+"""What a report says, a function per section: numbers as a reader wants them, pictures with alt texts.
+
+The letters are those of `pipeline.Assembly`; the template `report.html` calls what is returned by its names.
+"""
+
+import platform
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+import hdrlab
+from hdrlab.core import colour, errors
+from hdrlab.core.arrays import Array
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.errors import Truth
+from hdrlab.core.sampling import to_256
+from hdrlab.diagnostics import consistency
+from hdrlab.radiance.bounds import Seen
+from hdrlab.show import plots
+from hdrlab.show.pages.wording import CLOSE, KINDS, offset, share, signed, verdict
+from hdrlab.show.pages.wording import stops as in_stops
+from hdrlab.show.plots import figures
+
+Float = NDArray[np.float64]
+Image = NDArray[np.uint8]
+
+
+def facts(E: Array, seen: Image, medians: Float) -> list[tuple[str, str]]:
+    """Return the figures that stand beside the picture: (value, what it is)."""
+    low, high = np.nanpercentile(figures.stops(E), [0.1, 99.9])
+    spread = consistency.spread(medians)
+    return [
+        (
+            f"{high - low:.1f} stops",
+            f"from dark to bright: {(high - low) * np.log10(2):.1f} decades of luminance",
+        ),
+        (share(seen == Seen.MEASURED), "of the pixels measured by at least one frame"),
+        (in_stops(spread), f"between what the frames say of the same light: {verdict(spread)}"),
+    ]
+
+
+def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
+    """Return each photograph as a thumbnail with its name, its time and where it was moved."""
+    images, times, names, *_ = photographs
+    frames = []
+    for image, time, name, moved in zip(images, map(plots.seconds, times), names, offsets, strict=True):
+        small = to_256(figures.fit(image, 400))
+        if photographs.linear:  # its numbers are light, and a screen wants them encoded
+            small = colour.to_8bit(small / np.float32(255))
+        shown = figures.photograph(small, 400, f"Photograph {name}, exposed for {time}")
+        frames.append({"name": name, "time": time, "offset": offset(moved), "picture": shown})
+    return frames
+
+
+def response(g: Float, truth: Truth | None) -> dict[str, Any]:
+    """Return the plot of the response, over the true one where that is known, and its reach."""
+    ax = plots.axes(4.6, 3.4)
+    if truth is not None:
+        plots.response(truth.g, label="true", ax=ax)
+    plots.response(g, label="found" if truth is not None else "", ax=ax)
+    curves = g.reshape(len(g), -1)
+    low, high = curves[[round(level / 255 * (len(g) - 1)) for level in (errors.LOW, errors.HIGH)]]
+    reach = ", ".join(f"{one:.1f}" for one in (high - low) / np.log(2))
+    alt = f"Response, pixel level over ln exposure: from level 10 to level 250 it rises over {reach} stops"
+    return {"plot": figures.plot(ax, alt), "reach": reach, "coloured": curves.shape[1] == 3}
+
+
+def radiance(E: Array) -> dict[str, Any]:
+    """Return the map in false colour and its scale."""
+    ev = figures.stops(E)
+    low, high = figures.limits(ev)
+    image = figures.false_colour(figures.fit(ev, 1000), low, high)
+    ends = f"from {signed(low)} to {signed(high)} stops around the median luminance"
+    shown = figures.photograph(image, 1000, f"The radiance map in false colour, {ends}")
+    return {"picture": shown, "scale": figures.scale(low, high)}
+
+
+def known(seen: Image, picture: Image) -> dict[str, Any]:
+    """Return how many pixels are known in which way, and where those stand that were not measured."""
+    rows = [
+        {
+            "kind": kind,
+            "meaning": meaning,
+            "count": f"{np.count_nonzero(seen == flag):,}",
+            "share": share(seen == flag),
+            "colour": figures.KNOWN.get(flag),
+        }
+        for flag, (kind, meaning) in KINDS.items()
+        if flag == Seen.MEASURED or np.any(seen == flag)
+    ]
+    if len(rows) == 1:
+        return {"rows": rows, "picture": None}
+    alt = "The picture in pale gray, with dots where a pixel was not measured"
+    return {"rows": rows, "picture": figures.photograph(figures.known(picture, seen), 1000, alt)}
+
+
+def moving(labels: NDArray[np.int32] | None, picture: Image) -> dict[str, Any] | None:
+    """Return how much moved, and the picture with its regions; None where nobody asked or nothing did."""
+    if labels is None or not labels.any():
+        return None
+    count, part = int(labels.max()), share(labels > 0)
+    regions = "one region" if count == 1 else f"{count} regions"
+    alt = f"The picture in pale gray; what moved lies in {regions}, in orange with dark outlines"
+    shown = figures.photograph(figures.regions(picture, labels), 1000, alt)
+    return {"regions": regions, "share": part, "picture": shown}
+
+
+def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
+    """Return how far each frame departs from what all say, as numbers and as bars."""
+    shared = np.isfinite(medians[..., consistency.LEVELS])
+    shared &= shared.sum(axis=0) >= 2
+    spread, found = consistency.spread(medians), consistency.deviations(medians)
+    counts = shared.any(axis=1).sum(axis=1).tolist()
+    bars = np.nan_to_num(found)  # none, for a frame of which nothing is known
+    widest = max(np.abs(bars).max(), CLOSE)
+    rows = [
+        {
+            "name": name,
+            "time": plots.seconds(time),
+            "levels": levels,
+            "stops": signed(by, 3) if np.isfinite(departs) else "–",
+            "start": f"{50 + 50 * min(by, 0) / widest:.2f}",
+            "width": f"{50 * abs(by) / widest:.2f}",
+        }
+        for name, time, departs, by, levels in zip(
+            photographs.names, photographs.times, found, bars, counts, strict=True
+        )
+    ]
+    return {"spread": in_stops(spread), "verdict": verdict(spread), "rows": rows}
+
+
+def against(truth: Truth, photographs: Bracket, offsets: Array, g: Float, E: Array) -> dict[str, Any]:
+    """Return how far radiance, response and offsets lie from the truth."""
+    well = errors.well_seen(photographs.images, photographs.valid)
+    apart = np.abs(errors.radiance_errors(E, truth.E, well))[well]
+    rmse, off = errors.response_rmse(g, truth.g), errors.offset_errors(offsets, truth.offsets)
+    channels = [name for name, *_ in plots.CHANNELS] if len(rmse) == 3 else ["gray"]
+    columns = zip(photographs.names, offsets, truth.offsets, off, strict=True)
+    return {
+        "median": f"{100 * np.nanmedian(apart):.2f} %",
+        "most": f"{100 * np.nanpercentile(apart, 95):.2f} %",
+        "well": share(well),
+        **error_map(truth, E, well),
+        "rmse": [(channel, f"{one:.2f} %") for channel, one in zip(channels, rmse, strict=True)],
+        "offsets": [(name, *map(offset, three)) for name, *three in columns],
+        "furthest": int(np.abs(off).max()),
+    }
+
+
+def error_map(truth: Truth, E: Array, well: NDArray[np.bool_]) -> dict[str, Any]:
+    """Return the errors of luminance in false colour and their scale."""
+    ratio = 1 + errors.radiance_errors(colour.luminance(E), colour.luminance(truth.E), well)
+    stops = np.where(well, np.log2(np.maximum(ratio, 2.0**-10)), np.nan)
+    reach = figures.round_up(np.nanpercentile(np.abs(stops), 99))
+    image = figures.false_colour(figures.fit(stops, 1000), -reach, reach, colours="PuOr_r")
+    ends = f"from {signed(-reach, 2)} to {signed(reach, 2)} stops"
+    return {
+        "picture": figures.photograph(image, 1000, f"Errors of luminance in false colour, {ends}"),
+        "scale": figures.scale(-reach, reach, "PuOr_r", digits=2),
+    }
+
+
+def recipe(photographs: Bracket, given: str | Mapping[str, Any]) -> list[tuple[str, str]]:
+    """Return what one must know to make it again: (name, value)."""
+    images = photographs.images
+    knobs = ({"how": given} if given else {}) if isinstance(given, str) else given
+    kind = f"{'RGB' if images.ndim == 4 else 'gray'}, {8 * images.itemsize} bits"
+    return [
+        *((str(knob), str(value)) for knob, value in knobs.items()),
+        ("photographs", ", ".join(photographs.names)),
+        ("times, s", ", ".join(f"{time:.6g}" for time in photographs.times)),
+        (
+            "size",
+            f"{images.shape[2]} × {images.shape[1]} pixels, {kind}{', linear' if photographs.linear else ''}",
+        ),
+        ("hdrlab", hdrlab.__version__),
+        ("numpy, scipy", f"{np.__version__}, {scipy.__version__}"),
+        ("Python", platform.python_version()),
+    ]

@@ -1,0 +1,240 @@
+"""Arrays -> matplotlib Axes, with units on every axis and colours that colour-blind readers tell apart.
+
+E    radiance        (H, W[, 3]), any linear unit
+g    response        (256,) or (256, 3), ln exposure of each pixel level
+Z    pixel levels    (N, P): sample i in frame j
+lE   ln irradiance   (N,)
+B    ln exposure times (P,)
+
+A stop is a factor of 2, a decade one of 10. Every function draws on `ax`, or on a new figure of its own, and
+returns the Axes; nothing is shown or written here.
+"""
+
+from collections.abc import Sequence
+from itertools import chain
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import Array, as_stack, describe, levels
+from hdrlab.core.bracket import Bracket
+from hdrlab.show.plots import figures, reuse
+
+Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
+
+# Okabe and Ito's colours. Line styles and markers differ too, so the channels also part in gray.
+CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
+GRAY = (("", "#1A1A1A", "-"),)
+SAMPLES = (
+    ("#D55E00", "o"),
+    ("#0072B2", "s"),
+    ("#009E73", "^"),
+    ("#CC79A7", "D"),
+    ("#E69F00", "v"),
+    ("#56B4E9", "*"),
+)
+UNITS = {"stops": 1.0, "decades": float(np.log10(2))}  # of a stop
+SIDE = 1000  # pixels: a larger map is drawn by means of k x k pixels
+
+
+def axes(width: float = 5.4, height: float = 3.6) -> Axes:
+    """Return the Axes of a new figure (inches), always in the same place: played steps do not jump."""
+    if spare := reuse.take((width, height)):
+        return spare[0]
+    figure = Figure(figsize=(width, height), dpi=100)
+    left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
+    place = (left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height)
+    ax = figure.add_axes(place)
+    ax.grid(color="#D9D9D9", linewidth=0.6)
+    ax.set_axisbelow(True)
+    return reuse.handed_out((width, height), ax)[0]
+
+
+def picture_axes(width: float, height: float, place: Place) -> Axes:
+    """Return bare Axes for a picture, in a figure of this size (inches) at a place in parts of it."""
+    if spare := reuse.take((width, height, *place)):
+        return spare[0]
+    ax = bare(Figure(figsize=(width, height), dpi=100).add_axes(place))
+    return reuse.handed_out((width, height, *place), ax)[0]
+
+
+def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place) -> list[Axes]:
+    """Return bare Axes for each of some maps, and those of the scale that they share, without an axis up."""
+    size = (width, height, *chain(*places, bar))
+    if spare := reuse.take(size):
+        return spare
+    figure = Figure(figsize=(width, height), dpi=100)
+    maps, scale = [bare(figure.add_axes(place)) for place in places], figure.add_axes(bar)
+    scale.set_axisbelow(True)
+    scale.yaxis.set_visible(False)
+    return reuse.handed_out(size, *maps, scale)
+
+
+def bare(ax: Axes) -> Axes:
+    """Take the frame and the ticks from Axes that hold a picture; a title then need not look for ticks."""
+    ax.set_axis_off()
+    ax.xaxis.set_visible(False)
+    ax.yaxis.set_visible(False)
+    return ax
+
+
+def fixed(
+    ax: Axes, span: tuple[float, float] | None = None, limits: tuple[float, float] | None = None
+) -> None:
+    """Fix the ends of x by `span` and those of y by `limits`, where given: a slider then moves no ticks."""
+    if span is not None:
+        ax.set_xlim(span)
+    if limits is not None:
+        ax.set_ylim(limits)
+
+
+def seconds(time: float) -> str:
+    """Return an exposure time as a camera shows it: '1/60 s', '2 s'.
+
+    Examples
+    --------
+    >>> [seconds(t) for t in (1 / 60, 0.3, 2, 2.5)]
+    ['1/60 s', '0.3 s', '2 s', '2.5 s']
+    """
+    if time >= 1 or abs(1 / time - round(1 / time)) > 0.02 / time:
+        return f"{time:.3g} s"
+    return f"1/{round(1 / time)} s"
+
+
+def response(
+    g: ArrayLike, *, label: str = "", span: tuple[float, float] | None = None, ax: Axes | None = None
+) -> Axes:
+    """Draw response curves as the slides do: ln exposure across, pixel level up; one line per channel."""
+    curves = np.asarray(g, dtype=np.float64)
+    if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
+        raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
+    ax = _exposure_axes(ax or axes(), span, len(curves))
+    for (name, colour, style), curve in zip(_channels(curves.ndim == 2), _columns(curves), strict=True):
+        ax.plot(
+            curve, np.arange(len(curve)), style, color=colour, linewidth=1.8, label=f"{label} {name}".strip()
+        )
+    if label or curves.ndim == 2:
+        ax.legend(loc="upper left", framealpha=0.9)
+    return ax
+
+
+def samples(
+    Z: ArrayLike,
+    lE: ArrayLike,
+    B: ArrayLike,
+    *,
+    g: ArrayLike | None = None,
+    span: tuple[float, float] | None = None,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw each sample i as its points (lE_i + B_j, Z_ij): with the right lE they all lie on one curve, g.
+
+    Up to six samples have a colour and a marker each; more are drawn alike. `span` fixes the exposure axis.
+    """
+    Z, lE, B = np.asarray(Z), np.asarray(lE, dtype=np.float64), np.asarray(B, dtype=np.float64)
+    if Z.ndim != 2 or Z.shape != lE.shape + B.shape:
+        raise ValueError(f"expected Z (N, P), lE (N,) and B (P,), got {Z.shape}, {lE.shape} and {B.shape}")
+    ax, x = _exposure_axes(ax or axes(), span, 256), lE[:, None] + B
+    if g is not None:  # above the points, which would hide it
+        ax.plot(g, np.arange(len(np.asarray(g))), color="#1A1A1A", linewidth=1.5, zorder=3, label="g")
+    if len(Z) <= len(SAMPLES):
+        for i, (colour, marker) in enumerate(SAMPLES[: len(Z)]):
+            ax.plot(x[i], Z[i], "-", marker=marker, color=colour, linewidth=0.8, label=f"pixel {i + 1}")
+    else:
+        ax.plot(x.ravel(), Z.ravel(), ".", color="#56B4E9", markersize=5, label=f"{len(Z)} pixels")
+    ax.legend(loc="upper left", framealpha=0.9)
+    return ax
+
+
+def system(A: ArrayLike, *, ax: Axes | None = None) -> Axes:
+    """Draw where a matrix is not zero: an equation across, an unknown down."""
+    A, ax = np.asarray(A), ax or axes(4.2, 5.4)
+    ax.plot(*np.nonzero(A)[::-1], ".", color="#1A1A1A", markersize=2)
+    ax.set(xlabel="unknown (column of A)", ylabel="equation (row of A)")
+    ax.set(xlim=(-3, A.shape[1] + 2), ylim=(A.shape[0] + 2, -3))
+    return ax
+
+
+def histogram(image: ArrayLike, *, ax: Axes | None = None) -> Axes:
+    """Draw how many pixels of a photograph (H, W[, 3]) have each level, on a logarithmic scale."""
+    pixels = as_stack(np.asarray(image)[None])[0]
+    n, ax = levels(pixels), ax or axes()
+    columns = _columns(pixels.reshape(-1, *pixels.shape[2:]))
+    for (name, colour, style), channel in zip(_channels(pixels.ndim == 3), columns, strict=True):
+        counts = np.bincount(channel, minlength=n).reshape(256, -1).sum(axis=1)
+        ax.plot(np.arange(256) * (n // 256), counts, style, color=colour, drawstyle="steps-mid", label=name)
+    ax.set(xlabel="pixel level Z", ylabel="number of pixels", yscale="symlog")
+    ax.set(xlim=(0, n - 1), ylim=(0, None))
+    if pixels.ndim == 3:
+        ax.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, borderaxespad=0.1)
+    return ax
+
+
+def radiance(
+    E: ArrayLike, *, stops: tuple[int, int] | None = None, unit: str = "stops", ax: Axes | None = None
+) -> Axes:
+    """Draw a radiance map in false colour, from its median luminance, with the scale in stops or decades.
+
+    `stops` fixes the ends of the scale, else all but the outermost 0.1 % of the pixels fit. No light is gray.
+    """
+    if unit not in UNITS:
+        raise ValueError(f"expected unit as {' or '.join(UNITS)}, got {unit!r}")
+    ev = figures.fit(figures.stops(E), SIDE)
+    low, high = stops or figures.limits(ev)
+    ax = ax or _frame(ev.shape, beside=1.1)
+    colours = matplotlib.colormaps["viridis"].with_extremes(bad=figures.MISSING)
+    shown = ax.imshow(ev * UNITS[unit], cmap=colours, interpolation="nearest")
+    shown.set_clim(low * UNITS[unit], max(high, low + 1) * UNITS[unit])
+    place = ax.get_position()
+    bar = ax.figure.add_axes((place.x1 + 0.02, place.y0, 0.025, place.height))
+    ticks = MaxNLocator(8, steps=[1, 2, 5, 10])
+    ax.figure.colorbar(shown, cax=bar, label=f"{unit} from the median luminance", ticks=ticks)
+    return bare(ax)
+
+
+def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 3) -> Figure:
+    """Draw the photographs in rows, each under its exposure time and, where given, its offset (dy, dx)."""
+    count, (h, w) = len(bracket.images), bracket.images.shape[1:3]
+    rows, width, title = -(-count // columns), 1.75, 0.25 if offsets is None else 0.4
+    height = width * h / w + title
+    figure = Figure(figsize=(columns * width, rows * height), dpi=100)
+    for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
+        row, column = divmod(j, columns)
+        place = (column / columns, 1 - (row + 1) / rows, 0.97 / columns, (1 - title / height) / rows)
+        ax = figure.add_axes(place)
+        step = max(1, w // 350)
+        ax.imshow(_eight_bits(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
+        moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
+        ax.set_title(seconds(time) + moved, fontsize=11, pad=3)
+        bare(ax)
+    return figure
+
+
+def _frame(shape: tuple[int, ...], *, beside: float, height: float = 3.6) -> Axes:
+    """Return Axes that fit a picture of this shape, with room for a scale beside it, in inches."""
+    width = height * shape[1] / shape[0]
+    figure = Figure(figsize=(width + beside, height), dpi=100)
+    return figure.add_axes((0.01, 0.04, width / (width + beside) - 0.01, 0.92))
+
+
+def _exposure_axes(ax: Axes, span: tuple[float, float] | None, n: int) -> Axes:
+    ax.set(xlabel="ln exposure, ln(E t)", ylabel="pixel level Z", ylim=(-0.02 * n, 1.02 * n))
+    if span is not None:
+        ax.set_xlim(*span)
+    return ax
+
+
+def _channels(coloured: bool) -> tuple[tuple[str, str, str], ...]:
+    return CHANNELS if coloured else GRAY
+
+
+def _columns(table: Array) -> list[Array]:
+    return [table] if table.ndim == 1 else list(table.T)
+
+
+def _eight_bits(image: Array) -> Array:
+    return image if image.dtype == np.uint8 else (image // 257).astype(np.uint8)

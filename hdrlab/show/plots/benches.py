@@ -1,0 +1,128 @@
+"""Two benches, for `widgets.tune`: pure functions that take a photograph, and what they draw.
+
+metered     place the spot on a scene, see the exposure that the mode chooses, shoot, see what was lost
+calibrated  shoot a bracket with an unsteady hand, align it, calibrate it, compare with the truth
+looked      one step of automatic exposure
+
+E    radiance  (H, W, 3), cd/m^2
+at   (down, right), parts of the picture, 0 to 1
+EV   exposure value, stops;  off  by how many stops the subject is too bright
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab import pipeline
+from hdrlab.capture import autoexposure, camera, exposure, metering, ranges, responses
+from hdrlab.capture.autoexposure import State
+from hdrlab.capture.metering import At
+from hdrlab.capture.room.subjects import Subject
+from hdrlab.capture.sensor import Sensor
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.colour import encode_srgb, luminance
+from hdrlab.response import debevec
+from hdrlab.show.plots import curves, sensors
+from hdrlab.show.plots.figures import fit
+
+Mask = NDArray[np.bool_]
+
+F = 8.0  # f-number of the benches
+COARSE = 96  # pixels: meters do not look closer, and the picture is only looked at
+SAMPLES = 500  # of a calibration: enough for pictures as small as those of the bench
+SENSOR = Sensor()
+
+
+class Shot(NamedTuple):
+    """A photograph as the meter wanted it, and what it lost."""
+
+    picture: NDArray[np.uint8]  # (H, W, 3), sRGB
+    full: Mask  # (H, W), a channel or more is full
+    noise: Mask  # (H, W), no more signal than noise
+    asked: Mask  # (H, W), pixels that the mode listens to
+    EV: float
+    off: float  # stops, the subject against where it belongs
+
+
+def metered(
+    scene: Subject, mode: str = "spot", at: At = (0.5, 0.5), *, sensor: Sensor = SENSOR, rng: int = 0
+) -> Shot:
+    """Return the photograph that automatic exposure takes of a scene, in a mode, the spot at a place."""
+    coarse = fit(scene.E, COARSE)
+    EV = autoexposure.expose(coarse, mode, at=at, aperture=F)
+    fills = float(exposure.saturating_luminance(1.0, F=F))
+    time, s = F**2 / 2.0**EV, 1 / fills
+    taken = camera.shoot(scene.E, [time], response="srgb", sensitivity=s, sensor=sensor, rng=rng)
+    L = luminance(scene.E)
+    noise = ranges.held(L, time, sensor, sensitivity=s).noise
+    off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
+    asked = metering.weights(autoexposure.see(coarse, EV, aperture=F), mode, at=at)
+    picture = taken.images[0]
+    return Shot(picture, np.any(picture == 255, axis=-1), noise, _enlarged(asked, L.shape), EV, off)
+
+
+def _enlarged(w: NDArray[np.float64], shape: tuple[int, ...]) -> Mask:
+    """Return where a weight is at least half of the largest one, at the size of the picture."""
+    rows, columns = (np.arange(n) * small // n for n, small in zip(shape, w.shape, strict=True))
+    return (w >= w.max() / 2)[rows][:, columns]
+
+
+def draw_shot(shot: Shot) -> Axes:
+    """Draw a photograph with its lost pixels marked, and what the mode chose; a ring for whom it asked."""
+    time = F**2 / 2.0**shot.EV
+    chosen = (
+        f"EV {shot.EV:.1f}: f/{F:g}, 1/{1 / time:.0f} s" if time < 1 else f"EV {shot.EV:.1f}: {time:.1f} s"
+    )
+    lost = f"full {shot.full.mean():.1%} (orange), lost in noise {shot.noise.mean():.1%} (blue)"
+    aside = "too bright" if shot.off > 0 else "too dark"
+    text = f"{chosen}; subject {abs(shot.off):.1f} stops {aside}\n{lost}"
+    return sensors.titled(sensors.marked(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
+
+
+def looked(state: State) -> Axes:
+    """Draw one shot of automatic exposure, its reading, and what it asks for next; the ring as above."""
+    Z = np.round(255 * encode_srgb(state.B)).astype(np.uint8)
+    full = f"{np.mean(state.B >= 1):.0%} of the pixels full"
+    text = f"EV {state.EV:.2f}: reading {state.B_pre:.3f}, {full}\n"
+    ring = state.w >= state.w.max() / 2
+    return sensors.titled(Z, text + f"wanted {metering.GRAY}: next EV {state.EV_opt:.2f}", ring=ring)
+
+
+class Calibrated(NamedTuple):
+    """A bracket from the hand, and what calibrating it gives as it was shot, and aligned."""
+
+    bracket: Bracket
+    wrong: int  # photographs whose offset was not found to the pixel
+    shot: NDArray[np.float64]  # (256,) g without aligning
+    aligned: NDArray[np.float64]  # (256,) g after it
+    truth: NDArray[np.float64]  # (256,) the camera's own
+
+
+def calibrated(
+    E: ArrayLike,
+    *,
+    radius: int = 6,
+    count: int = 5,
+    stops: float = 2.0,
+    full_well: float = 20_000,
+    rng: int = 0,
+) -> Calibrated:
+    """Return a calibration of `count` gray photographs, `stops` apart, shaken by up to `radius` pixels."""
+    L = luminance(E)
+    offsets = camera.shake(count, radius=radius, rng=rng)
+    times = camera.times_around(L, count, stops=stops)
+    taken = camera.shoot(L, times, offsets=offsets, full_well=full_well, read_noise=5, rng=rng)
+    found = pipeline.aligned(taken, "mtb")
+    wrong = int(np.any(found.offsets - found.offsets[count // 2] != offsets, axis=1).sum())
+    both = [debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)]
+    return Calibrated(taken, wrong, both[0], both[1], responses.true_g())
+
+
+def draw_calibrated(found: Calibrated) -> Axes:
+    """Draw how many stops both curves lie off the truth; above, how many photographs found their place."""
+    count = len(found.bracket.images)
+    ax = curves.deviations({"as shot": found.shot, "aligned": found.aligned}, found.truth, limit=1.0)
+    ax.set_title(f"{count - found.wrong} of {count} photographs aligned to the pixel", fontsize=10)
+    return ax

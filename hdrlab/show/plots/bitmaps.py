@@ -1,0 +1,153 @@
+"""Alignment by bitmaps -> pictures and drawings: where two bitmaps differ, nine offsets at once, all.
+
+bits     of one photograph   (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap, 1 where compared
+state    of `align.mtb`      one level of one pair
+errors   (2 n + 1, 2 n + 1)  bits that differ / bits compared, dy down and dx across, -n to n pixels
+
+Bits that agree are white or nearly black, those that differ orange, and what is not compared is blue; in gray
+the four part as well.
+"""
+
+from textwrap import wrap
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.align import bitmaps, judge
+from hdrlab.align.bitmaps import Offset, Words
+from hdrlab.align.mtb import State
+from hdrlab.align.pairs import Verdict
+from hdrlab.core.arrays import describe
+from hdrlab.show.plots import picture_axes
+from hdrlab.show.plots.nearest import show
+
+Image = NDArray[np.uint8]
+AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
+DIFFER, OUTSIDE = (230, 159, 0), (0, 90, 160)
+CENTRE, BEST = "#808080", "#D55E00"
+WIDTH = 5.4  # inches, as the other plots have
+
+
+def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None) -> Image:
+    """Return two bitmaps (H, W) as one picture (H, W, 3); `compared` (H, W) is False where no bit counts."""
+    a, b = np.asarray(fixed, bool), np.asarray(moved, bool)
+    if a.ndim != 2 or a.shape != b.shape or (compared is not None and np.shape(compared) != a.shape):
+        raise ValueError(f"expected two bitmaps (H, W) of one size, got {describe(a)} and {describe(b)}")
+    picture = np.array(AGREE, np.uint8)[a.astype(int)]
+    picture[a != b] = DIFFER
+    if compared is not None:
+        picture[~np.asarray(compared, bool)] = OUTSIDE
+    return picture
+
+
+def difference(fixed: Words, moving: Words, offset: Offset, width: int, *, title: str = "") -> Axes:
+    """Draw the difference of two photographs' bits, the second moved by an offset, under its error."""
+    moved = judge.move(moving, offset)
+    error = float(bitmaps.error(bitmaps.disagreement(fixed, moved)))
+    ax = _under(fixed.shape[1] / width, above=0.32 + 0.21 * title.count("\n"))
+    show(ax, _picture(fixed, moved, width))
+    ax.set_title(title or f"moved by {_pair(offset)}: {100 * error:.2f} % of the bits differ", fontsize=11)
+    return ax
+
+
+def judged(state: State, verdict: Verdict) -> Axes:
+    """Draw what still differs at the end of a search, under what was found and why to doubt it."""
+    found = f"found {_pair(state.offset)}, {100 * verdict.after:.2f} % of the bits differ"
+    said = wrap(verdict.trouble or "nothing speaks against it", 68)
+    title = "\n".join([found, *said, *[""] * (2 - len(said))])  # of one height, whatever it says
+    return difference(*state.bits, state.offset, state.width, title=title)
+
+
+def nine(state: State) -> Figure:
+    """Return the nine offsets that a level compares, the centre in a gray frame and the best in an orange."""
+    fixed, moving = state.bits
+    height, gap = fixed.shape[1], 0.06
+    i, j = np.unravel_index(np.argmin(state.errors), (3, 3))
+    best = (int(i), int(j)) if state.errors.min() < state.errors[1, 1] else (1, 1)
+    centre = state.offset[0] - best[0] + 1, state.offset[1] - best[1] + 1
+    side = (WIDTH - 4 * gap) / 3
+    tall = side * height / state.width
+    figure = Figure(figsize=(WIDTH, 3 * (tall + 0.25) + 0.45), dpi=100)
+    total = figure.get_size_inches()[1]
+    for (row, column), error in np.ndenumerate(state.errors):
+        offset = centre[0] + row - 1, centre[1] + column - 1
+        left, top = gap + column * (side + gap), 0.4 + row * (tall + 0.25)
+        place = (left / WIDTH, 1 - (top + 0.22 + tall) / total, side / WIDTH, tall / total)
+        ax = figure.add_axes(place)
+        picture = _picture(fixed, judge.move(moving, offset), state.width)
+        show(ax, picture)
+        ax.set_title(f"{_pair(offset)}: {100 * error:.2f} %", fontsize=10, pad=2)
+        ax.set(xticks=(), yticks=())
+        framed = BEST if (row, column) == best else CENTRE if (row, column) == (1, 1) else "#D9D9D9"
+        for edge in ax.spines.values():
+            edge.set(color=framed, linewidth=1 if framed == "#D9D9D9" else 3)
+    said = f"level {state.level}, {state.width} × {height} pixels: offsets (dy, dx), and how many bits differ"
+    figure.suptitle(said, fontsize=11, y=1 - 0.12 / total, va="top")
+    return figure
+
+
+def surface(errors: ArrayLike, *, marks: dict[str, Offset] | None = None) -> Figure:
+    """Return the errors of all offsets as a map, with named offsets marked on it."""
+    found = np.asarray(errors, np.float64)
+    if found.ndim != 2 or found.shape[0] != found.shape[1] or len(found) % 2 == 0:
+        raise ValueError(f"expected errors (2 n + 1, 2 n + 1), got {describe(found)}")
+    n = len(found) // 2
+    figure = Figure(figsize=(WIDTH, 4.2), dpi=100)
+    ax = figure.add_axes((0.13, 0.14, 0.65, 0.82))
+    ends = (-n - 0.5, n + 0.5, n + 0.5, -n - 0.5)
+    shown = ax.imshow(100 * found, extent=ends, interpolation="nearest", aspect="auto")
+    for (name, (dy, dx)), (marker, size) in zip((marks or {}).items(), (("o", 14), ("x", 9)), strict=False):
+        look = {"markerfacecolor": "none", "markeredgecolor": "#FFFFFF", "markeredgewidth": 2}
+        ax.plot(dx, dy, label=name, linestyle="none", marker=marker, markersize=size, **look)  # type: ignore[arg-type]
+    ax.set(xlabel="dx, pixels to the right", ylabel="dy, pixels down")
+    bar = figure.add_axes((0.8, 0.14, 0.035, 0.82))
+    figure.colorbar(shown, cax=bar, label="bits that differ, %")
+    if marks:
+        ax.legend(loc="lower left", facecolor="#404040", labelcolor="#FFFFFF", framealpha=0.8)
+    return figure
+
+
+def words(rows: dict[str, ArrayLike], *, marked: ArrayLike | None = None) -> Figure:
+    """Return rows of bits, each under the other beside its name: 1 is white and 0 dark, as in the pictures.
+
+    `marked` (N,) frames the columns that are True.
+    """
+    each = {name: np.asarray(row, bool) for name, row in rows.items()}
+    lengths = {row.shape for row in each.values()}
+    if len(lengths) != 1 or len(next(iter(lengths))) != 1:
+        raise ValueError(f"expected rows of one length, got {sorted(lengths)}")
+    (count,) = next(iter(lengths))
+    figure = Figure(figsize=(WIDTH, 0.34 * len(each) + 0.15), dpi=100)
+    ax = figure.add_axes((0.26, 0.03, 0.73, 0.94))
+    for y, row in enumerate(each.values()):
+        for x, bit in enumerate(row.tolist()):
+            ax.add_patch(Rectangle((x, y), 1, 1, facecolor="#FFFFFF" if bit else "#404040", edgecolor=CENTRE))
+            dark = "#1A1A1A" if bit else "#FFFFFF"
+            ax.text(x + 0.5, y + 0.5, str(int(bit)), color=dark, fontsize=10, ha="center", va="center")
+    for x in np.flatnonzero([] if marked is None else marked).tolist():
+        ax.add_patch(Rectangle((x, 0), 1, len(each), fill=False, edgecolor=BEST, linewidth=2.5))
+    ax.set(xlim=(-0.1, count + 0.1), ylim=(len(each) + 0.1, -0.1), xticks=())
+    ax.set_yticks(np.arange(len(each)) + 0.5, list(each), fontsize=10)
+    ax.tick_params(length=0)
+    for edge in ax.spines.values():
+        edge.set_visible(False)
+    return figure
+
+
+def _picture(fixed: Words, moved: Words, width: int) -> Image:
+    masks = bitmaps.unpack(np.stack([fixed, moved]), width)
+    return overlay(masks[0, 0], masks[1, 0], masks[0, 1] & masks[1, 1])
+
+
+def _under(ratio: float, *, above: float) -> Axes:
+    """Return bare Axes for a picture of this height over width, with room for a title."""
+    tall = (WIDTH - 0.1) * ratio
+    total = tall + above + 0.05
+    return picture_axes(WIDTH, total, (0.05 / WIDTH, 0.05 / total, 1 - 0.1 / WIDTH, tall / total))
+
+
+def _pair(offset: Offset) -> str:
+    return "({:d}, {:d})".format(*offset)

@@ -1,0 +1,242 @@
+"""What a calibration found, in words and pictures: a response with its band and residuals, or many together.
+
+g  response   (n,) or (n, 3), ln exposure of each pixel level, 0 at level n // 2
+r  residuals  (P, 256) or (P, 256, 3), stops: what g and the times leave unexplained
+E  radiance   (H, W[, 3])
+
+A stop is a factor of 2. Functions return lines of text or figures; only `write_plot` writes.
+"""
+
+from collections.abc import Mapping, Sequence
+from itertools import cycle, islice
+from pathlib import Path
+
+import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import as_table
+from hdrlab.core.errors import HIGH, LOW, radiance_errors, response_rmse
+from hdrlab.diagnostics.bootstrap import KEPT, Band
+from hdrlab.diagnostics.residuals import offsets, rms
+from hdrlab.io.files import replacing
+from hdrlab.show import plots
+from hdrlab.show.pages.wording import signed
+from hdrlab.show.widgets.pictures import require_alt
+
+Float = NDArray[np.float64]
+SUFFIXES = (".png", ".svg")
+COLOURS = ("#1A1A1A", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+STYLES = (
+    "-",
+    "--",
+    "-.",
+    ":",
+    (0, (5, 1, 1, 1, 1, 1)),
+)  # not as many as colours, so that no two look alike
+
+
+def doublings(g: ArrayLike) -> dict[int, float]:
+    """Return {k: level}, where one channel's exposure is 2^k times that of the middle level.
+
+    Examples
+    --------
+    >>> doublings(np.log(np.maximum(np.arange(256), 0.25) / 128))[-3].__round__(3)
+    16.0
+    """
+    curve = np.maximum.accumulate(np.asarray(g, np.float64)) / np.log(2)
+    last = int(np.argmax(curve == curve[-1]))  # a curve that was levelled at its end says nothing there
+    whole = range(int(np.ceil(curve[LOW * len(curve) // 256])), int(np.floor(curve[last])) + 1)
+    return {k: float(np.interp(k, curve[: last + 1], np.arange(last + 1))) for k in whole}
+
+
+def reach(g: ArrayLike) -> float:
+    """Return how many stops lie between the levels 10 and 250 of 256, the mean of the channels."""
+    curve = as_table(g, 256)
+    return float(np.mean(curve[HIGH] - curve[LOW]) / np.log(2))
+
+
+def summary(g: Float, r: Float, spread: float, names: Sequence[str], band: Band | None = None) -> list[str]:
+    """Return the lines that say what a response is and how far it is to be trusted."""
+    channels = plots.CHANNELS if g.ndim == 2 else (("gray", "", ""),)
+    found = [doublings(one) for one in np.atleast_2d(g.T)]
+    stops = sorted(set().union(*found))
+    lines = ["stops   " + "".join(f"{signed(k):>5}" for k in stops)]
+    for (name, *_), levels in zip(channels, found, strict=True):
+        row = "".join(f"{levels[k]:5.0f}" if k in levels else 5 * " " for k in stops)
+        lines.append(f"{name:<8}{row}".rstrip())
+    off = np.nan_to_num(offsets(r))
+    worst = int(np.argmax(np.abs(off)))
+    lines += [
+        f"range      {reach(g):.2f} stops between the levels {LOW} and {HIGH}",
+        f"spread     {spread:.3f} stops between what the frames say of the same light",
+        f"residuals  {rms(r):.3f} stops rms; furthest off is {names[worst]}, by {signed(off[worst], 2)}",
+    ]
+    if band is not None:
+        lines.append(f"band       {band.width:.4f} stops wide: 95 % of the rounds, median over the levels")
+    return lines
+
+
+def matrix(names: Sequence[str], values: Mapping[tuple[str, str], float], digits: int = 2) -> list[str]:
+    """Return a triangle of numbers, one for each pair of names, as lines of text.
+
+    Examples
+    --------
+    >>> print("\\n".join(matrix(["mann", "space"], {("mann", "space"): 1.234})[1:]))
+    space     1.23
+    """
+    wide = max(map(len, names)) + 2
+    lines = [" " * wide + "".join(f"{name:>{wide}}" for name in names[:-1])]
+    for i, name in enumerate(names[1:], 1):
+        row = "".join(f"{values[other, name]:{wide}.{digits}f}" for other in names[:i])
+        lines.append(f"{name:<{wide}}{row}")
+    return lines
+
+
+def pairs(names: Sequence[str]) -> list[tuple[str, str]]:
+    """Return every two names, in order."""
+    return [(one, other) for j, other in enumerate(names) for one in names[:j]]
+
+
+def rmse(curves: Mapping[str, Float]) -> dict[tuple[str, str], float]:
+    """Return how far each two responses lie apart: `response_rmse` in percent, of the worst channel."""
+
+    def between(a: Float, b: Float) -> float:
+        a, b = np.broadcast_arrays(_channels(a), _channels(b))
+        return float(max(response_rmse(a, b).max(), response_rmse(b, a).max()))
+
+    return {(one, other): between(curves[one], curves[other]) for one, other in pairs(list(curves))}
+
+
+def _channels(g: Float) -> Float:
+    """Return g as a table (256, channels)."""
+    return as_table(g, 256).reshape(256, -1)
+
+
+def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> dict[tuple[str, str], float]:
+    """Return by how many stops each two maps differ: the median over the pixels that are seen well."""
+
+    def between(E: NDArray[np.float32], other: NDArray[np.float32]) -> float:
+        ratio = 1 + radiance_errors(E, other, well)[well]
+        return float(np.median(np.abs(np.log2(ratio[ratio > 0]))))
+
+    return {(one, other): between(maps[one], maps[other]) for one, other in pairs(list(maps))}
+
+
+def calibration(g: Float, r: Float, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
+    """Draw a response, beside it the band in which it is to be trusted, and the residuals of each frame."""
+    count = 2 if band is None else 3
+    figure = Figure(figsize=(5.2 * count, 4.2), dpi=100, layout="constrained")
+    left, *middle, right = figure.subplots(1, count)
+    plots.response(g, ax=left)
+    left.set_title(title, fontsize=10)
+    if band is not None:
+        draw_band(band, g, ax=middle[0])
+        middle[0].set_title("its band: 95 % of the rounds of a bootstrap", fontsize=10)
+    draw_residuals(r, times, ax=right)
+    right.set_title("residuals of the frames, median over a level's pixels", fontsize=10)
+    for ax in figure.axes:
+        ax.grid(color="#D9D9D9", linewidth=0.6)
+    width = "" if band is None else f"its band, {band.width:.4f} stops wide; "
+    figure.set_label(
+        f"{title}: the response over ln exposure, from {g.min():.1f} to {g.max():.1f}; {width}"
+        f"and what it leaves unexplained of each frame, {rms(r):.3f} stops rms"
+    )
+    return figure
+
+
+def draw_band(band: Band, g: Float, *, ax: Axes | None = None) -> Axes:
+    """Draw how far a band lies from g, stops over the pixel level: upon a curve of ten stops none shows."""
+    ax = ax or plots.axes()
+    channels = plots.CHANNELS if band.low.ndim == 2 else plots.GRAY
+    columns = [np.reshape(one - g, (len(g), -1)).T / np.log(2) for one in (band.low, band.high)]
+    for (name, colour, style), low, high in zip(channels, *columns, strict=True):
+        level = np.arange(len(low))
+        ax.fill_between(level, low, high, color=colour, alpha=0.2, linewidth=0)
+        for edge, label in ((low, name), (high, None)):
+            ax.plot(level, edge, color=colour, linestyle=style, linewidth=1, label=label)
+    most = max(0.02, 1.3 * max(float(np.quantile(np.abs(one[:, KEPT]), 0.98)) for one in columns))
+    ax.axhline(0, color="#1A1A1A", linewidth=0.8)
+    ax.set(xlabel="pixel level Z", ylabel="stops from the curve", xlim=(0, len(g) - 1), ylim=(-most, most))
+    _shade(ax)
+    if len(channels) > 1:
+        ax.legend(fontsize=8, loc="upper center", ncols=3, framealpha=0.9)
+    return ax
+
+
+def _shade(ax: Axes) -> None:
+    """Shade the levels below 10 and above 250, where no method is held to anything."""
+    for low, high in ((0, LOW), (HIGH, 255)):
+        ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
+
+
+def draw_residuals(r: Float, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
+    """Draw a line per frame, the channels' mean: pixel level across, stops up; dark lines are short times."""
+    ax = ax or plots.axes()
+    lines = np.ma.masked_invalid(r.reshape(*r.shape[:2], -1)).mean(axis=-1)
+    colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
+    for line, time, colour in zip(lines, np.asarray(times).tolist(), colours, strict=True):
+        ax.plot(np.arange(256), line, color=colour, linewidth=1.1, label=plots.seconds(time))
+    told = np.ma.compressed(np.abs(lines[:, KEPT]))  # not the noise below, nor a few levels with few pixels
+    most = max(0.1, 1.5 * float(np.quantile(told, 0.99))) if len(told) else 0.1
+    ax.axhline(0, color="#1A1A1A", linewidth=0.8)
+    ax.set(xlabel="pixel level Z", ylabel="g(Z) − ln E − ln t, stops", xlim=(0, 255), ylim=(-most, most))
+    _shade(ax)
+    ax.legend(fontsize=7, ncols=3, loc="lower center", framealpha=0.9)
+    return ax
+
+
+def overlay(curves: Mapping[str, Float], *, title: str = "") -> Figure:
+    """Draw responses over each other, channel by channel, and below how far each is from their median."""
+    tables = {name: as_table(g, 256).reshape(256, -1) for name, g in curves.items()}
+    count = max(one.shape[1] for one in tables.values())
+    figure = Figure(figsize=(2.2 + 4.2 * count, 6.8), dpi=100, layout="constrained")
+    grid = figure.subplots(2, count, squeeze=False, sharey="row")
+    looks = list(zip(tables.items(), islice(cycle(COLOURS), len(tables)), cycle(STYLES), strict=False))
+    middle = np.median([np.broadcast_to(one, (256, count)) for one in tables.values()], axis=0) / np.log(2)
+    span = (middle[3].min() - 1.5, middle[-1].max() + 1)  # noise rules below
+    channels = plots.CHANNELS if count == 3 else (("gray", "", ""),)
+    for c, (channel, *_) in enumerate(channels):
+        above, below = grid[:, c]
+        for (name, table), colour, style in looks:
+            stops = table[:, min(c, table.shape[1] - 1)] / np.log(2)
+            above.plot(stops, np.arange(256), color=colour, linestyle=style, linewidth=1.4, label=name)
+            below.plot(np.arange(256), stops - middle[:, c], color=colour, linestyle=style, linewidth=1.2)
+        above.set(title=channel, xlabel="exposure, stops from level 128", xlim=span, ylim=(-4, 259))
+        below.set(xlabel="pixel level Z", xlim=(0, 255), ylim=(-1, 1))
+        _shade(below)
+    grid[0, 0].set_ylabel("pixel level Z")
+    grid[1, 0].set_ylabel("stops from the methods' median")
+    for ax in grid.flat:
+        ax.grid(color="#D9D9D9", linewidth=0.6)
+    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside right center", frameon=False)
+    figure.suptitle(title, fontsize=11)
+    figure.set_label(
+        f"{title}: responses over exposure in stops, found by {', '.join(tables)}; below, their differences"
+    )
+    return figure
+
+
+def write_plot(path: str | Path, figure: Figure) -> None:
+    """Write a figure as .png or .svg, whole or not at all, with its alt text inside as "Description".
+
+    Raises
+    ------
+    ValueError
+        For another suffix, or a figure without alt text.
+    """
+    suffix = check_suffix(path)
+    said = {"Title": "Camera response", "Description": require_alt(str(figure.get_label()))}
+    undated = said | ({"Date": None} if suffix == ".svg" else {})
+    with replacing(path) as name, matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
+        figure.savefig(name, format=suffix[1:], metadata=undated)
+
+
+def check_suffix(path: str | Path) -> str:
+    """Return .png or .svg, or raise a ValueError where a plot cannot be written under this name."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in SUFFIXES:
+        raise ValueError(f"{path}: expected {' or '.join(SUFFIXES)} for a plot, got {suffix or 'no suffix'}")
+    return suffix

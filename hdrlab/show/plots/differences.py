@@ -1,0 +1,122 @@
+"""What was expected, what came, and their difference: pictures for a check that failed.
+
+expected  (H, W), (H, W, 3) image, or (n,) curve
+came      the same shape, or another; its numbers may be of any size, and NaN or infinite
+
+Light goes over more than a screen can show: an image whose range is wide is drawn by logarithms.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import Array
+from hdrlab.show import plots
+from hdrlab.show.plots import figures
+from hdrlab.show.widgets import pictures
+from hdrlab.show.widgets.pictures import Picture
+
+Image = NDArray[np.uint8]
+LEAST = 200  # pixels: a smaller picture is shown with larger pixels
+MOST = 480
+WIDE = 300.0  # expected's largest over its smallest: beyond this logarithms are drawn
+MISSING = 128
+
+
+def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
+    """Return expected, came, and came - expected with a ring around the worst pixel, side by side.
+
+    Both are drawn with the same black and white. In the difference orange is too large, purple too
+    small, and gray is no number.
+    """
+    truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
+    if truth.shape != answer.shape or truth.ndim not in (2, 3):
+        raise ValueError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
+    off = _worst_channel(answer - truth)
+    place, error = _worst(off)
+    shown, label = [_drawn(one, truth) for one in (truth, answer)], "by logarithms" if _wide(truth) else ""
+    reach = float(np.nanmax(np.abs(np.where(np.isfinite(off), off, np.nan)), initial=0)) or 1.0
+    colours = figures.false_colour(np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r")
+    frames = [pictures.encode(_large(one)) for one in shown] + [pictures.encode(_ringed(colours, place))]
+    captions = ("expected", "yours", f"difference: worst at row {place[0]}, column {place[1]}")
+    alts = (
+        ", ".join(filter(None, (f"{what}, expected", label, _range(truth)))),
+        ", ".join(filter(None, (f"{what}, yours", label, _range(answer)))),
+        f"{what}, difference: the worst pixel is row {place[0]}, column {place[1]}, off by {error:.4g}",
+    )
+    return Picture(tuple(frames), alts, captions)
+
+
+def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
+    """Return both curves in one plot, expected as a broad gray line; a ring where they are furthest apart."""
+    truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
+    if truth.ndim != 1 or truth.shape != answer.shape:
+        raise ValueError(f"expected two curves of one length, got {truth.shape} and {answer.shape}")
+    (k, _), error = _worst((answer - truth)[:, None])
+    seen = np.where(np.isfinite(answer), answer, np.nan)
+    reach = 4 * (np.nanmax(truth, initial=-np.inf) - np.nanmin(truth, initial=np.inf) + 1e-9)
+    seen = np.clip(seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach)  # else one spike hides all else
+    ax, x = plots.axes(), np.arange(len(truth))
+    ax.plot(x, truth, "-", color="#B0B0B0", linewidth=5, label="expected")
+    ax.plot(x, seen, "-", color="#0072B2", linewidth=1.6, label="yours")
+    ax.plot(k, seen[k], "o", color="#D55E00", markersize=9, markerfacecolor="none", label="furthest apart")
+    ax.set(xlabel="index", ylabel="value")
+    ax.legend(loc="best", framealpha=0.9)
+    alt = f"{what}, expected {_range(truth)} and yours {_range(answer)}; at {k} they differ by {error:.4g}"
+    return Picture((pictures.encode(ax),), (alt,), (f"expected and yours, furthest apart at {k}",))
+
+
+def _worst_channel(off: Array) -> Array:
+    """Return of each pixel the channel that is off the most, (H, W)."""
+    if off.ndim == 2:
+        return off
+    size = np.where(np.isfinite(off), np.abs(off), np.inf)
+    return np.take_along_axis(off, size.argmax(axis=-1)[..., None], axis=-1)[..., 0]
+
+
+def _worst(off: Array) -> tuple[tuple[int, int], float]:
+    """Return the place of what is off the most, first of all what is no number, and by how much."""
+    size = np.where(np.isfinite(off), np.abs(off), np.inf)
+    row, column = np.unravel_index(int(np.argmax(size)), size.shape)
+    return (int(row), int(column)), float(size[row, column])
+
+
+def _wide(truth: Array) -> bool:
+    light = truth[np.isfinite(truth) & (truth > 0)]
+    return bool(light.size and np.nanmin(truth) >= 0 and light.max() > WIDE * light.min())
+
+
+def _drawn(values: Array, truth: Array) -> Image:
+    """Return values as gray or colours, black and white where they are in `truth`."""
+    if _wide(truth):
+        floor = truth[truth > 0].min()
+        values, truth = (np.log2(np.where(one > 0, one, floor)) for one in (values, truth))
+    low, high = np.nanmin(truth), np.nanmax(truth)
+    with np.errstate(invalid="ignore", over="ignore"):
+        levels = 255 * (values - low) / (high - low if high > low else 1)
+    return np.where(np.isfinite(levels), np.clip(levels, 0, 255), MISSING).astype(np.uint8)
+
+
+def _large(drawn: Image) -> Image:
+    """Return a picture with pixels large enough to be seen one by one, and not too many of them."""
+    k = max(1, LEAST // max(drawn.shape[:2]))
+    return figures.fit(drawn.repeat(k, axis=0).repeat(k, axis=1), MOST)
+
+
+def _ringed(colours: Image, place: tuple[int, int]) -> Image:
+    """Return the picture in large with a ring around a pixel of the small one."""
+    large = _large(colours).copy()
+    scale = len(large) / len(colours)
+    y, x = (np.arange(length)[:, None] for length in large.shape[:2])
+    away = np.hypot(y - (place[0] + 0.5) * scale, (x - (place[1] + 0.5) * scale).T)
+    radius = max(0.9 * scale, 9)
+    large[np.abs(away - radius) < 1.6] = 0
+    return large
+
+
+def _range(values: Array) -> str:
+    known = values[np.isfinite(values)]
+    if known.size == 0:
+        return "no numbers"
+    missing = values.size - known.size
+    said = f"from {known.min():.4g} to {known.max():.4g}"
+    return f"{said}, {missing} not finite" if missing else said

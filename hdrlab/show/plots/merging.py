@@ -1,0 +1,64 @@
+"""What the photographs say of one pixel -> matplotlib Axes.
+
+Z    levels of a pixel      (P,), one of each photograph
+B    ln exposure times      (P,)
+g    response               (n,), ln exposure of each level
+w    weights                (n,)
+lE   ln E, the answer of a photograph: g(Z) - B
+"""
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import describe
+from hdrlab.show.plots import axes, seconds
+from hdrlab.show.plots.curves import NARROW
+
+STOP = np.log(2)
+REACH = 12  # stops: how far an answer may lie from the middle, and still be shown
+MEASURED, BOUND, MEAN, TRUE = "#0072B2", "#E69F00", "#D55E00", "#1A1A1A"
+
+
+def answers(
+    Z: ArrayLike,
+    B: ArrayLike,
+    g: ArrayLike,
+    w: ArrayLike,
+    lE: float,
+    *,
+    top: int = 250,
+    middle: float = 0.0,
+    truth: float | None = None,
+) -> Axes:
+    """Draw what each photograph says of a pixel: an answer with the width of its level, or a bound.
+
+    A dot's area is its weight. Level 0 says "at most" and a level of `top` or more "at least", drawn as
+    arrows. `lE` is what the merge made of them, `truth` what it should have; `middle` is ln E at 0 stops.
+    """
+    Z, B = np.asarray(Z), np.asarray(B, np.float64)
+    g, w = np.asarray(g, np.float64), np.asarray(w, np.float64)
+    if Z.ndim != 1 or Z.shape != B.shape or g.ndim != 1 or g.shape != w.shape:
+        got = ", ".join(map(describe, (Z, B, g, w)))
+        raise ValueError(f"expected Z and B (P,), g and w (n,), got {got}")
+    ax, x, n = axes(), np.arange(len(Z)), len(g)
+    ends = np.interp([Z - 0.5, Z + 0.5], np.arange(n), g)
+    here, low, high = ((one - B - middle) / STOP for one in (g[Z], *ends))
+    dark, clipped = Z == 0, Z >= top
+    whole = ~(dark | clipped)
+    ax.vlines(x[whole], low[whole], high[whole], color=MEASURED, linewidth=6, alpha=0.35)
+    ax.scatter(x[whole], here[whole], s=12 + 110 * w[Z[whole]] / w.max(), color=MEASURED, label="an answer")
+    for at, level, way, mark, name in ((clipped, top, 1, "^", "at least"), (dark, 1, -1, "v", "at most")):
+        bound = (g[level] - B[at] - middle) / STOP
+        ax.vlines(x[at], bound, bound + way * 1.6, color=BOUND, linewidth=1.6)
+        if at.any():
+            ax.plot(x[at], bound + way * 1.6, mark, color=BOUND, markersize=7, label=name)
+    if truth is not None:
+        at = (truth - middle) / STOP
+        ax.axhline(at, color=TRUE, linewidth=1.2, linestyle="--", zorder=4, label="truth")
+    ax.axhline((lE - middle) / STOP, color=MEAN, linewidth=1.6, label="merged")
+    ax.set(xlim=(-0.6, len(Z) - 0.4), ylim=(-REACH, REACH), ylabel="radiance, stops from the median")
+    ax.set_xticks(x, [f"{seconds(t)}\n{z}" for t, z in zip(np.exp(B), Z.tolist(), strict=True)], fontsize=8)
+    ax.set_xlabel("exposure time, and the pixel's level", labelpad=1)
+    ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=5, **NARROW)
+    return ax

@@ -1,0 +1,79 @@
+"""Blends of two lights -> matplotlib Axes: the samples on their way onto one curve, and how far it is off.
+
+I, M  samples of a blend  (l,): relative irradiance, in a unit and from a zero of its own; brightness, 0 to 1
+s, r  scale and offset    of each blend: s I + r is the exposure of its samples
+M, X  inverse response    a `Joined`: exposure X, 0 to 1 over the brightnesses that were measured
+
+Brightness is drawn as a pixel level, 255 M, up; exposure is drawn across, as in the plots of responses.
+"""
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.calibration.blends import Blend, Joined, difference
+from hdrlab.show.plots import SAMPLES, axes
+from hdrlab.show.plots.curves import LINES
+
+Float = NDArray[np.float64]
+
+
+def samples(
+    blends: Sequence[Blend],
+    s: ArrayLike = 1.0,
+    r: ArrayLike = 0.0,
+    *,
+    names: Sequence[str] = (),
+    joined: Joined | None = None,
+    across: str = "relative irradiance, s I + r",
+    span: tuple[float, float] | None = None,
+    scale: str = "linear",
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw each blend's samples at (s I + r, 255 M), and the curve that joins them.
+
+    Up to six blends have a colour and a marker each, and those of `names` a label; more are drawn alike.
+    """
+    scales, offsets = (np.broadcast_to(np.asarray(one, np.float64), (len(blends),)) for one in (s, r))
+    few, ax = len(blends) <= len(SAMPLES), ax or axes()
+    if joined is not None:  # above the samples, which would hide it
+        ax.plot(joined.X, 255 * joined.M, color="#1A1A1A", linewidth=1.5, zorder=3, label="joined")
+    for k, (one, own, start) in enumerate(zip(blends, scales, offsets, strict=True)):
+        colour, marker = SAMPLES[k] if few else ("#0072B2", ".")
+        label = names[k] if k < len(names) else None
+        ax.plot(own * one.I + start, 255 * one.M, marker, color=colour, markersize=4, label=label)
+    ax.set(xlabel=across, ylabel="pixel level, 255 M", xscale=scale, ylim=(-5, 260))
+    if span is not None:
+        ax.set_xlim(*span)
+    if scale == "log":
+        ax.minorticks_off()
+        ax.xaxis.set_major_formatter("{x:g}")
+    if names or joined is not None:
+        ax.legend(loc="lower right", framealpha=0.9)
+    return ax
+
+
+def deviations(
+    found: Mapping[str, Joined],
+    inverse: Callable[[Float], Float],
+    *,
+    limit: float = 4.0,
+    ax: Axes | None = None,
+) -> Axes:
+    """Draw how far each curve lies from the camera's own inverse response, in percent of the range.
+
+    Both go from 0 to 1 over the brightnesses measured [Wilburn08 sec. 5], so every line begins and ends at 0.
+    """
+    ax = ax or axes()
+    ax.axhline(0, color="#808080", linewidth=1, zorder=1)
+    if len(found) >= len(LINES):
+        raise ValueError(f"expected at most {len(LINES) - 1} curves in one picture, got {len(found)}")
+    for (colour, style), (name, one) in zip(LINES[1:], found.items(), strict=False):
+        off = difference(one, one._replace(X=np.asarray(inverse(one.M), np.float64)))
+        ax.plot(255 * one.M, 100 * off, linestyle=style, color=colour, linewidth=1.6, label=name)
+    ax.set(xlabel="pixel level, 255 M", ylabel="found less true, % of the range")
+    ax.set(xlim=(0, 255), ylim=(-limit, limit))
+    ax.legend(loc="upper left", framealpha=0.9)
+    return ax

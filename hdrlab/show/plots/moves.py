@@ -1,0 +1,86 @@
+"""Registration by light, drawn: what differs after a move, correlation at every shift, the simplex's way.
+
+X      light               (2, h, w): a fixed and a moving photograph on one scale, NaN where discarded
+H      move                (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
+d      difference          (a - b) / mean of the two: orange where the fixed one is brighter, violet where the
+                           moving one is, white where they agree, gray where one of them shows nothing
+state  of `align.cerman`   one level of one pair
+"""
+
+from collections.abc import Mapping
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.align import criterion
+from hdrlab.align.cerman import State
+from hdrlab.core.arrays import describe
+from hdrlab.show.plots import bare, picture_axes
+from hdrlab.show.plots.figures import false_colour
+from hdrlab.show.plots.nearest import show
+
+WIDTH = 5.4  # inches, as the other plots have
+REACH = 0.6  # d at which the colours end: one photograph 1.86 times as bright as the other
+COLOURS = "PuOr_r"
+LINE, POINT = "#0072B2", "#D55E00"
+
+
+def differences(X: ArrayLike, H: ArrayLike) -> tuple[NDArray[np.float64], float]:
+    """Return d of every pixel (h, w), and the error e."""
+    light = np.asarray(X, np.float32)
+    if light.ndim != 3 or len(light) != 2:
+        raise ValueError(f"expected the light of two photographs (2, h, w), got {describe(light)}")
+    p = criterion.lattice(light.shape[1:], light[0].size)
+    d = criterion.differences(light, np.asarray(H, float), p)
+    return d.reshape(light.shape[1:]), criterion.error(d)
+
+
+def difference(X: ArrayLike, H: ArrayLike, *, title: str = "") -> Axes:
+    """Draw what differs between two photographs, the second moved by H, under its error."""
+    d, e = differences(X, H)
+    tall = WIDTH * d.shape[0] / d.shape[1]
+    ax = picture_axes(WIDTH, tall + 0.4, (0, 0, 1, tall / (tall + 0.4)))
+    show(ax, false_colour(d, -REACH, REACH, colours=COLOURS))
+    ax.set_title(f"{title}error e = {e:.4f}", fontsize=11)
+    return ax
+
+
+def correlation(c: ArrayLike, *, marks: Mapping[str, tuple[float, float]] | None = None) -> Figure:
+    """Return the correlation at every shift as a map, with named shifts (dy, dx) marked on it."""
+    found = np.asarray(c, np.float64)
+    if found.ndim != 2 or found.shape[0] % 2 == 0 or found.shape[1] % 2 == 0:
+        raise ValueError(f"expected the correlation at shifts -n to n, got {describe(found)}")
+    y, x = found.shape[0] // 2, found.shape[1] // 2
+    figure = Figure(figsize=(WIDTH, 3.9), dpi=100)
+    ax = figure.add_axes((0.13, 0.15, 0.65, 0.81))
+    ends = (-x - 0.5, x + 0.5, y + 0.5, -y - 0.5)
+    shown = ax.imshow(found / np.abs(found).max(), extent=ends, interpolation="nearest", aspect="auto")
+    for (name, (dy, dx)), (marker, size) in zip((marks or {}).items(), (("o", 14), ("x", 9)), strict=False):
+        ax.plot(dx, dy, marker, label=name, markersize=size, mfc="none", mec="#FFFFFF", mew=2)
+    ax.set(xlabel="dx, pixels to the right", ylabel="dy, pixels down")
+    figure.colorbar(shown, cax=figure.add_axes((0.8, 0.15, 0.035, 0.81)), label="correlation / its largest")
+    if marks:
+        ax.legend(loc="lower left", facecolor="#404040", labelcolor="#FFFFFF", framealpha=0.8)
+    return figure
+
+
+def level(state: State) -> Figure:
+    """Return what differs where a level's simplex ended, and how the error fell on the way."""
+    d, found = differences(state.X, state.H)
+    tall = WIDTH * d.shape[0] / d.shape[1]
+    total = tall + 2.3
+    figure = Figure(figsize=(WIDTH, total), dpi=100)
+    above = figure.add_axes((0, 1.9 / total, 1, tall / total))
+    show(above, false_colour(d, -REACH, REACH, colours=COLOURS))
+    bare(above)
+    size = f"{d.shape[1]} × {d.shape[0]} pixels"
+    above.set_title(f"level {state.level}, {size}: error e = {found:.4f}", fontsize=11)
+    ax = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total))
+    e = 1000 * state.errors
+    ax.plot(e, color=LINE, linewidth=1.8)
+    ax.plot(len(e) - 1, e[-1], "o", color=POINT)
+    ax.set(xlabel="step of the simplex", ylabel="1000 e", ylim=(0, 1.1 * e.max() + 1e-6))
+    ax.grid(alpha=0.3)
+    return figure

@@ -1,0 +1,216 @@
+"""Widgets: steps to play, parameters to tune, pictures to compare, and the Detail Brush.
+
+play   draws every state once and moves through the frames in the browser: at once, and with no kernel too
+tune   calls a function on each move of a slider; a few positions are stored for a page that has no kernel
+wipe   two pictures with a movable edge between them: `show.widgets.compared`
+blink  pictures in one place, one after the other: `show.widgets.compared`
+brush  the Detail Brush over a radiance map: `show.widgets.lens`
+
+The first two know no algorithm: `states` is any iterable (the library's `<verb>_steps`, or a generator of
+yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure.
+"""
+
+import gc
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
+from itertools import islice
+from typing import Any, TypeVar
+
+import anywidget
+import traitlets
+from threadpoolctl import ThreadpoolController
+
+from hdrlab.io import web
+from hdrlab.io.web import Image
+from hdrlab.show.plots import reuse
+from hdrlab.show.widgets import positions
+from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
+from hdrlab.show.widgets.lens import Brush, brush
+from hdrlab.show.widgets.pictures import encode, pictured, render, require_alt, short
+from hdrlab.show.widgets.scripts import STYLE, script
+
+__all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "play", "tune", "wipe"]
+
+State = TypeVar("State")
+
+THREADS = ThreadpoolController()  # of the linear algebra that is loaded by now
+MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
+
+
+@contextmanager
+def undisturbed() -> Iterator[None]:
+    """Let Python look for garbage after an answer, and not in the midst of it: a plot leaves plenty."""
+    was = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if was:
+            gc.enable()
+
+
+class Player(anywidget.AnyWidget):
+    """Frames to move through; `index` is the one that is shown."""
+
+    _esm = script("play.js")
+    _css = STYLE
+    frames = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP
+    alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    name = traitlets.Unicode("step").tag(sync=True)
+    index = traitlets.Int(0).tag(sync=True)
+
+
+def play(
+    states: Iterable[State],
+    draw: Callable[[State], object],
+    *,
+    alt: str | Callable[[State], str],
+    name: str = "step",
+) -> Player:
+    """Return a widget that plays draw(state) for each state.
+
+    Parameters
+    ----------
+    states : iterable
+        The states of an algorithm, 1 to 200 of them.
+    draw : function
+        Takes a state, and returns a uint8 picture, an Axes or a Figure. The Axes of `plots` are drawn on
+        again for the next picture, so it must not keep them.
+    alt : str, or function of a state
+        What the picture shows. To a str the step's number is added.
+    name : str
+        What the slider counts.
+
+    Raises
+    ------
+    ValueError
+        For no states or too many, an empty alt text, or a `draw` that returns something else.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> player = play(range(3), lambda k: np.full((4, 4), 80 * k, np.uint8), alt="A square, ever lighter")
+    >>> player.alts[1]
+    'A square, ever lighter, step 2'
+    """
+    frames, alts, kept = [], [], reuse.Kept()
+    for k, state in enumerate(islice(states, MOST + 1)):
+        frames.append(reuse.drawn(draw, state, encode, kept))
+        alts.append(
+            require_alt(alt(state) if callable(alt) else alt) + ("" if callable(alt) else f", {name} {k + 1}")
+        )
+    if not 0 < len(frames) <= MOST:
+        raise ValueError(f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}")
+    return Player(frames=frames, alts=alts, name=name)
+
+
+class Tuner(anywidget.AnyWidget):
+    """Sliders on a function's parameters: `at` is where they stand, `frame` the picture of `shown`."""
+
+    _esm = script("tune.js")
+    _css = STYLE
+    names = traitlets.List(traitlets.Unicode()).tag(sync=True)
+    values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)  # each position's text
+    at = traitlets.List(traitlets.Int()).tag(
+        sync=True, echo_update=False
+    )  # the browser moves this, and knows
+    shown = traitlets.List(traitlets.Int()).tag(sync=True)
+    frame = traitlets.Bytes().tag(sync=True)  # as `web.quick` makes it
+    alt = traitlets.Unicode().tag(sync=True)
+    problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
+    answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
+    stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
+    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)  # JPEG
+    point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
+    area = traitlets.List(traitlets.Float()).tag(sync=True)  # left, top, width, height of what is pressed
+
+    def __init__(self, picture: Callable[[list[int]], Image], grids: positions.Grids, **traits: Any):
+        self._picture, self._grids = picture, grids
+        texts = [[short(value) for value in grid] for grid in grids.values()]
+        super().__init__(names=list(grids), values=texts, **traits)
+        self.observe(self._answer, "at")
+
+    @property
+    def parameters(self) -> dict[str, Any]:
+        """The values at which the sliders stand, by name."""
+        return positions.values(self._grids, self.at)
+
+    def _answer(self, _: object) -> None:
+        """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""
+        at, frame, problem = list(self.at), self.frame, ""
+        with undisturbed():
+            try:
+                frame = web.quick(self._picture(at))
+            except Exception as error:  # it may be a student's function: its words belong beside the slider
+                problem = f"{type(error).__name__}: {error}"
+            with self.hold_sync():
+                self.frame, self.shown, self.problem, self.answers = frame, at, problem, self.answers + 1
+
+
+def tune(
+    f: Callable[..., Any],
+    draw: Callable[[Any], object],
+    /,
+    *,
+    alt: str,
+    stored: int = 5,
+    point: tuple[str, str] | None = None,
+    **ranges: Any,
+) -> Tuner:
+    """Return a widget with a slider per parameter, which shows draw(f(...)) of where the sliders stand.
+
+    Parameters
+    ----------
+    f : function
+        Its parameters named in `ranges` get sliders, which start at its defaults, or else in the middle.
+    draw : function
+        Takes what `f` returns; else as for `play`.
+    alt : str
+        What the picture shows; the parameters' values are added.
+    stored : int
+        How many positions of each slider are computed now, for a page without a kernel.
+    point : (down, right), optional
+        Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets, too.
+    **ranges : (low, high), (low, high, step), or a list of values
+        A tuple is a range: of integers where both ends are, else in 100 parts; a list holds the very values.
+
+    Raises
+    ------
+    ValueError
+        For bad ranges, parameters that `f` does not have, a point that is not two of them, an empty alt text,
+        or a `draw` that returns something else.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> def square(level=100):
+    ...     return np.full((4, 4), level, np.uint8)
+    >>> tuner = tune(square, lambda picture: picture, alt="A gray square", level=(0, 255))
+    >>> tuner.parameters
+    {'level': 100}
+    """
+    require_alt(alt)
+    grids = {name: positions.grid(name, given) for name, given in ranges.items()}
+    if not grids:
+        raise ValueError("expected at least one range, such as smoothness=(1, 100), got none")
+    if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
+        raise ValueError(f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}")
+
+    kept, area = reuse.Kept(), [0.0, 0.0, 1.0, 1.0]
+
+    def finish(drawn: object) -> Image:
+        image = render(drawn)
+        area[:] = pictured(drawn)
+        return image
+
+    def picture(at: list[int]) -> Image:
+        with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
+            found = f(**positions.values(grids, at))
+        return reuse.drawn(draw, found, finish, kept)
+
+    at = positions.start(f, grids)
+    few = positions.few(grids, at, stored)
+    images = [picture(position) for position in few]
+    kernelless = {"stored_at": few, "stored": [web.jpeg(image) for image in images]}
+    told = {"point": list(point or ()), "area": area, "frame": web.quick(images[0])}
+    return Tuner(picture, grids, at=at, shown=at, alt=alt, **kernelless, **told)

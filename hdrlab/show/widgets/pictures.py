@@ -1,0 +1,208 @@
+"""Pictures for a page, each with alt text: a reader who cannot see one still learns what it shows.
+
+drawn  what a draw function returns: a uint8 picture (H, W) or (H, W, 3), an Axes or a Figure
+alt    alt text: what is in the picture, in a sentence
+"""
+
+import sys
+from collections.abc import Callable, Iterable, Sequence
+from html import escape
+from typing import Any, NamedTuple
+
+import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.io import web
+from hdrlab.show.plots import figures, reuse
+
+SIDE = 1000  # pixels
+DECADE = float(np.log10(2))  # of a stop
+
+
+class Picture(NamedTuple):
+    """Pictures side by side, as a notebook and its exported page show them; as text, their alt texts."""
+
+    frames: tuple[bytes, ...]
+    alts: tuple[str, ...]
+    captions: tuple[str, ...]
+    legend: str = ""  # as HTML, below the pictures
+
+    def __repr__(self) -> str:
+        return "; ".join(self.alts)
+
+    def _repr_html_(self) -> str:
+        each = "".join(map(_figure, self.frames, self.alts, self.captions))
+        columns = "repeat(auto-fit,minmax(min(320px,100%),1fr))"
+        return (
+            f'<div style="display:grid;grid-template-columns:{columns};gap:0.75em">{each}</div>{self.legend}'
+        )
+
+
+def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
+    """Return `drawn` as a Picture, for the last line of a notebook's cell."""
+    return Picture((encode(drawn),), (require_alt(alt),), (caption,))
+
+
+def radiance(
+    E: ArrayLike,
+    *more: ArrayLike,
+    alt: str,
+    captions: Sequence[str] = (),
+    stops: tuple[int, int] | None = None,
+) -> Picture:
+    """Return a radiance map, or several side by side, in false colour above one legend in stops and decades.
+
+    Parameters
+    ----------
+    E, *more : (H, W) or (H, W, 3)
+        Radiance; a map larger than 1000 pixels is shown by means of k x k pixels.
+    alt : str
+        What the maps show; to each one's its caption and the range of its luminance are added.
+    captions : a str for each map, or none
+        What stands below each.
+    stops : (low, high), optional
+        Ends of the colours, in stops from a map's median; by default all but 0.1 % of the pixels fit.
+
+    Raises
+    ------
+    ValueError
+        For maps without light, captions that are not one for each, or an empty alt text.
+
+    Examples
+    --------
+    >>> E = np.geomspace(1, 2.0**12, 100)[None] * np.ones((20, 1))
+    >>> radiance(E, alt="A wedge, ever brighter")
+    A wedge, ever brighter, 12.0 stops from the darkest to the brightest
+    """
+    each = [figures.stops(one) for one in (E, *more)]
+    captions = tuple(captions) or ("",) * len(each)
+    if len(captions) != len(each):
+        raise ValueError(f"expected a caption for each of {len(each)} maps, got {captions!r}")
+    ends = [stops or figures.limits(ev) for ev in each]
+    low, high = min(end[0] for end in ends), max(end[1] for end in ends)
+    if not low < high:
+        raise ValueError(f"expected stops as (low, high) with low < high, got {stops}")
+    frames = [encode(figures.false_colour(figures.fit(ev, SIDE), low, high)) for ev in each]
+    ranges = [f"{np.nanmax(ev) - np.nanmin(ev):.1f} stops from the darkest to the brightest" for ev in each]
+    said = [", ".join(filter(None, (require_alt(alt), *two))) for two in zip(captions, ranges, strict=True)]
+    return Picture(tuple(frames), tuple(said), captions, _legend(low, high))
+
+
+def strip(
+    f: Callable[..., Any], draw: Callable[[Any], object], /, *, alt: str, **values: Iterable[Any]
+) -> Picture:
+    """Return draw(f(name=value)) for a few values of one parameter, side by side: a slider on paper.
+
+    Parameters
+    ----------
+    f : function
+        Computes a result; its other parameters keep their defaults.
+    draw : function
+        Takes what `f` returns, and returns a uint8 picture, an Axes or a Figure.
+    alt : str
+        What the pictures show; each one's value is added to it.
+    **values : iterable
+        One parameter of `f` and the values to show it at.
+
+    Raises
+    ------
+    ValueError
+        For no or several parameters, no values, an empty alt text, or a `draw` that returns something else.
+
+    Examples
+    --------
+    >>> def square(level):
+    ...     return np.full((8, 8), level, np.uint8)
+    >>> strip(square, lambda picture: picture, alt="A gray square", level=[0, 128])
+    A gray square, level = 0; A gray square, level = 128
+    """
+    if len(values) != 1:
+        raise ValueError(
+            f"expected one parameter with its values, got {len(values)}: {', '.join(values) or 'none'}"
+        )
+    ((name, each),) = values.items()
+    each = list(each)
+    if not each:
+        raise ValueError(f"expected at least one value for {name}, got none")
+    frames = tuple(encode(draw(f(**{name: value}))) for value in each)
+    captions = tuple(f"{name} = {short(value)}" for value in each)
+    return Picture(frames, tuple(f"{require_alt(alt)}, {caption}" for caption in captions), captions)
+
+
+def encode(drawn: object) -> bytes:
+    """Return what a draw function returned as WebP: a plot without loss, a photograph in small."""
+    return web.webp(render(drawn), lossless=not isinstance(drawn, np.ndarray))
+
+
+def render(drawn: object) -> NDArray[np.uint8]:
+    """Return what a draw function returned as a picture (H, W) or (H, W, 3) uint8, or raise a ValueError."""
+    figure = getattr(drawn, "figure", None)
+    if hasattr(figure, "savefig"):
+        return _pixels(figure)
+    if isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and _is_picture(drawn.shape):
+        return drawn
+    came = f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
+    raise ValueError(f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}")
+
+
+def pictured(drawn: object) -> tuple[float, float, float, float]:
+    """Return left, top, width and height of the first Axes of what was rendered, as shares of the picture."""
+    figure = getattr(drawn, "figure", None)
+    if figure is None or not figure.axes:
+        return 0.0, 0.0, 1.0, 1.0
+    box = figure.axes[0].get_position()
+    return box.x0, 1 - box.y1, box.width, box.height
+
+
+def require_alt(alt: str) -> str:
+    """Return the alt text, or raise a ValueError where it says nothing."""
+    if not isinstance(alt, str) or not alt.strip():
+        raise ValueError(f"expected an alt text that says what the picture shows, got {alt!r}")
+    return alt
+
+
+def short(value: object) -> str:
+    """Return a value as a reader wants it beside a slider: numbers to four digits."""
+    return f"{value:.4g}" if isinstance(value, float | np.floating) else str(value)
+
+
+def _is_picture(shape: tuple[int, ...]) -> bool:
+    return 0 not in shape and (len(shape) == 2 or (len(shape) == 3 and shape[-1] == 3))
+
+
+def _pixels(figure: Any) -> NDArray[np.uint8]:
+    known = type(figure.canvas) is FigureCanvasAgg  # which knows the widths of words from the picture before
+    canvas = figure.canvas if known else FigureCanvasAgg(figure)
+    reuse.paint(canvas)
+    if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
+        sys.modules["matplotlib.pyplot"].close(figure)
+    return np.array(canvas.buffer_rgba())[..., :3]
+
+
+def _legend(low: int, high: int) -> str:
+    """Return the colours with ticks in stops above and in decades below, as text that any screen shows."""
+    few = (high - low) * DECADE <= 3
+    scales = (
+        figures.scale(low, high, digits=int(high - low < 4)),
+        figures.scale(low * DECADE, high * DECADE, digits=int(few)),
+    )
+    above, below = ("".join(_tick(*tick) for tick in scale.ticks) for scale in scales)
+    row = "position:relative;height:1.4em"
+    ramp = f"height:1em;background:linear-gradient(90deg,{','.join(scales[0].colours)})"
+    return (
+        '<div style="max-width:44em;margin:0.5em 1em;font-variant-numeric:tabular-nums">'
+        f'<div style="{row}">{above}</div><div style="{ramp}"></div><div style="{row}">{below}</div>'
+        "<div>above: stops from the median luminance; below: decades; gray: no light</div></div>"
+    )
+
+
+def _tick(place: float, label: str) -> str:
+    return f'<span style="position:absolute;left:{place:.2f}%;transform:translateX(-50%)">{label} </span>'
+
+
+def _figure(frame: bytes, alt: str, caption: str) -> str:
+    image = f'<img alt="{escape(alt)}" src="{web.data_uri(frame)}" style="max-width:100%;height:auto">'
+    below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
+    return f'<figure style="margin:0">{image}{below}</figure>'

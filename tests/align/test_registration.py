@@ -1,0 +1,236 @@
+"""Registration beyond a shift, and what it does to photographs: homographies, resampling, and the choice."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from PIL import Image
+
+from hdrlab import pipeline
+from hdrlab.align import auto, cerman, homography, matches, mtb, resample
+from hdrlab.align.shift import shift
+from hdrlab.capture import camera, motion
+from hdrlab.capture.responses import true_g
+from hdrlab.capture.room import scenes
+from hdrlab.core import warp
+from hdrlab.core.bracket import bracket
+from hdrlab.pipeline import registration
+from hdrlab.radiance.bounds import Seen
+
+SHAPE = (150, 220)
+CAMERA = dict(full_well=20_000, read_noise=5, rng=2)
+HAND = dict(radius=4, degrees=2, rng=6)
+
+
+@pytest.fixture(scope="module")
+def room():
+    return scenes.room(SHAPE)
+
+
+def shoot(E, moves):
+    """Return photographs two stops apart of a moved camera, and the moves in their own pixels."""
+    taken = camera.shoot(E, camera.times_around(E, len(moves), stops=2), offsets=moves, **CAMERA)
+    return taken, motion.frames(moves, E.shape)
+
+
+# homographies
+
+
+def test_a_homography_goes_through_four_corners():
+    H = motion.hand(2, SHAPE, degrees=9, zoom=0.1, tilt=0.1, rng=5)[0]
+    assert np.allclose(homography.through(SHAPE, warp.apply(H, warp.corners(SHAPE))), H / H[2, 2])
+
+
+def test_a_homography_of_a_level_is_that_of_the_next_in_its_pixels():
+    H = warp.as_moves([[1.25, -3]])[0]
+    assert np.allclose(homography.enlarged(H), warp.as_moves([[2.5, -6]])[0])
+
+
+def test_points_that_do_not_agree_make_no_homography():
+    points = np.random.default_rng(0).uniform(0, 200, (2, 40, 2))
+    H, agree = homography.consensus(points)
+    assert np.array_equal(H, np.eye(3)) and not agree.any()
+    assert not homography.consensus(points[:, :5])[1].any()
+
+
+def test_a_step_ahead_with_a_tilted_camera_is_found():
+    E = scenes.room((220, 320))
+    taken, truth = shoot(E, motion.hand(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7))
+    found = homography.align(taken.images)
+    truth = np.linalg.inv(truth[-1]) @ truth
+    assert warp.apart(np.linalg.inv(found[-1]) @ found, truth, E.shape).max() < 1
+    (one,) = homography.verdicts(taken.images)
+    assert one.reliable and one.confidence > 0.6
+
+
+def test_where_there_is_no_point_the_photographs_stay_and_that_is_told():
+    images = np.stack([np.full((90, 120), level, np.uint8) for level in (60, 120)])
+    (one,) = homography.verdicts(images)
+    assert np.array_equal(one.H, np.eye(3)) and not one.reliable
+
+
+# the choice
+
+
+@pytest.mark.parametrize(
+    ("moves", "ways"),
+    [
+        ([[0, 0], [0, 0]], {"none"}),
+        ([[5, -7], [0, 0]], {"mtb"}),
+        ([warp.turn(SHAPE, 2.5, (3.5, 1.2)), np.eye(3)], {"cerman"}),
+    ],
+)
+def test_the_simplest_way_that_fits_is_taken(room, moves, ways):
+    taken, _ = shoot(room, moves)
+    choice = auto.choose(taken.images, times=taken.times, g=true_g())
+    assert choice.way in ways and choice.errors[choice.way] <= choice.errors["none"]
+
+
+@given(st.dictionaries(st.sampled_from(auto.WAYS), st.floats(0, 4)), st.floats(0, 4))
+def test_the_choice_is_never_worse_than_none_by_its_own_measure(e, none):
+    e = e | {"none": none}
+    assert e[auto.chosen(e)] <= none and e[auto.chosen(e)] <= 1.05 * min(e.values())
+
+
+@given(st.integers(0, 2**32 - 1))
+@settings(max_examples=2)
+def test_photographs_of_nothing_in_common_stay_where_they_are(seed):
+    images = np.random.default_rng(seed).integers(0, 256, (2, 80, 90), dtype=np.uint8)
+    choice = auto.choose(images, times=[1, 2], g=true_g())
+    assert choice.errors[choice.way] <= choice.errors["none"]
+
+
+# photographs that move
+
+
+def test_whole_pixels_are_cut_out_as_they_are():
+    images = np.random.default_rng(0).integers(0, 256, (3, 30, 40, 3), dtype=np.uint8)
+    offsets = [(2, -5), (0, 0), (-3, 4)]
+    moved, valid = resample.photographs(images, offsets)
+    assert valid is None and np.array_equal(moved, shift(images, offsets))
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+@pytest.mark.parametrize("g", [None, true_g("film")])
+def test_an_even_wall_keeps_its_level_whatever_the_response(dtype, g):
+    for level in (0, 7, 100, 249, 255):
+        wall = np.full((2, 20, 30, 3), level, dtype) * dtype(257 if dtype == np.uint16 else 1)
+        moved, _ = resample.photographs(wall, [[0.4, -0.3], [0, 0]], g)
+        assert np.abs(moved.astype(int) - wall[0, 0, 0, 0]).max() <= (1 if dtype == np.uint16 else 0)
+
+
+def test_pixels_between_pixels_are_means_of_light(room):
+    times = camera.times_around(room, 2, stops=0.001, middle=0.03)
+    moves = [warp.turn(SHAPE, 1.5, (2.4, 3.3)), np.eye(3)]
+    taken = camera.shoot(room, times, offsets=moves)
+    moved, _ = resample.photographs(taken.images, motion.frames(moves, SHAPE), true_g())
+    well = (moved > 20).all(axis=(0, 3)) & (moved < 240).all(axis=(0, 3))
+    assert np.median(np.abs(moved[0].astype(int) - moved[1])[well]) <= 2
+
+
+def test_clipped_pixels_are_not_averaged_into_something_that_looks_measured():
+    image = np.full((1, 20, 20), 40, np.uint8)
+    image[0, :, 10:] = 255
+    moved, _ = resample.photographs(np.repeat(image, 2, axis=0), [[0, 0.5], [0, 0]], true_g())
+    assert set(np.unique(moved[0])) == {40, 255}
+
+
+def test_what_is_no_picture_takes_part_in_no_mean():
+    images = np.full((2, 20, 24), 90, np.uint8)
+    valid = np.ones(images.shape, bool)
+    images[0, :, 12], valid[0, :, 12] = 200, False
+    moved, kept = resample.photographs(images, [[0, 0.5], [0, 0]], valid=valid)
+    assert kept[1].all() and not kept[0].all() and np.all(moved[0][kept[0]] == 90)
+
+
+def test_moves_that_do_not_fit_the_images_are_refused():
+    images = np.zeros((2, 20, 24), np.uint8)
+    for moves, said in (([[0, 0.5]], "expected 2 moves"), ([[0, 0], [0, 99.5]], "overlap")):
+        with pytest.raises(ValueError, match=said):
+            resample.photographs(images, moves)
+
+
+# the pipeline
+
+
+@pytest.fixture(scope="module")
+def turned(room):
+    """Three photographs of a hand that turned, and how."""
+    return shoot(room, motion.hand(3, SHAPE, **HAND))
+
+
+def map_error(found, room, taken):
+    """Return the median relative error of a map on edges, where misalignment shows."""
+    rows, columns = warp.inside(found.moves, taken.images.shape[1:3])
+    scene = motion.views(room, motion.hand(3, SHAPE, **HAND))[1][rows, columns]
+    slope = np.hypot(*np.gradient(np.log(scene[..., 1] + 1e-4)))
+    well = (found.seen == Seen.MEASURED) & (slope > np.quantile(slope, 0.8))
+    ratio = found.E[well] / scene[well]
+    return np.median(np.abs(ratio / np.median(ratio, axis=0) - 1))
+
+
+def test_a_bracket_that_turned_becomes_a_sharper_map(room, turned):
+    taken = turned[0]
+    errors = {way: map_error(pipeline.assemble(taken, align=way), room, taken) for way in ("none", "cerman")}
+    assert errors["cerman"] < errors["none"] / 2
+
+
+def test_the_assembly_tells_the_moves_and_auto_tells_its_choice(turned):
+    taken, truth = turned
+    found = next(pipeline.assemble_steps(taken, align="auto"))
+    relative = np.linalg.inv(truth[1]) @ truth
+    assert warp.apart(found.moves, relative, taken.images.shape[1:3]).max() < 0.5
+    assert found.offsets.dtype == np.int64 and 'aligned by "cerman"' in found.notes[0]
+    still = next(pipeline.assemble_steps(taken, align="mtb"))
+    assert np.array_equal(still.moves, warp.as_moves(mtb.align(taken.images)))
+
+
+def test_a_function_of_the_readers_own_may_answer_with_moves(turned):
+    taken, truth = turned
+    moves = np.linalg.inv(truth[1]) @ truth
+    found = next(pipeline.assemble_steps(taken, align=lambda images: moves))
+    assert np.allclose(found.moves, moves) and found.bracket.images.shape[1] < taken.images.shape[1]
+
+
+def test_masks_follow_the_warp(turned):
+    taken, _ = turned
+    valid = np.ones(taken.images.shape[:3], bool)
+    valid[0, :, :40] = False
+    found = next(pipeline.assemble_steps(bracket(taken.images, taken.times, valid=valid), align="cerman"))
+    assert found.bracket.valid.shape == found.bracket.images.shape[:3]
+    assert not found.bracket.valid[0].all() and found.bracket.valid[1:].all()
+
+
+def test_photographs_of_two_scenes_are_a_doubt(room):
+    rng = np.random.default_rng(4)
+    other = (10 ** rng.uniform(-1, 3, (50, 73, 1))).repeat(3, 0).repeat(3, 1)[:150, :219] * np.ones(3)
+    times = camera.times_around(room, 2)
+    images = [camera.shoot(E, [t]).images[0] for E, t in zip((room[:, :219], other), times, strict=True)]
+    found = next(
+        pipeline.assemble_steps(bracket(np.stack(images), times, ["a.jpg", "b.jpg"]), align="cerman")
+    )
+    assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in found.doubts)
+    assert found.moves.shape == (2, 3, 3) and matches.DOUBT == 0.3
+
+
+# real photographs
+
+
+def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(photographs):
+    taken = photographs("stlouis_arch")
+    small = taken.images[:, ::4, ::4]  # shifts of 1, 7.5 and 2 pixels at full size
+    g = registration.provisional(taken._replace(images=small), "auto")
+    found = cerman.verdicts(small, times=taken.times, g=g)
+    across = np.abs([one.offset[1] for one in found])
+    assert np.all(np.abs(across - np.array([1, 7.5, 2]) / 4) < 0.35)
+    assert all(abs(one.offset[0]) < 0.4 and abs(one.degrees) < 0.1 and one.confidence > 0.6 for one in found)
+
+
+def test_a_walk_around_the_crusader_fits_better_by_homographies_than_by_shifts_and_turns(shared):
+    paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
+    images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(4)) for path in paths])
+    turned, tilted = (way.verdicts(images) for way in (cerman, homography))
+    better = [one.after < other.after for one, other in zip(tilted, turned, strict=True)]
+    assert sum(better) >= 4 and all(one.after <= one.before for one in tilted)
+    assert np.mean([one.after for one in tilted]) < 0.5 * np.mean([one.before for one in tilted])
+    assert not all(one.reliable for one in tilted)  # depth, and a pair that shares little: this is told

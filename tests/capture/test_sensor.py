@@ -1,0 +1,253 @@
+"""The sensor with its converter, what fits into one exposure, and what its own noise tells of it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.capture import camera, ranges, sensor, transfer
+from hdrlab.capture.room import scenes
+from hdrlab.capture.sensor import Sensor
+
+QUIET = Sensor(read_noise=0, full_well=1e9, gain=1e9 / 4000, bits=12, black=64)
+
+
+def flats(one, count=14, *, side=200, seed=0, uneven=None):
+    """Return pairs (M, 2, side, side) of RAW levels: dark, and of a white wall up to beyond full."""
+    wall = np.ones((side, side)) if uneven is None else uneven
+    rng = np.random.default_rng(seed)
+    times = np.r_[0, np.linspace(0.05, 1.3, count)]
+    return np.stack([[sensor.raw(wall, t, one, rng=rng) for _ in range(2)] for t in times])
+
+
+# Dynamic range
+
+
+def test_1000_to_a_hundredth_are_five_decades_16_6_stops_and_100_decibels():
+    decades, stops, decibels = ranges.dynamic_range(1000, 0.01)
+    assert decades == pytest.approx(5, abs=1e-12) and decibels == pytest.approx(100, abs=1e-10)
+    assert stops == pytest.approx(np.log2(1e5))
+
+
+@given(low=st.floats(1e-6, 1e3), k=st.integers(0, 30))
+def test_each_doubling_of_the_brightest_adds_a_stop(low, k):
+    assert ranges.dynamic_range(low * 2.0**k, low).stops == pytest.approx(k, abs=1e-9)
+
+
+def test_the_range_of_a_sensor_is_its_well_over_its_noise():
+    one = Sensor(full_well=20_000, read_noise=2, gain=1e-9 + 20_000 / 65_000, bits=16, black=0)
+    assert ranges.sensor_range(one).decades == pytest.approx(4, abs=1e-3)
+
+
+def test_a_smaller_gain_digs_deeper_into_the_dark_until_it_fills_the_converter_first():
+    high, base, low = (ranges.sensor_range(Sensor(gain=K)).stops for K in (40, 5, 1))
+    assert high < base and low < base
+    assert sensor.fills(Sensor(gain=1)) == 4095 - 64 < 20_000 == sensor.fills(Sensor(gain=5))
+
+
+# Levels
+
+
+def test_half_of_the_levels_lie_in_the_brightest_stop_and_12_bits_have_16_for_each_of_8():
+    eight, twelve = ranges.levels_per_stop(8), ranges.levels_per_stop(12)
+    assert eight[0] == 128 and eight.sum() == 255 and twelve.sum() == 4095
+    assert np.array_equal(twelve[:8], 16 * eight)
+
+
+def test_each_bit_halves_the_rounding_error():
+    X = np.random.default_rng(0).random((400, 500)).astype(np.float32)
+    rms = {}
+    for bits in (8, 12):
+        one = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
+        rms[bits] = np.std(sensor.develop(sensor.digitise(X * 1e9, one), one) - X)
+        assert rms[bits] == pytest.approx(1 / (2**bits - 1) / np.sqrt(12), rel=0.01)
+    assert rms[8] / rms[12] == pytest.approx(4095 / 255, rel=0.01)
+
+
+def test_a_ramp_has_256_levels_with_8_bits_and_4096_with_12():
+    for bits in (8, 12):
+        one = QUIET._replace(bits=bits, black=0, gain=1e9 / (2**bits - 1))
+        assert len(np.unique(sensor.digitise(np.linspace(0, 1e9, 50_000, dtype=np.float32), one))) == 2**bits
+
+
+def test_without_a_black_level_the_dark_is_too_bright():
+    dark = np.zeros((300, 300), np.float32)
+    means = {}
+    for black in (0, 64):
+        one = Sensor(read_noise=10, gain=2, black=black)
+        Z = sensor.raw(dark, 1.0, one)
+        means[black] = (Z.astype(float) - black).mean() * one.gain
+    assert abs(means[64]) < 0.2
+    assert means[0] == pytest.approx(
+        10 / np.sqrt(2 * np.pi), rel=0.1
+    )  # the mean of half a Gaussian, cut at 0
+
+
+@given(K=st.floats(0.5, 50), N=st.integers(0, 15_000))
+def test_levels_tell_the_electrons_to_half_a_level(K, N):
+    one = Sensor(gain=K, bits=16, black=100)
+    Z = sensor.digitise(np.array([[N]], np.float32), one)
+    assert abs(K * (float(Z[0, 0]) - 100) - N) <= K / 2 + 1e-2
+
+
+# One exposure of a wide scene
+
+
+def test_a_longer_exposure_holds_the_same_range_further_down():
+    L = np.geomspace(1e-4, 1e4, 8001)
+    ends = []
+    for time in (0.01, 0.16):
+        kept = L[~(held := ranges.held(L, time, Sensor())).full & ~held.noise]
+        ends.append((kept[0], kept[-1]))
+    (low_1, high_1), (low_2, high_2) = ends
+    assert high_1 / high_2 == pytest.approx(16, rel=0.01) and low_1 / low_2 == pytest.approx(16, rel=0.01)
+
+
+def test_high_exposure_loses_the_highlights_and_low_exposure_the_shadows():
+    L = np.geomspace(0.01, 10, 301)
+    coarse = Sensor(bits=3, gain=20_000 / 7, black=0)  # eight levels, as in the overview's figures
+    long, short = ranges.held(L, 1.0, coarse), ranges.held(L, 0.1, coarse)
+    assert long.full.mean() > 0.3 and not short.full[:-1].any()
+    assert short.noise.mean() > 2 * long.noise.mean()
+    fine, wide = (np.flatnonzero(np.diff(held.Z))[:3] for held in (long, short))
+    assert np.all(L[fine] < L[wide] / 9)  # the same levels lie ten times as close to the dark
+
+
+def test_the_signal_over_noise_is_that_of_many_photographs():
+    one = Sensor()
+    for X in (0.001, 0.05, 0.6):
+        Z = sensor.raw(np.full((300, 300), X), 1.0, one).astype(float) - one.black
+        assert Z.mean() / Z.std() == pytest.approx(float(ranges.snr(X, one)), rel=0.02)
+
+
+# The picture
+
+
+def test_vignetting_takes_its_share_in_the_corners_and_nothing_in_the_middle():
+    bright = sensor.falloff((101, 151), 0.4)
+    assert bright[50, 75] == 1 and np.allclose(bright[[0, 0, -1, -1], [0, -1, 0, -1]], 0.6)
+    b = camera.shoot(np.full((101, 151), 0.5), [1.0], response="linear", vignetting=0.4, bits=16)
+    assert np.allclose(b.images[0] / 65535, 0.5 * bright, atol=1e-4)
+
+
+def test_white_balance_makes_a_gray_card_gray_and_leaves_what_is_full_white():
+    lamp = np.array([0.9, 0.6, 0.25])
+    E = np.stack([np.full((4, 3), 0.2 * part) for part in lamp], axis=-1)
+    E[2:] = 50
+    X = sensor.develop(sensor.raw(E, 1.0, QUIET), QUIET, white=sensor.balance(lamp))
+    assert np.allclose(X[:2], X[:2, :, :1], atol=2e-3) and np.all(X[2:] == 1)
+
+
+def test_a_bayer_camera_shows_an_even_wall_as_one_that_reads_all_colours_does():
+    E = np.ones((20, 30, 3)) * [0.2, 0.4, 0.1]
+    whole, mosaicked = (camera.shoot(E, [1.0], sensor=QUIET, bayer=bayer) for bayer in (False, True))
+    assert np.abs(whole.images.astype(int) - mosaicked.images).max() <= 1
+
+
+def test_a_camera_with_a_fine_converter_photographs_as_one_without():
+    E = scenes.room((48, 72))
+    times = camera.times_around(E, 3)
+    fine = Sensor(full_well=50_000, read_noise=0, gain=1.0, bits=16, black=100)
+    with_one = camera.shoot(E, times, sensor=fine, rng=1).images.astype(float)
+    without = camera.shoot(E, times, full_well=50_000, rng=1).images
+    assert np.abs(with_one - without).mean() < 0.3
+
+
+def test_hot_pixels_burn_through_a_mosaic_too():
+    taken = camera.shoot(np.full((60, 60, 3), 0.01), [1.0], sensor=Sensor(), bayer=True, hot=0.01)
+    burnt = (taken.images > 250).mean()  # a third of the channels of a hot pixel are its own
+    assert burnt == pytest.approx(0.01 / 3, rel=0.5)
+
+
+# Photon transfer
+
+
+@pytest.mark.parametrize(
+    "one",
+    [
+        Sensor(),
+        Sensor(full_well=5_000, read_noise=2, gain=1.2, bits=14, black=512),
+        Sensor(full_well=60_000, read_noise=12, gain=15),
+    ],
+)
+@pytest.mark.parametrize("seed", [0, 1, 2])
+def test_flat_frames_give_gain_and_read_noise_to_three_percent(one, seed):
+    found = transfer.calibrate(flats(one, seed=seed))
+    assert found.gain == pytest.approx(one.gain, rel=0.03)
+    assert found.read_noise == pytest.approx(one.read_noise, rel=0.03)
+    assert found.black == pytest.approx(one.black, abs=0.1)
+    assert found.full_well == pytest.approx(sensor.fills(one), rel=0.03)
+
+
+def test_dust_and_vignetting_do_not_disturb_the_calibration():
+    dusty = sensor.falloff((200, 200), 0.3) * np.random.default_rng(8).normal(1, 0.03, (200, 200))
+    found = transfer.calibrate(flats(Sensor(), uneven=dusty))
+    assert found.gain == pytest.approx(5, rel=0.03) and found.read_noise == pytest.approx(5, rel=0.03)
+    single = flats(Sensor(), uneven=dusty)[8, 0].astype(float).var()
+    assert single > 5 * found.V[8]  # one photograph's own variance is mostly dust
+
+
+def test_the_variance_grows_with_the_signal_and_falls_when_the_well_is_full():
+    found = transfer.calibrate(flats(Sensor()))
+    assert np.all(np.diff(found.V[found.used]) > 0) and found.V[-1] < found.V[found.used][-1] / 10
+    assert not found.used[-1]
+
+
+def test_a_jpeg_is_told_from_raw_levels_by_noise_that_does_not_grow():
+    pairs = flats(Sensor())
+    curved = np.round(255 * np.clip((pairs - 64.0) / 4000, 0, 1) ** (1 / 2.2)).astype(np.uint8)
+    with pytest.raises(ValueError, match="noise that grows"):
+        transfer.calibrate(curved)
+
+
+@pytest.mark.parametrize(
+    "Z",
+    [
+        np.zeros((5, 2, 20, 20)),
+        np.zeros((5, 3, 20, 20), np.uint16),
+        np.zeros((2, 2, 20, 20), np.uint16),
+        np.zeros((5, 2, 20, 20), np.uint16),
+        np.zeros((5, 2, 3, 3), np.uint16),
+    ],
+)
+def test_photographs_that_tell_nothing_are_refused(Z):
+    with pytest.raises(ValueError, match="expected"):
+        transfer.calibrate(Z)
+
+
+# Bad input
+
+
+@pytest.mark.parametrize(
+    "knobs, said",
+    [
+        (dict(vignetting=1.5), "vignetting"),
+        (dict(bayer=True), "expected a sensor"),
+        (dict(white=(2, 1, 1)), "expected a sensor"),
+        (dict(sensor=Sensor(), full_well=1000), "got both"),
+        (dict(sensor=Sensor(), read_noise=3), "finite full_well"),
+        (dict(sensor=Sensor(bits=20)), "1 to 16 bits"),
+        (dict(sensor=Sensor(black=5000)), "black level"),
+        (dict(sensor=Sensor(), white=(0, 1, 1)), "positive gains"),
+        (dict(sensor=Sensor(), E=np.ones((4, 4)), bayer=True), "radiance"),
+    ],
+)
+def test_a_sensor_that_means_nothing_is_refused_with_what_came(knobs, said):
+    with pytest.raises(ValueError, match=said):
+        camera.shoot(**{"E": np.ones((4, 4, 3)), "times": [1.0], **knobs})
+
+
+def test_figures_that_mean_nothing_are_refused():
+    for call in (
+        lambda: ranges.dynamic_range(0.1, 1),
+        lambda: ranges.dynamic_range(1, 0),
+        lambda: ranges.levels_per_stop(0),
+        lambda: ranges.held([-1.0], 1.0, Sensor()),
+        lambda: ranges.held([1.0], 0.0, Sensor()),
+        lambda: sensor.raw(np.ones((4, 4)), -1.0),
+        lambda: sensor.balance([1, 0, 1]),
+        lambda: sensor.develop(np.ones((4, 4))),
+        lambda: sensor.develop(np.ones((4, 4, 3), np.uint16), bayer=True),
+    ):
+        with pytest.raises(ValueError, match="expected"):
+            call()

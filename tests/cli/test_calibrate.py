@@ -1,0 +1,190 @@
+"""`hdrlab calibrate`, and `assemble` with a curve that it saved."""
+
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+from PIL import Image
+from test_cli import hdrlab
+
+from hdrlab.capture import camera, responses
+from hdrlab.capture.room import scenes
+from hdrlab.core.errors import response_rmse
+from hdrlab.diagnostics.bootstrap import Band
+from hdrlab.io import radiance
+from hdrlab.io.curves import read_curve, write_curve
+from hdrlab.io.photos import write_picture
+from hdrlab.show.plots import calibration
+
+LINEAR = np.log(np.maximum(np.arange(256), 0.25) / 128)
+TIMES = [0.01, 0.04, 0.16, 0.64]
+
+
+@pytest.fixture(scope="module")
+def photographs(tmp_path_factory):
+    """A folder of four photographs, the list of their times, and the camera's response."""
+    home = tmp_path_factory.mktemp("calibrate")
+    taken = camera.shoot(scenes.room((144, 216)), TIMES, sensitivity=0.05, response="srgb", rng=1)
+    (home / "photographs").mkdir()
+    lines = ["file,exposure_time_s"]
+    for j, (image, seconds) in enumerate(zip(taken.images, taken.times, strict=True)):
+        write_picture(home / "photographs" / f"frame{j}.png", image)
+        lines.append(f"frame{j}.png,{seconds}")
+    (home / "times.csv").write_text("\n".join(lines))
+    return home / "photographs", home / "times.csv", responses.true_g("srgb")
+
+
+@pytest.mark.parametrize("suffix", [".csv", ".npz", ".m", ".luminance.csv"])
+def test_a_bracket_becomes_a_curve_in_every_format(suffix, photographs, tmp_path, capsys):
+    folder, times, true = photographs
+    out = tmp_path / f"g{suffix}"
+    code, said, _ = hdrlab("calibrate", folder, "-o", out, "--times", times, "--rounds", 0, capsys=capsys)
+    assert code == 0 and str(out) in said and "band" not in said
+    assert response_rmse(read_curve(out), true).max() < 1.5
+
+
+def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(photographs, tmp_path, capsys):
+    folder, times, true = photographs
+    outs = [tmp_path / "g.csv", tmp_path / "g.m"]
+    code, said, _ = hdrlab(
+        *("calibrate", folder, "--times", times, "--response", "space", "--rounds", 6),
+        *("-o", outs[0], "-o", outs[1]),
+        capsys=capsys,
+    )
+    assert code == 0 and said.startswith("space, from 4 photographs\nstops ")
+    assert all(line == line.rstrip() for line in said.splitlines())
+    lines = {line.split()[0]: line.split()[1:] for line in said.splitlines()}
+    levels = dict(zip(lines["stops"], map(int, lines["green"]), strict=True))
+    true_levels = calibration.doublings(true)
+    assert levels["0"] == 128
+    assert abs(levels["+1"] - true_levels[1]) < 4 and abs(levels["−2"] - true_levels[-2]) < 4
+    assert 0 < float(lines["band"][0]) < 0.2 and float(lines["spread"][0]) < 0.1
+    assert all(out.exists() for out in outs)
+
+
+@pytest.mark.parametrize("suffix", [".png", ".svg"])
+def test_the_plot_carries_its_alt_text(suffix, photographs, tmp_path):
+    folder, times, _ = photographs
+    plot = tmp_path / f"plot{suffix}"
+    assert hdrlab("calibrate", folder, "--times", times, "--rounds", 3, "--plot", plot) == 0
+    if suffix == ".png":
+        with Image.open(plot) as image:
+            assert "stops rms" in image.info["Description"] and min(image.size) > 400
+    else:
+        first = plot.read_bytes()
+        assert b"stops rms" in first
+        assert hdrlab("calibrate", folder, "--times", times, "--rounds", 3, "--plot", plot) == 0
+        assert plot.read_bytes() == first
+
+
+def test_all_methods_are_compared_and_saved_under_their_names(photographs, tmp_path, capsys):
+    folder, times, true = photographs
+    plot = tmp_path / "all.svg"
+    code, said, _ = hdrlab(
+        *("calibrate", folder, "--times", times, "--response", "all", "--plot", plot, "-o", tmp_path / "g.m"),
+        capsys=capsys,
+    )
+    assert code == 0 and "RMSE" in said and "median difference" in said
+    found = {one.stem.removeprefix("g-"): read_curve(one) for one in tmp_path.glob("g-*.m")}
+    assert {"debevec", "robertson", "mitsunaga", "grossberg", "space"} <= set(found)
+    for name in ("debevec", "robertson", "grossberg", "space"):
+        assert response_rmse(found[name], true).max() < 3, name
+    assert all(name in plot.read_text() for name in found)
+
+
+def test_a_method_that_refuses_the_bracket_says_why_and_the_others_go_on(photographs, monkeypatch, capsys):
+    folder, times, _ = photographs
+
+    def refuse(*_, **__):
+        raise ValueError("expected the moon")
+
+    monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
+    code, said, _ = hdrlab("calibrate", folder, "--times", times, "--response", "all", capsys=capsys)
+    assert code == 0 and "mann refuses this bracket: expected the moon" in said and "debevec" in said
+
+
+def test_a_bracket_that_every_method_refuses_ends_in_one_line(tmp_path, capsys):
+    for j in range(2):
+        write_picture(tmp_path / f"dark{j}.png", np.zeros((32, 48, 3), np.uint8))
+    (tmp_path / "times.txt").write_text("dark0.png 100\ndark1.png 10\n")
+    code, _, complaint = hdrlab(
+        *("calibrate", tmp_path, "--times", tmp_path / "times.txt", "--response", "all", "--align", "none"),
+        capsys=capsys,
+    )
+    assert code == 2 and complaint.count("\n") == 1 and "no method" in complaint
+
+
+def test_a_saved_curve_takes_the_place_of_a_method(photographs, tmp_path):
+    folder, times, true = photographs
+    options = ("assemble", folder, "--times", times, "--align", "none")
+    write_curve(tmp_path / "true.m", true)
+    saved = tmp_path / "g.npz"
+    assert hdrlab("calibrate", *options[1:], "-o", saved, "--rounds", 0) == 0
+    assert hdrlab(*options, "-o", tmp_path / "a.pfm", "--response", "debevec") == 0
+    assert hdrlab(*options, "-o", tmp_path / "b.pfm", "--response", saved) == 0
+    assert hdrlab(*options, "-o", tmp_path / "c.pfm", "--response", tmp_path / "true.m") == 0
+    assert (tmp_path / "a.pfm").read_bytes() == (tmp_path / "b.pfm").read_bytes()
+    found, best = (radiance.read_radiance(tmp_path / name) for name in ("b.pfm", "c.pfm"))
+    assert np.median(np.abs(np.log2(found / best))) < 0.1
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["calibrate", "nowhere", "-o", "g.txt"], ".luminance.csv"),
+        (["calibrate", "nowhere", "--plot", "g.pdf"], ".svg"),
+        (["calibrate", "nowhere"], "nowhere"),
+        (["calibrate", "nowhere", "--response", "magic"], "magic"),
+        (["assemble", "nowhere", "-o", "x.hdr", "--response", "missing.csv"], "missing.csv"),
+        (["assemble", "nowhere", "-o", "x.hdr", "--response", "curve.txt"], "curve.txt"),
+    ],
+)
+def test_what_cannot_be_done_ends_in_one_line_and_writes_nothing(
+    arguments, expected, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    code, said, complaint = hdrlab(*arguments, capsys=capsys)
+    assert (code, said) == (2, "") and complaint.count("\n") == 1 and expected in complaint
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_levels_of_a_linear_camera_double_with_its_exposure():
+    levels = calibration.doublings(LINEAR)
+    assert [round(levels[k], 2) for k in (-3, -2, -1, 0)] == [16, 32, 64, 128]
+    assert max(levels) == 0 and min(levels) == -3
+    assert np.isclose(calibration.reach(LINEAR), np.log2(25))
+
+
+def test_a_curve_that_is_level_at_its_end_doubles_no_more():
+    g = np.minimum(LINEAR, LINEAR[200]) + np.log(128 / 80)
+    assert np.isclose(calibration.doublings(g - np.log(2))[0], 160) and max(calibration.doublings(g)) == 1
+
+
+def test_equal_curves_and_maps_lie_nothing_apart():
+    curves = {"a": LINEAR, "b": LINEAR + 3, "c": np.stack([1.1 * LINEAR] * 3, axis=-1)}
+    rmse = calibration.rmse(curves)
+    assert np.isclose(rmse["a", "b"], 0, atol=1e-9) and rmse["a", "c"] > 1 and rmse["b", "c"] > 1
+    E = np.random.default_rng(1).uniform(1, 100, (20, 30)).astype(np.float32)
+    maps, well = {"a": E, "b": 7 * E, "c": E**1.1}, np.ones(E.shape, bool)
+    found = calibration.apart(maps, well)
+    assert found["a", "b"] < 1e-5 < 0.05 < found["a", "c"]
+
+
+@pytest.mark.parametrize("channels", [(), (3,)])
+def test_figures_stand_for_gray_and_colour_and_for_levels_that_nothing_is_known_of(channels):
+    g = np.broadcast_to(LINEAR.reshape(256, *[1] * len(channels)), (256, *channels))
+    r = np.full((2, 256, *channels), np.nan)
+    drawn = calibration.calibration(g, r, [0.1, 1], band=Band(g - 0.1, g, g + 0.1), title="debevec")
+    assert isinstance(drawn, Figure) and len(drawn.axes) == 3 and len(drawn.axes[2].lines) == 3
+    edges = [line.get_ydata() for line in drawn.axes[1].lines[:2]]
+    assert np.allclose(edges[0], -0.1 / np.log(2)) and np.allclose(edges[1], 0.1 / np.log(2))
+    assert "band, 0.28" in drawn.get_label()
+    assert len(calibration.calibration(g, r, [0.1, 1], title="debevec").axes) == 2
+    over = calibration.overlay({"one": g, "two": 1.1 * g}, title="two")
+    assert len(over.axes) == 2 * (channels or (1,))[0]
+
+
+def test_no_two_methods_look_alike():
+    curves = {f"method {k}": LINEAR * (1 + k / 20) for k in range(12)}
+    lines = calibration.overlay(curves).axes[0].lines
+    looks = {(line.get_color(), str(line.get_linestyle()), str(line._dash_pattern)) for line in lines}
+    assert len(looks) == 12

@@ -1,0 +1,251 @@
+"""What a shell user may expect of the `hdrlab` command."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+from hdrlab import cli
+from hdrlab.capture import camera
+from hdrlab.capture.room import scenes
+from hdrlab.io import radiance
+from hdrlab.io.photos import read_photo, write_picture
+
+
+def hdrlab(*arguments, capsys=None):
+    """Run the command in this process; return its exit code, and what it said where `capsys` listens."""
+    with pytest.raises(SystemExit) as stop:
+        cli.run([str(one) for one in arguments])
+    code = stop.value.code or 0
+    return (code, *capsys.readouterr()) if capsys else code
+
+
+@pytest.fixture
+def photographs(tmp_path):
+    """A folder of four photographs and the list of their times."""
+    bracket = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], sensitivity=0.05, rng=1)
+    folder = tmp_path / "photographs"
+    folder.mkdir()
+    lines = ["file,exposure_time_s"]
+    for j, (image, seconds) in enumerate(zip(bracket.images, bracket.times, strict=True)):
+        write_picture(folder / f"frame{j}.png", image)
+        lines.append(f"frame{j}.png,{seconds}")
+    times = tmp_path / "times.csv"
+    times.write_text("\n".join(lines))
+    return folder, times
+
+
+@pytest.fixture
+def map_file(tmp_path):
+    file = tmp_path / "scene.exr"
+    radiance.write_radiance(file, scenes.room((48, 64)))
+    return file
+
+
+def test_python_m_hdrlab_is_the_same_command():
+    said = subprocess.run(
+        [sys.executable, "-m", "hdrlab", "--version"], capture_output=True, text=True, check=True
+    )
+    assert said.stdout.startswith("hdrlab, version ")
+
+
+@pytest.mark.parametrize("arguments", [["--help"], ["assemble", "--help"], ["demo", "-h"]])
+def test_help_imports_neither_numpy_nor_matplotlib(arguments):
+    code = (
+        "import sys; from hdrlab import cli\n"
+        f"try: cli.run({arguments!r})\n"
+        "except SystemExit: pass\n"
+        "sys.exit(any(name in sys.modules for name in ('numpy', 'scipy', 'matplotlib', 'PIL')))"
+    )
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
+
+
+def test_importing_hdrlab_imports_no_chapter():
+    code = "import sys, hdrlab; sys.exit(any(name.startswith(('hdrlab.', 'numpy')) for name in sys.modules))"
+    assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
+
+
+def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp_path, capsys):
+    folder, times = photographs
+    out, picture, report = tmp_path / "room.hdr", tmp_path / "room.png", tmp_path / "report"
+    code, said, _ = hdrlab(
+        "assemble",
+        folder,
+        "-o",
+        out,
+        "--times",
+        times,
+        "--picture",
+        picture,
+        "--report",
+        report,
+        capsys=capsys,
+    )
+    assert code == 0 and str(out) in said
+    E = radiance.read_radiance(out)
+    assert read_photo(picture).shape == E.shape
+    assert "<html" in (report / "report.html").read_text(encoding="utf8")
+
+
+def test_the_files_may_be_named_one_by_one_and_in_any_order(photographs, tmp_path):
+    folder, times = photographs
+    files = sorted(folder.iterdir(), reverse=True)
+    assert hdrlab("assemble", folder, "-o", tmp_path / "a.pfm", "--times", times, "--align", "none") == 0
+    assert hdrlab("assemble", *files, "-o", tmp_path / "b.pfm", "--times", times, "--align", "none") == 0
+    assert (tmp_path / "a.pfm").read_bytes() == (tmp_path / "b.pfm").read_bytes()
+
+
+def test_photographs_without_times_are_refused_with_what_to_do(photographs, tmp_path, capsys):
+    code, said, complaint = hdrlab("assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert code == 2 and said == ""
+    assert complaint.startswith("hdrlab: ") and complaint.count("\n") == 1
+    assert "--times" in complaint and "frame0.png" in complaint
+    assert not (tmp_path / "x.hdr").exists()
+
+
+def test_photographs_that_contradict_their_times_are_refused_unless_told_otherwise(
+    photographs, tmp_path, capsys
+):
+    folder, times = photographs
+    text = times.read_text().replace("frame2.png,0.16", "frame2.png,0.05")
+    times.write_text(text)
+    out = tmp_path / "x.hdr"
+    code, _, complaint = hdrlab("assemble", folder, "-o", out, "--times", times, capsys=capsys)
+    assert code == 2 and "contradict" in complaint and "frame2.png" in complaint
+    assert not out.exists()
+    assert hdrlab("assemble", folder, "-o", out, "--times", times, "--anyway") == 0
+    assert out.exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "expected"),
+    [
+        (["assemble", "nowhere", "-o", "x.hdr"], "nowhere"),
+        (["assemble", "nowhere", "-o", "x.bmp"], ".hdr"),
+        (["tonemap", "nowhere.hdr", "-o", "x.png"], "nowhere.hdr"),
+        (["convert", "nowhere.hdr", "x.exr"], "nowhere.hdr"),
+        (["info", "nowhere.jpg"], "nowhere.jpg"),
+        (["assemble", "nowhere", "-o", "x.hdr", "--mask", "blue"], "RRGGBB"),
+        (["tonemap"], "Missing argument"),
+        (["frobnicate"], "frobnicate"),
+        (["assemble", "nowhere", "-o", "x.hdr", "--response", "magic"], "magic"),
+    ],
+)
+def test_what_cannot_be_done_ends_in_one_line_and_exit_code_2(
+    arguments, expected, tmp_path, monkeypatch, capsys
+):
+    monkeypatch.chdir(tmp_path)
+    code, said, complaint = hdrlab(*arguments, capsys=capsys)
+    assert code == 2 and said == ""
+    assert complaint.startswith("hdrlab: ") and complaint.count("\n") == 1 and expected in complaint
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_knobs_of_an_operator_are_set_by_name(map_file, tmp_path):
+    dark, bright = tmp_path / "dark.png", tmp_path / "bright.png"
+    assert hdrlab("tonemap", map_file, "-o", dark, "--set", "key=0.09") == 0
+    assert hdrlab("tonemap", map_file, "-o", bright, "--set", "key=0.72") == 0
+    assert read_photo(dark).mean() < read_photo(bright).mean() - 10
+
+
+@pytest.mark.parametrize(
+    ("setting", "expected"), [("kee=1", "key"), ("key", "knob=value"), ("key=bright", "key")]
+)
+def test_a_knob_that_the_operator_does_not_have_is_refused(setting, expected, map_file, tmp_path, capsys):
+    code, _, complaint = hdrlab(
+        "tonemap", map_file, "-o", tmp_path / "x.png", "--set", setting, capsys=capsys
+    )
+    assert code == 2 and expected in complaint and not (tmp_path / "x.png").exists()
+
+
+@pytest.mark.parametrize("suffix", [".pfm", ".exr"])
+def test_convert_keeps_every_bit_of_a_float_map(suffix, map_file, tmp_path):
+    assert hdrlab("convert", map_file, tmp_path / f"b{suffix}") == 0
+    assert np.array_equal(radiance.read_radiance(tmp_path / f"b{suffix}"), radiance.read_radiance(map_file))
+
+
+def test_a_map_with_nan_is_refused_and_cleaned_on_demand(tmp_path, capsys):
+    broken = tmp_path / "broken.pfm"
+    pixels = np.array([[1, np.nan], [np.inf, 2]], "<f4")
+    broken.write_bytes(b"Pf\n2 2\n-1.0\n" + pixels.tobytes())
+    code, _, complaint = hdrlab("convert", broken, tmp_path / "out.pfm", capsys=capsys)
+    assert code == 2 and "1 NaN" in complaint and "1 infinite" in complaint and str(broken) in complaint
+    assert hdrlab("convert", broken, tmp_path / "out.pfm", "--clean") == 0
+    assert np.isfinite(radiance.read_radiance(tmp_path / "out.pfm")).all()
+
+
+def test_cleaning_says_what_it_mended(tmp_path, capsys):
+    file, out = tmp_path / "x.pfm", tmp_path / "x.png"
+    pixels = np.ones((4, 5, 3), "<f4")
+    pixels[0, 0, 0], pixels[1, 1, 1], pixels[2, 2, 2], pixels[3, 3] = np.nan, np.inf, -0.1, -1
+    file.write_bytes(b"PF\n5 4\n-1.0\n" + pixels.tobytes())
+    code, _, complaint = hdrlab("tonemap", file, "-o", out, capsys=capsys)
+    assert code == 2 and "1 NaN, 1 infinite and 4 negative" in complaint and not out.exists()
+    code, said, _ = hdrlab("tonemap", file, "-o", out, "--clean", capsys=capsys)
+    assert code == 0 and out.exists()
+    counts = "1 unknown pixels, 1 infinite values, 1 pixels with a negative channel, 1 pixels below black"
+    assert counts in said
+    code, said, _ = hdrlab("convert", file, tmp_path / "y.exr", "--clean", capsys=capsys)
+    assert code == 0 and counts in said
+    assert "nothing" in hdrlab("convert", tmp_path / "y.exr", file, "--clean", capsys=capsys)[1]
+
+
+def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):
+    E = np.float32([0.1, 0.3, 4.0]) * np.geomspace(0.1, 30, 20 * 30).reshape(20, 30, 1).astype(np.float32)
+    radiance.write_radiance(tmp_path / "blue.exr", E)
+    pictures = {}
+    for way in ("ratio", "chroma"):
+        out = tmp_path / f"{way}.png"
+        assert hdrlab("tonemap", tmp_path / "blue.exr", "-o", out, "--way", way) == 0
+        pictures[way] = read_photo(out).astype(int)
+    brightest = {way: picture[-1, -1] for way, picture in pictures.items()}
+    assert brightest["ratio"][2] == 255 > brightest["ratio"][0] + 20
+    assert np.ptp(brightest["chroma"]) < np.ptp(brightest["ratio"]), "paler"
+    code, _, complaint = hdrlab(
+        "tonemap", tmp_path / "blue.exr", "-o", tmp_path / "x.png", "--way", "lab", capsys=capsys
+    )
+    assert code == 2 and "chroma" in complaint
+
+
+def test_info_names_format_and_size(map_file, photographs, capsys):
+    code, said, _ = hdrlab("info", map_file, next(iter(sorted(photographs[0].iterdir()))), capsys=capsys)
+    assert code == 0 and "OpenEXR" in said and "PNG" in said
+    assert said.split()[said.split().index("width") + 1] == "64"
+
+
+def test_a_failed_run_leaves_the_old_file_as_it_was(photographs, tmp_path):
+    out = tmp_path / "room.hdr"
+    out.write_bytes(b"precious")
+    assert hdrlab("assemble", photographs[0], "-o", out) == 2
+    assert out.read_bytes() == b"precious"
+
+
+def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys):
+    def interrupted(*_, **__):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("hdrlab.io.photos.read_bracket", interrupted)
+    code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(tmp_path, capsys):
+    copy = tmp_path / "mine"
+    assert hdrlab("lab", "--folder", copy, "--copy-only") == 0
+    mine = [copy / "notebooks/04_response_gsolve.ipynb", copy / "assignments/hw2.ipynb"]
+    for notebook in mine:
+        notebook.write_text("mine")
+    code, said, _ = hdrlab("lab", "--folder", copy, "--copy-only", capsys=capsys)
+    assert code == 0 and "0 new" in said
+    assert [notebook.read_text() for notebook in mine] == ["mine", "mine"]
+
+
+def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
+    called = []
+    monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", called.append)
+    assert hdrlab("lab", "--folder", tmp_path / "mine", "--", "--port", "9000") == 0
+    first = next(part for part in called[0] if part.startswith("--LabApp.default_url="))
+    assert (tmp_path / "mine" / first.removeprefix("--LabApp.default_url=/lab/tree/")).is_file()
+    assert called[0][-2:] == ["--port", "9000"]

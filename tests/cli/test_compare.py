@@ -1,0 +1,110 @@
+"""`hdrlab compare`, and the sign of life of commands that take their time."""
+
+import io
+import time
+
+import numpy as np
+import pytest
+from PIL import Image
+from test_cli import hdrlab
+
+from hdrlab.capture.room import scenes
+from hdrlab.core import catalogue
+from hdrlab.io import radiance
+from hdrlab.io.terminal import elapsed
+
+
+@pytest.fixture
+def map_file(tmp_path):
+    file = tmp_path / "scene.exr"
+    radiance.write_radiance(file, scenes.room((48, 64)))
+    return file
+
+
+def alt_of(sheet):
+    with Image.open(sheet) as file:
+        return file.text["Description"]
+
+
+def test_compare_makes_a_sheet_of_every_operator(map_file, tmp_path, capsys):
+    sheet = tmp_path / "sheet.png"
+    code, said, complaint = hdrlab("compare", map_file, "-o", sheet, capsys=capsys)
+    assert code == 0 and str(sheet) in said and complaint == ""
+    alt = alt_of(sheet)
+    assert "scene.exr, 64 x 48" in alt and "decades" in alt
+    assert all(f"{name}: Q 0." in alt for name in catalogue.names("tonemap"))
+
+
+def test_compare_takes_the_operators_asked_for(map_file, tmp_path):
+    sheet = tmp_path / "sheet.png"
+    assert hdrlab("compare", map_file, "-o", sheet, "--operators", "reinhard, curves") == 0
+    assert "through 2 tone-mapping operators" in alt_of(sheet)
+    assert "reinhard: Q" in alt_of(sheet) and "curves: Q" in alt_of(sheet)
+
+
+def test_compare_brings_a_large_map_to_the_size_asked_for(map_file, tmp_path):
+    sheet = tmp_path / "sheet.png"
+    assert hdrlab("compare", map_file, "-o", sheet, "--operators", "reinhard", "--size", 32) == 0
+    assert "32 x 24" in alt_of(sheet)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"),
+    [
+        (["--operators", "reinhard,magic"], "magic"),
+        (["--operators", "reinhard,"], "expected a method"),
+        (["--size", "1"], "--size"),
+        (["--way", "best"], "--way"),
+        (["-o", "sheet.jpg"], ".png"),
+        (["-o", "missing/sheet.png"], "missing"),
+    ],
+)
+def test_what_cannot_be_compared_ends_in_one_line(options, said, map_file, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    code, out, complaint = hdrlab("compare", map_file, "-o", "sheet.png", *options, capsys=capsys)
+    assert code == 2 and out == "" and complaint.count("\n") == 1 and said in complaint
+    assert list(tmp_path.iterdir()) == [map_file]
+
+
+def test_compare_refuses_nan_and_cleans_on_demand(tmp_path, capsys):
+    broken, sheet = tmp_path / "broken.pfm", tmp_path / "sheet.png"
+    pixels = np.array([[1, np.nan], [np.inf, 2]], "<f4")
+    broken.write_bytes(b"Pf\n2 2\n-1.0\n" + pixels.tobytes())
+    code, _, complaint = hdrlab("compare", broken, "-o", sheet, capsys=capsys)
+    assert code == 2 and "1 NaN" in complaint and "--clean" in complaint and not sheet.exists()
+    assert hdrlab("compare", broken, "-o", sheet, "--clean") == 0 and sheet.exists()
+
+
+class Terminal(io.StringIO):
+    """What a terminal is told."""
+
+    def isatty(self):
+        return True
+
+
+def test_long_work_shows_the_seconds_and_leaves_a_clean_line():
+    terminal = Terminal()
+    with elapsed("tone mapping", stream=terminal, delay=0.01):
+        deadline = time.monotonic() + 10
+        while terminal.getvalue().count("tone mapping: 0 s") < 2 and time.monotonic() < deadline:
+            time.sleep(0.01)
+    said = terminal.getvalue()
+    assert said.startswith("\rtone mapping: 0 s\rtone mapping: 0 s")
+    assert said.endswith("\r" + " " * len("tone mapping: 0 s") + "\r")
+
+
+def test_short_work_and_a_pipe_are_told_nothing():
+    terminal, pipe = Terminal(), io.StringIO()
+    with elapsed("tone mapping", stream=terminal):
+        pass
+    with elapsed("tone mapping", stream=pipe, delay=0):
+        time.sleep(0.02)
+    assert terminal.getvalue() == pipe.getvalue() == ""
+
+
+def test_an_error_passes_through_and_the_line_is_removed():
+    terminal = Terminal()
+    with pytest.raises(ValueError, match="bad"), elapsed("work", stream=terminal, delay=0.001):
+        time.sleep(0.05)
+        raise ValueError("bad")
+    assert terminal.getvalue().endswith(" \r")

@@ -1,0 +1,131 @@
+"""In a tier for credit an attack gains nothing, touches nobody else's answers, and leaves nothing behind.
+
+The attacks are those of tests/attacks; that they work where nothing stops them is for test_attacks_naive to
+show.
+"""
+
+import re
+from contextlib import ExitStack
+
+import pytest
+import siege
+
+from hdrlab.course import plan, warden
+from hdrlab.course.checks.compare import Different, same
+from hdrlab.course.checks.subject import NoAnswer, Subject
+from hdrlab.course.sandbox import tiers
+
+ENDS = {  # what is said of the first check
+    "a01_everything_equals_it": "no array: it contains an object of the class Agreeable",
+    "a01_agreeable_array": "expected .*, got 7",
+    "a02_nan": "expected finite numbers, got 16 NaN",
+    "a02_infinity": "expected finite numbers, got 16 NaN or infinite",
+    "a03_patched_tools": "got 0",
+    "a04_patched_grader": "answer",
+    "a05_frames": "expected",
+    "a06_reading": "LookupError: nothing was there to be read",
+    "a07_results": "PermissionError: no file of results could be written",
+    "a08_pickle": "an object of the class Pickled",
+    "a08_pickled_bytes": "expected one array of numbers, got bytes",
+    "a09_exit": "ended its process, and gave no answer",
+    "a09_sys_exit": "raised SystemExit",
+    "a09_kill_parent": r"no signal was sent: \[-1, -1, -1, -1, -1, -1, -1\]",
+    "a10_forged_lines": "nothing came",
+    "a11_planted_modules": "PermissionError: nothing could be planted",
+    "a12_endless_call": "took longer than",
+    "a12_endless_import": "took longer than",
+    "a12_endless_generator": "took longer than",
+    "a12_endless_end": "took longer than",
+    "a13_memory": "Cannot allocate memory",
+    "a14_processes": "PermissionError: no process could be started",
+    "a14_threads": "can't start new thread",
+    "a15_daemon": "PermissionError",
+    "a16_floods": "PermissionError: no place could be flooded",
+    "a17_network": "PermissionError",
+    "a18_links_and_devices": "PermissionError: nothing could be made",
+    "a19_huge": "an array of 8000000000000 bytes",
+    "a19_ragged": "expected one array of numbers, got list",
+    "a19_objects": "an array of dtype object",
+    "a19_structured": "an array of dtype void",
+    "a19_strides": "got 0",
+    "a20_scripts": "<script>",
+    "a21_hard_coded": "got 0",
+    "a22_library": "LookupError: there was nothing to call",
+    "a23_state": "got 0",
+    "a24_changed_inputs": "got 0",
+    "a25_monitor": r"nothing could be watched: \[-1, -1, -1\]",
+    "a26_out_of_turn": "sent what is no answer: an answer to what was not asked",
+    "a26_oversized": "sent what is no answer: an array of an absurd shape",
+    "a26_truncated": "sent what is no answer: a frame that is cut short",
+    "a26_silence": "took longer than",
+}
+SLOW = ("a12", "a26_silence")  # they are waited for
+AT_THE_FENCE = (  # attacks that meet something else in the container tier: no walls, but a fence
+    *("a06_reading", "a07_results", "a09_kill_parent", "a11_planted_modules", "a16_floods"),
+    *("a18_links_and_devices", "a22_library", "a23_state", "a25_monitor"),
+)
+CASES = [("strict", name) for name in siege.NAMES] + [("container", name) for name in AT_THE_FENCE]
+
+
+@pytest.fixture(scope="module")
+def honest():
+    """Others' submissions by tier, whose processes wait beside those of the attacks."""
+    with ExitStack() as stack:
+        waiting = {}
+
+        def another(tier):
+            """Return a tier's, tried out; where it cannot be had, the reason is the machine's."""
+            if tier not in waiting:
+                try:
+                    subject = Subject({"double": siege.HONEST}, {}, tiers.choose(tier))
+                    stack.enter_context(subject).double(1.0)
+                except tiers.Unavailable as reason:
+                    pytest.skip(str(reason))
+                waiting[tier] = subject
+            return waiting[tier]
+
+        yield another
+
+
+@pytest.fixture(scope="module")
+def port():
+    """The port of a server that knows the answer; and what loses its parent is seen meanwhile."""
+    with siege.oracle() as number, siege.adopting():
+        yield number
+
+
+def points(subject, student="a"):
+    """Return how many of two checks hold, on inputs of the student's own, and what was said of the others."""
+    held, said = 0, []
+    for check in ("first", "second"):
+        subject.fresh()
+        x = plan.generator(plan.seed("a secret", student, check)).random((4, 4))
+        try:
+            came = subject.double(x)
+            same(came, 2 * x, 1e-9)
+            held += 1
+        except (NoAnswer, Different) as error:
+            said.append(str(error))
+    return held, said
+
+
+def test_every_attack_of_the_list_is_there():
+    assert {int(name[1:3]) for name in siege.NAMES} == set(range(1, 27))
+    assert set(siege.NAMES) == set(ENDS)
+
+
+@pytest.mark.parametrize("tier, name", CASES)
+def test_an_attack_gains_nothing_and_leaves_nothing(tier, name, honest, tmp_path, port):
+    place, other = siege.furnish(tmp_path), honest(tier)
+    files, processes = siege.listing(place), warden.children()
+    timeout = 0.5 if name.startswith(SLOW) else 20.0
+    source = {"double": siege.armed(name, place, port)}
+    with Subject(source, {}, tiers.choose(tier), timeout) as subject:
+        held, said = points(subject)
+        assert points(other, "another") == (2, []), "another's submission was harmed"
+    assert held == 0
+    assert re.search(ENDS[name], said[0]), said
+    assert warden.children() == processes, "a process is left"
+    assert siege.listing(place) == files, "a file is left"
+    assert not re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f\u202e]", "".join(said) + subject.said)
+    assert len(subject.said) <= 1 << 16

@@ -1,0 +1,135 @@
+"""The benchmark of a class: who is in it, what is told of it, and how processes are watched."""
+
+import os
+import sys
+from collections import Counter
+from fractions import Fraction
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
+
+import siege
+from traps import TRAPS
+
+from benchmarks import __main__ as command
+from benchmarks.class_ import grading, handed, judged
+from benchmarks.class_.grading import Used
+from benchmarks.class_.handed import Handed
+from hdrlab.course import plan, results, sheets
+from hdrlab.course.checks import misconceptions
+from hdrlab.course.classroom.roster import read
+from hdrlab.course.results import Check, Result
+
+HW2 = {task.id for task in plan.read().homeworks["hw2"].tasks}
+
+
+@pytest.fixture(scope="module")
+def everybody(tmp_path_factory):
+    return handed.handed(300, tmp_path_factory.mktemp("target"))
+
+
+def test_a_class_of_300_holds_every_mistake_of_its_homework_every_attack_and_every_trap(everybody):
+    which = {kind: {one.which for one in everybody if one.kind == kind} for kind in handed.SHARES}
+    assert len(everybody) == 300 == sum(handed.SHARES.values())
+    assert which["mistake"] == {one.name for one in misconceptions.known() if one.task in HW2}
+    assert which["attack"] == set(siege.NAMES) and which["trap"] == set(TRAPS)
+    assert len(which["equivalent"]) == 3 and {"empty", "cut short"} < which["blank"]
+
+
+@pytest.mark.parametrize("count", [24, 100, 300])
+def test_a_smaller_class_has_the_same_mixture(count):
+    made = Counter(handed.kinds(count))
+    assert sum(made.values()) == count
+    for kind, share in handed.SHARES.items():
+        assert abs(made[kind] - share * count / 300) < 1
+
+
+def test_a_class_is_written_as_the_command_reads_it(everybody, tmp_path):
+    folder = handed.write(tmp_path / "class", everybody[:9])
+    roster = read(folder / "roster.csv")
+    assert set(roster.teams()) == {one.team for one in everybody[:9]}
+    assert {len(team) for team in roster.teams().values()} == {1, 2}
+    times = sheets.read_csv(folder / "received.csv")
+    assert [row["file"] for row in times] == [one.file for one in everybody[:9]]
+
+
+def test_an_attack_is_aimed_at_the_results_of_the_run(everybody):
+    (one,) = (one for one in everybody if one.which == "a07_results")
+    assert b"def double(" not in one.data and str(Path("target")).encode() in one.data
+
+
+def one_of(team, kind, which="", score=1.0, problems=(), named=None):
+    check = Check("hat", "test_it", "it", Fraction(score), Fraction(1), "holds" if score else "fails")
+    result = Result(team, "hw2", "T", "strict", (check,), named or {}, problems, "", "", "", {})
+    return Handed(team, (team,), f"{team}.py", b"", 0.0, kind, which), result
+
+
+def test_what_goes_wrong_in_a_class_is_counted():
+    known = next(one for one in misconceptions.known() if one.task == "hat")
+    good = [
+        one_of("a", "right"),
+        one_of("b", "trap", score=0, problems=("The archive is refused: a link.",)),
+        one_of("c", "attack", score=0),
+        one_of("d", "mistake", known.name, named={"hat": known.sentence}),
+    ]
+    bad = [
+        one_of("a", "right", score=0.5),
+        one_of("b", "trap", score=0),
+        one_of("c", "attack", score=0.25),
+        one_of("d", "mistake", known.name, named={"hat": "Another one."}),
+    ]
+    measures = (judged.gained, judged.not_whole, judged.not_named, judged.not_refused)
+    for members, expected in ((good, (0, 0, 0, 0)), (bad, (0.25, 1, 100, 1))):
+        each, graded = [one for one, _ in members], {result.student: result for _, result in members}
+        assert tuple(measure(graded, each) for measure in measures) == expected
+        assert judged.lost(graded, each) == 0
+    assert (
+        judged.lost({}, each) == 4 and judged.not_whole({}, each) == 1 and judged.not_refused({}, each) == 1
+    )
+
+
+def test_one_byte_or_one_cell_that_differs_is_found(tmp_path):
+    each = [one_of("a", "right")[0], one_of("b", "right")[0]]
+    for out in ("one", "same", "other"):
+        (tmp_path / out / "results").mkdir(parents=True)
+        (tmp_path / out / "feedback" / "a").mkdir(parents=True)
+        (tmp_path / out / "results" / "a.0123.json").write_bytes(results.to_json(one_of("a", "right")[1]))
+        (tmp_path / out / "feedback" / "a" / "feedback.html").write_text("<p>well done")
+        sheets.write_csv(tmp_path / out / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 2)])
+    assert judged.differing(tmp_path / "one", tmp_path / "same", each) == 0
+    (tmp_path / "other" / "feedback" / "a" / "feedback.html").write_text("<p>well gone")
+    sheets.write_csv(tmp_path / "other" / "gradebook.csv", ("student", "score"), [("a", 1), ("b", 3)])
+    (tmp_path / "other" / "results" / "b.0123.json").write_text("{}")
+    assert judged.differing(tmp_path / "one", tmp_path / "other", each) == 3
+    assert set(judged.read(tmp_path / "one")) == {"a"} and judged.size(tmp_path / "one")[0] == 3
+
+
+def test_a_large_class_takes_as_much_more_as_it_is_larger_without_what_the_command_does_itself():
+    used = Used(seconds=300, cpu=606, own=6, total=0, largest=0)
+    assert judged.core_hours(used, 300) == pytest.approx(2 * judged.LARGE / 3600)
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are watched in /proc")
+def test_a_command_is_watched_with_all_that_it_starts():
+    child = "x = bytearray(60_000_000)\nimport time\nwhile time.process_time() < 1: pass"
+    parent = f"import subprocess, sys; subprocess.run([sys.executable, '-S', '-c', {child!r}])"
+    used = grading.watched([sys.executable, "-S", "-c", parent])
+    assert used.seconds > 0.9 and 0.9 < used.cpu < 5 and used.own < 0.5
+    assert 60 < used.largest <= used.total < 300
+
+
+@pytest.mark.skipif(not Path("/proc/self/stat").exists(), reason="processes are watched in /proc")
+def test_a_process_is_the_root_of_its_tree():
+    assert next(grading.tree(os.getpid())) == os.getpid()
+
+
+def test_a_command_that_fails_says_what_it_said():
+    with pytest.raises(RuntimeError, match="no chalk"):
+        grading.watched([sys.executable, "-S", "-c", "raise SystemExit('no chalk')"])
+
+
+def test_the_subject_is_called_class_though_that_is_a_word_of_python():
+    assert "class" in command.subjects()
+    assert [row.name for row in command.chosen("class", None)] == ["whole", "processes", "workers", "books"]

@@ -1,0 +1,204 @@
+"""A class is graded on a cluster as it is here, whoever is lost meanwhile.
+
+The cluster is a real one, on this machine: a scheduler, and workers in processes of their own.
+"""
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+import time
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+import errands
+import pytest
+from distributed import Client, LocalCluster
+
+import hdrlab
+from hdrlab.course.classroom import cluster, journal, processes
+
+RUN = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+import errands, test_cluster
+test_cluster.graded({address!r}, Path({folder!r}), errands.slow)
+"""
+
+
+@contextmanager
+def clustered(workers, threads, at_once=0):
+    """Start a scheduler, and so many workers: at once, or a little later."""
+    knobs = {"processes": True, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
+    ended = threading.Event()
+    with LocalCluster(n_workers=at_once, threads_per_worker=threads, **knobs) as running:
+        keeper = threading.Thread(target=_keep, args=(running, workers, at_once, ended))
+        keeper.start()
+        try:
+            yield running
+        finally:
+            ended.set()
+            keeper.join()
+
+
+def _keep(running, workers, asked, ended):
+    """Ask for workers that are missing, too: a nanny gives up on one that was killed while it began."""
+    met = time.monotonic() - 100 * (asked == 0)
+    while not ended.wait(0.5):
+        if len(running.scheduler.workers) >= workers:
+            met = time.monotonic()
+        elif time.monotonic() > met + 10:
+            asked, met = max(asked + 1, workers), time.monotonic()
+            running.scale(asked)
+
+
+@pytest.fixture(scope="module")
+def address():
+    """Start a scheduler and two workers, and return where they are."""
+    with clustered(2, 1, at_once=2) as running:
+        yield running.scheduler_address
+
+
+def graded(address, home, work=errands.grade, **knobs):
+    """Grade the class of a folder, and return what was done and what the results are."""
+    folder = home / "results"
+    done, rest = journal.parted(folder, errands.pieces(home / "class"))
+    with cluster.Cluster(address, work, **knobs) as crew:
+        done += journal.done_steps(rest, crew, folder)
+    return done, contents(folder)
+
+
+def contents(folder):
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def whole(home):
+    """Return the results of the same class, done here."""
+    with processes.Processes(errands.grade, 2) as crew:
+        list(journal.done_steps(errands.pieces(home / "class"), crew, home / "here"))
+    return contents(home / "here")
+
+
+def test_a_cluster_gives_the_bytes_that_this_machine_gives(address, tmp_path):
+    done, results = graded(address, tmp_path)
+    assert results == whole(tmp_path) and len(results) == 5 and all(one.fresh for one in done)
+    again, same = graded(address, tmp_path)
+    assert same == results and not any(one.fresh for one in again)
+
+
+def test_a_worker_that_is_killed_has_its_piece_done_by_another(address, tmp_path):
+    def kill():
+        while not (noted := errands.begun(tmp_path / "class")):
+            time.sleep(0.05)
+        os.kill(noted[0][2], signal.SIGKILL)
+
+    killer = threading.Thread(target=kill)
+    killer.start()
+    done, results = graded(address, tmp_path, errands.slow)
+    killer.join()
+    noted = errands.begun(tmp_path / "class")
+    first = [worker for owner, _, worker in noted if owner == noted[0][0]]
+    assert len(noted) == 6 and len(set(first)) == 2
+    assert results == whole(tmp_path) and all(one.result for one in done)
+
+
+def test_a_submission_that_kills_its_worker_is_told_of_and_its_neighbours_are_done(address, tmp_path):
+    done, results = graded(address, tmp_path, errands.deadly)
+    owners = [owner for owner, *_ in errands.begun(tmp_path / "class")]
+    (lost,) = [one for one in done if one.result is None]
+    assert lost.piece.owner == "s3" and "3 times" in lost.why and "was lost" in lost.why
+    assert owners.count("s3") == 3 and len(owners) == 7
+    assert results == {name: data for name, data in whole(tmp_path).items() if not name.startswith("s3.")}
+
+
+def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_used(tmp_path):
+    with clustered(1, 4) as running:
+        assert not running.scheduler.workers
+        done, results = graded(running.scheduler_address, tmp_path, errands.crowded)
+    (lost,) = [one for one in done if one.result is None]
+    assert lost.piece.owner == "s3" and len(results) == 4
+    assert [owner for owner, *_ in errands.begun(tmp_path / "class")].count("s3") == 4
+
+
+def test_no_worker_has_more_pieces_than_threads(address, tmp_path):
+    with cluster.Cluster(address, errands.endless) as crew:
+        started = [crew.start(one) for one in errands.pieces(tmp_path / "class")]
+        assert started == [True, True, False, False, False]
+        while len(errands.begun(tmp_path / "class")) < 2:
+            assert not crew.endings()
+    until = time.monotonic() + 10
+    while any(map(alive, errands.begun(tmp_path / "class"))):  # they were cancelled with the run
+        assert time.monotonic() < until
+        time.sleep(0.1)
+
+
+def alive(noted):
+    with suppress(ProcessLookupError):
+        os.kill(noted[1], 0)
+        return True
+    return False
+
+
+def test_a_run_that_is_killed_is_finished_by_the_next_and_its_pieces_are_ended(address, tmp_path):
+    script = RUN.format(tests=str(Path(__file__).parents[1]), address=address, folder=str(tmp_path))
+    run = subprocess.Popen([sys.executable, "-c", script])
+    while not (tmp_path / "results").is_dir() or not list((tmp_path / "results").glob("s*.json")):
+        assert run.poll() is None
+        time.sleep(0.05)
+    run.kill()
+    run.wait()
+    done, results = graded(address, tmp_path)
+    assert results == whole(tmp_path) and 1 <= sum(not one.fresh for one in done) < 5
+    assert not any(map(alive, errands.begun(tmp_path / "class")))
+
+
+def test_a_submission_that_never_ends_is_ended(address, tmp_path):
+    (one,) = errands.pieces(tmp_path / "class", 1)
+    with cluster.Cluster(address, errands.endless, patience=0.5) as crew:
+        (done,) = journal.done_steps([one], crew, tmp_path / "results")
+    assert done.result is None and "3 times" in done.why and "too long" in done.why
+
+
+@pytest.mark.parametrize("nowhere", ["tcp://127.0.0.1:1", "nowhere", "http://a:1"])
+def test_where_there_is_no_cluster_it_says_so_soon(nowhere, tmp_path):
+    begin = time.monotonic()
+    with pytest.raises(ValueError, match="expected a Dask cluster at"):
+        graded(nowhere, tmp_path)
+    assert time.monotonic() - begin < 15
+
+
+def test_a_cluster_that_is_lost_is_told_of(tmp_path):
+    with clustered(0, 1) as running, pytest.raises(ValueError, match="is lost; what is graded stays"):
+        threading.Timer(2, running.close).start()
+        graded(running.scheduler_address, tmp_path, errands.endless)
+
+
+def rename(version):
+    hdrlab.__version__ = version
+
+
+def unable():
+    raise RuntimeError("no strict tier here")
+
+
+def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_path):
+    with Client(address, set_as_default=False) as client:
+        client.wait_for_workers(2)
+        client.run(rename, "0.0.7")
+        try:
+            with pytest.raises(ValueError, match=r"0\.0\.7") as told:
+                graded(address, tmp_path)
+            assert hdrlab.__version__ in str(told.value)
+        finally:
+            client.run(rename, hdrlab.__version__)
+    piece = errands.pieces(tmp_path / "class", 1)[0]
+    task = cluster.Task(errands.grade, cluster.version, piece, b"", 1.0, "0.0.7 (of another)")
+    with pytest.raises(ValueError, match=r"expected 0\.0\.7 \(of another\)"):  # of a worker that joins later
+        cluster.do(task)
+
+
+def test_a_worker_that_cannot_do_the_work_is_named(address, tmp_path):
+    with pytest.raises(ValueError, match="tcp://.* cannot do it: no strict tier here"):
+        graded(address, tmp_path, ready=unable)

@@ -1,0 +1,125 @@
+"""Correct solutions that are written differently: all of them keep every promise."""
+
+import ast
+import json
+import sys
+import warnings
+from functools import wraps
+from pathlib import Path
+
+import pytest
+
+from hdrlab.course import plan, submission
+from hdrlab.course.checks import compare, inprocess
+
+HERE = Path(__file__).parents[1] / "equivalent"
+FILES = sorted(HERE.glob("*.py"))
+HOMEWORKS = plan.read().homeworks
+
+
+def aside(function):
+    """Return a function whose warnings stay its own, as they do in another process: they cost nothing."""
+
+    @wraps(function)
+    def asked(*given, **named):
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return compare.plain(function(*given, **named))
+
+    return asked
+
+
+def tasks_of(path):
+    """Return the tasks of the homework that a file's name begins with."""
+    return [task.id for task in HOMEWORKS[path.stem.partition("_")[0]].tasks]
+
+
+def keeps_every_promise(functions, tasks, student):
+    subject = inprocess.Subject({task: aside(functions[task]) for task in tasks})
+    for task in tasks:
+        share, said = inprocess.score(task, subject, plan.seed("secret", student, task))
+        assert share == 1, (task, {name: str(error) for name, error in said.items() if error})
+
+
+@pytest.mark.parametrize("student", ["ada", "grace"])
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_another_way_of_writing_it_keeps_every_promise(path, student):
+    keeps_every_promise(inprocess.functions(path), tasks_of(path), student)
+
+
+# The same code in another notebook
+
+
+def reversed_order(cells):
+    """The cells in the opposite order: helpers stand below what uses them."""
+    return cells[::-1], "hw.ipynb"
+
+
+def helpers_apart(cells):
+    """Every statement in a cell of its own, with cells between that nobody asked for; the file is renamed."""
+    split = [ast.unparse(one) for cell in cells for one in ast.parse(cell).body]
+    between = ["unused = [n**2 for n in range(9)]", "def plot_it(x):\n    return x", "%matplotlib inline\n"]
+    return [*between, *split, "!ls", "results = {}"], "Final version (2) of Ada.ipynb"
+
+
+def printing(cells):
+    """Functions that print, warn, and write to stderr."""
+
+    class Talk(ast.NodeTransformer):
+        def visit_FunctionDef(self, node):
+            said = (
+                f"import sys, warnings\nprint('in {node.name}')\n"
+                f"print('to stderr', file=sys.stderr)\nwarnings.warn('{node.name} is slow', stacklevel=2)"
+            )
+            first = 1 if ast.get_docstring(node) else 0
+            node.body[first:first] = ast.parse(said).body
+            return node
+
+    return [ast.unparse(Talk().visit(ast.parse(cell))) for cell in cells], "hw.ipynb"
+
+
+def as_one_script(cells):
+    """A Python file without any cells."""
+    return ["\n\n".join(cells)], "solution.py"
+
+
+WAYS = (reversed_order, helpers_apart, printing, as_one_script)
+
+
+@pytest.mark.parametrize("way", WAYS, ids=lambda way: way.__name__)
+@pytest.mark.parametrize(
+    "path", [path for path in FILES if path.stem.endswith("_float32")], ids=lambda path: path.stem
+)
+def test_the_same_code_in_another_notebook_keeps_every_promise(path, way, tmp_path, capsys):
+    cells, name = way([cell.text for cell in submission.cells_of(path.read_bytes(), path.name)[0]])
+    handed_in = tmp_path / name
+    handed_in.write_text(notebook(cells) if name.endswith(".ipynb") else cells[0], encoding="utf8")
+    found = submission.tasks_of(handed_in, tasks_of(path))
+    assert set(found.sources) == set(tasks_of(path)), found.problems
+    functions = {}
+    for task, source in found.sources.items():
+        names = {"__name__": "a student's module"}
+        exec(source, names)
+        functions[task] = names[task]
+    keeps_every_promise(functions, found.sources, "ada")
+    assert ("to stderr" in capsys.readouterr().err) == (way is printing)
+
+
+def notebook(cells):
+    """Return a notebook of code cells, as JSON."""
+    made = [{"cell_type": "code", "metadata": {}, "outputs": [], "source": cell} for cell in cells]
+    return json.dumps({"cells": made, "metadata": {}, "nbformat": 4, "nbformat_minor": 5})
+
+
+@pytest.mark.parametrize("homework", HOMEWORKS)
+def test_every_homework_has_five_ways_and_more(homework):
+    assert len([path for path in FILES if path.stem.startswith(f"{homework}_")]) + len(WAYS) >= 5 + 1
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
+def test_the_ways_need_numpy_scipy_and_python_alone(path):
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))):
+        names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+        names += [node.module] if isinstance(node, ast.ImportFrom) else []
+        for name in names:
+            assert name.split(".")[0] in {"numpy", "scipy"} | set(sys.stdlib_module_names)

@@ -1,0 +1,267 @@
+"""Grading a submission: its points, its messages, and what it must not depend on. The tier is practice here.
+
+The strict tier, and what it keeps out, have tests of their own.
+"""
+
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import processes
+import pytest
+
+from hdrlab.course import feedback, gradebook, grading, handouts, materials, plan, results
+from hdrlab.course.code import inline
+from hdrlab.course.grading import Conditions
+from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.show.plots import differences
+
+HOMEWORKS = plan.read().homeworks
+PRACTICE = Conditions(tier="practice")
+
+RIGHT = """import numpy as np
+
+def hat(n=256):
+    z = np.arange(n)
+    return np.minimum(z, n - 1 - z) / ((n - 1) // 2)
+"""
+
+
+def of(homework, *tasks):
+    """Return a homework with some of its tasks alone, which take a moment."""
+    whole = HOMEWORKS[homework]
+    return whole._replace(tasks=tuple(one for one in whole.tasks if one.id in tasks))
+
+
+HAT = of("hw2", "hat")
+
+
+@pytest.fixture
+def graded(tmp_path):
+    """graded(text, homework, conditions) -> the Result of a file that holds it."""
+
+    def graded(text, homework=HAT, conditions=PRACTICE):
+        file = tmp_path / "hw2.py"
+        file.write_text(text)
+        return grading.grade(file, homework, conditions)
+
+    return graded
+
+
+def test_the_library_has_all_points_and_the_blank_handout_none(tmp_path, graded):
+    blocks = inline.inlined({task.id: task.function for task in of("hw2", "hat", "irradiance").tasks})
+    whole = graded("\n\n".join(block.text for block in blocks.values()), of("hw2", "hat", "irradiance"))
+    assert whole.score == whole.max_score == 20 and not whole.problems and not whole.misconceptions
+    blank = shutil.copy(materials.folder("assignments") / "hw2.ipynb", tmp_path)
+    found = grading.grade(blank, of("hw2", "hat", "irradiance"), PRACTICE)
+    assert found.score == 0 and {one.outcome for one in found.checks} == {"no answer"}
+    assert "hat is yours to write" in found.checks[0].message
+
+
+def test_points_of_the_plan_are_shared_out_by_those_of_the_checks(graded):
+    homework = of("hw2", "hat")
+    double = homework._replace(tasks=(homework.tasks[0]._replace(points=7.5),))
+    found = graded(RIGHT, double)
+    assert found.score == found.max_score == 7.5
+    assert sum(one.max_points for one in found.checks) == 7.5
+
+
+def test_a_wrong_function_loses_what_it_breaks_and_is_recognised(graded):
+    wrong = RIGHT.replace("np.minimum(z, n - 1 - z)", "np.abs(z - (n - 1) / 2)")
+    found = graded(wrong)
+    assert 0 <= found.score < 10
+    assert list(found.misconceptions) == ["hat"]
+    broken = [one for one in found.checks if one.outcome == "fails"]
+    assert broken and all(len(one.hints) == 3 and one.message for one in broken)
+
+
+def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
+    blocks = inline.inlined({"gsolve": "response.debevec.gsolve"})
+    wrong = blocks["gsolve"].text.replace("(smoothness * w[1:-1]) ** 2", "1.0")
+    found = graded(wrong, of("hw2", "gsolve"))
+    drawn = [one.drawing for one in found.checks if one.drawing.frames]
+    assert drawn and all("they differ by" in alt for drawing in drawn for alt in drawing.alts)
+    assert drawn[0].frames[0][8:12] == b"WEBP"
+    assert any("Yours: shape (256,), dtype float64, values " in one.message for one in found.checks)
+    assert not any(
+        one.drawing.frames for one in graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False)).checks
+    )
+
+
+def test_a_difference_of_pictures_is_drawn_three_times(graded):
+    wrong = (
+        "import numpy as np\ndef shrink(Y):\n    return Y[: len(Y) // 2 * 2 : 2, : Y.shape[1] // 2 * 2 : 2]\n"
+    )
+    found = graded(wrong, of("hw1", "shrink"))
+    drawing = next(one.drawing for one in found.checks if one.drawing.frames)
+    assert len(drawing.frames) == 3 and drawing.captions[:2] == ("expected", "yours")
+    assert "worst pixel is row" in drawing.alts[2]
+
+
+@pytest.mark.parametrize(
+    ("body", "said"),
+    [
+        ("raise RuntimeError('no light')", "raised RuntimeError: no light"),
+        ("while True: pass", "took longer than"),
+        ("import os; os._exit(0)", "gave no answer"),
+        ("return object()", "something that is no array"),
+        ("return None", "nothing came"),
+        ("return np.full(n, np.nan)", "finite"),
+        ("return np.ones(3)", "expected shape"),
+    ],
+)
+def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, said):
+    text = f"import numpy as np\ndef hat(n=256):\n    {body}\n"
+    found = graded(text, conditions=PRACTICE._replace(timeout=1.0))
+    assert found.score == 0 and any(said in one.message for one in found.checks), found.checks[0].message
+
+
+def test_a_missing_task_costs_its_own_points_alone(graded):
+    found = graded(RIGHT, of("hw2", "hat", "irradiance"))
+    assert found.score == 10 and any("irradiance was not found" in problem for problem in found.problems)
+
+
+def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_path):
+    hidden = tmp_path / "hidden"
+    hidden.mkdir()
+    (hidden / "test_hat.py").write_text(
+        "import pytest\nfrom hdrlab.course.checks.compare import Different\n\n@pytest.mark.points(5)\n"
+        '@pytest.mark.hints("a secret hint")\n'
+        'def test_it_is_blue(subject):\n    raise Different("the secret")\n'
+    )
+    found = graded(RIGHT, conditions=PRACTICE._replace(hidden=hidden))
+    (own,) = (one for one in found.checks if one.hidden)
+    assert own.outcome == "fails" and own.max_points > 0 and found.max_score == 10 and found.score < 10
+    for shown in (feedback.page(found), feedback.text(found), gradebook.gradescope(found).decode()):
+        assert "secret" not in shown and "It is blue" in shown
+    assert "the secret" in feedback.text(found, private=True)
+
+
+def test_grading_again_gives_the_same_bytes_and_another_student_other_inputs(graded):
+    wrong = RIGHT + "\ndef irradiance(Z, t, f, w):\n    return (w[Z] * f[Z]) @ t\n"
+    conditions = PRACTICE._replace(student="ada", secret="salt")
+    first, again = (graded(wrong, of("hw2", "hat", "irradiance"), conditions) for _ in range(2))
+    assert results.to_json(first) == results.to_json(again)
+    other = graded(wrong, of("hw2", "hat", "irradiance"), conditions._replace(student="bob"))
+    assert [one.message for one in other.checks] != [one.message for one in first.checks]
+    assert other.seed != first.seed and other.score == first.score
+
+
+def test_results_grow_check_by_check(tmp_path):
+    file = tmp_path / "hw2.py"
+    file.write_text(RIGHT)
+    steps = list(grading.grade_steps(file, of("hw2", "hat"), PRACTICE))
+    assert [one.score for one in steps] == sorted(one.score for one in steps)
+    assert len({one.max_score for one in steps}) == 1 and steps[-1].score == 10
+
+
+@pytest.mark.skipif(not Path("/proc/self/environ").exists(), reason="processes are looked for in /proc")
+def test_nothing_is_left_behind_when_grading_is_given_up(tmp_path, monkeypatch):
+    """Neither a file nor a process: a function that never ends is at work at that moment."""
+    scratch = tmp_path / "scratch"
+    scratch.mkdir()
+    monkeypatch.setattr("tempfile.tempdir", str(scratch))
+    file = tmp_path / "hw2.py"
+    file.write_text(RIGHT + "def irradiance(*given):\n    while True: pass\n")
+    steps = grading.grade_steps(file, of("hw2", "hat", "irradiance"), PRACTICE._replace(timeout=60))
+    next(steps)  # hat comes first, and its other checks take a moment: then there is an endless one
+    time.sleep(2)
+    assert processes.of(scratch) and list(scratch.iterdir())
+    steps.close()
+    end = time.monotonic() + 20
+    while processes.of(scratch) and time.monotonic() < end:
+        time.sleep(0.05)
+    assert processes.of(scratch) == [] and list(scratch.iterdir()) == []
+
+
+def test_a_tier_that_cannot_be_had_is_an_error_and_no_other_takes_its_place(graded, monkeypatch):
+    def refuse(tier):
+        raise Unavailable(f"{tier} cannot be had")
+
+    monkeypatch.setattr("hdrlab.course.sandbox.tiers.choose", refuse)
+    with pytest.raises(Unavailable, match="strict cannot be had"):
+        graded(RIGHT, conditions=Conditions())
+
+
+def test_what_stands_around_has_no_say(graded, tmp_path, monkeypatch):
+    """Neither a conftest nor options of pytest in this folder or in the environment change a score."""
+    (tmp_path / "conftest.py").write_text("raise SystemExit")
+    (tmp_path / "pytest.ini").write_text("[pytest]\naddopts = --nothing-of-this\n")
+    monkeypatch.setenv("PYTEST_ADDOPTS", "--collect-only")
+    monkeypatch.chdir(tmp_path)
+    assert graded(RIGHT).score == 10
+
+
+def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(graded, tmp_path):
+    homework = of("hw2", "hat")
+    unknown = homework._replace(tasks=(homework.tasks[0]._replace(id="nothing"),))
+    with pytest.raises(ValueError, match="expected checks for hw2"):
+        graded(RIGHT, unknown)
+    with pytest.raises(ValueError, match="expected a folder with hidden checks"):
+        graded(RIGHT, conditions=PRACTICE._replace(hidden=tmp_path / "missing"))
+
+
+def test_what_a_sheet_gives_is_known_to_the_grader():
+    given = handouts.given("hw2")
+    assert any("class Solution" in cell.text for cell in given) and all(cell.given for cell in given)
+
+
+def test_a_student_may_use_what_the_sheet_gives(graded):
+    text = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text
+    start = text.index("class Solution")
+    without = text[:start] + text[text.index("\n\n\n", start) :]
+    assert np.isclose(graded(without, of("hw2", "gsolve")).score, 30)
+
+
+@pytest.mark.parametrize("name", HOMEWORKS)
+def test_in_the_strict_tier_the_library_has_all_points_and_the_blank_handout_none(name, tmp_path):
+    try:
+        tiers.choose("strict")
+    except Unavailable as reason:
+        pytest.skip(f"this machine has no strict tier: {reason}")
+    homework, file = HOMEWORKS[name], tmp_path / f"{name}.py"
+    blocks = inline.inlined({task.id: task.function for task in homework.tasks})
+    file.write_text("\n\n".join(block.text for block in blocks.values()))
+    strict = Conditions(student="ada", secret="salt")
+    right = grading.grade(file, homework, strict)
+    assert right.score == right.max_score == homework.points, [one for one in right.checks if one.message]
+    assert right.for_credit and right.tier == "strict"
+    blank = grading.grade(materials.folder("assignments") / f"{name}.ipynb", homework, strict)
+    assert blank.score == 0 and blank.max_score == homework.points and not blank.problems
+
+
+def test_a_check_costs_four_starts_of_what_it_loads_at_most_and_a_homework_eight(graded):
+    """Ratios of seconds of a core, as machines differ, and their hours: a start takes 0.6 s, or 1.2."""
+    resource = pytest.importorskip("resource", reason="this system does not count a process's seconds")
+
+    def cpu():
+        both = [resource.getrusage(who) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN)]
+        return sum(one.ru_utime + one.ru_stime for one in both)
+
+    def cost(work):
+        """Return the least of three costs: what is loaded once, or cold, is not the work's."""
+        each = []
+        for _ in range(3):
+            before = cpu()
+            work()
+            each.append(cpu() - before)
+        return min(each)
+
+    tasks = {task.id: task.function for task in HOMEWORKS["hw2"].tasks}
+    whole = "\n\n".join(block.text for block in inline.inlined(tasks).values())
+    alone = inline.inlined({"gsolve": tasks["gsolve"]})["gsolve"].text
+    wrong = alone.replace("(smoothness * w[1:-1]) ** 2", "1.0")
+    loaded = (
+        "import numpy, scipy.linalg, scipy.ndimage, pytest, hdrlab.response.debevec, hdrlab.course.grading"
+    )
+    assert differences  # and with it matplotlib, which a handout's first cell has imported
+    assert graded(whole, HOMEWORKS["hw2"]).score == 100
+    start = cost(lambda: subprocess.run([sys.executable, "-c", loaded], check=True))
+    check = cost(lambda: graded(wrong, of("hw2", "gsolve")))
+    homework = cost(lambda: graded(whole, HOMEWORKS["hw2"]))
+    found = f"a start {start:.2f} s, a check {check:.2f} s, hw2 {homework:.2f} s"
+    assert check <= 4 * start and homework <= 8 * start, found

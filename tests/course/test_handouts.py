@@ -1,0 +1,177 @@
+"""Handouts: one source, two notebooks, and the committed ones are those that the source makes."""
+
+import ast
+import builtins
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from hdrlab.course import handouts, materials, plan
+from hdrlab.course.code import names
+from hdrlab.course.plan import Task
+
+ROOT = Path(__file__).resolve().parents[2]
+SOURCES = ROOT / "solutions"
+PLAN = plan.read()
+NAMES = list(PLAN.homeworks)
+TASKS = [task for homework in PLAN.homeworks.values() for task in homework.tasks]
+pytestmark = pytest.mark.skipif(
+    not SOURCES.is_dir(), reason="the handouts' prose is in a clone, and this is an installed package"
+)
+
+
+@pytest.fixture(scope="module")
+def made():
+    """made(name) -> the Handout of a homework."""
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    built = {}
+
+    def make(name):
+        if name not in built:
+            text = (SOURCES / f"{name}.py").read_text(encoding="utf8")
+            built[name] = handouts.handout(text, PLAN.homeworks[name], handouts.lateness(PLAN))
+        return built[name]
+
+    return make
+
+
+def committed(folder, name):
+    return json.loads((folder / f"{name}.ipynb").read_text(encoding="utf8"))
+
+
+def bare(notebook):
+    """Return a notebook without what running it added."""
+    cells = []
+    for cell in notebook["cells"]:
+        source = cell["source"] if isinstance(cell["source"], str) else "".join(cell["source"])
+        kept = {
+            "id": cell["id"],
+            "cell_type": cell["cell_type"],
+            "metadata": cell["metadata"],
+            "source": source,
+        }
+        cells.append(kept)
+    return {**notebook, "cells": cells}
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_assignment_is_the_one_that_its_source_makes(made, name):
+    file = materials.folder("assignments") / f"{name}.ipynb"
+    assert handouts.to_text(made(name).assignment) == file.read_text(encoding="utf8"), "hdrlab course build"
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_solution_is_the_one_that_its_source_makes(made, name):
+    assert bare(made(name).solution) == bare(committed(SOURCES, name)), (
+        "hdrlab course build --solutions solutions"
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_the_solution_was_run_and_keeps_every_promise(name):
+    outputs = [output for cell in committed(SOURCES, name)["cells"] for output in cell.get("outputs", ())]
+    assert not [one for one in outputs if one["output_type"] == "error" or one.get("name") == "stderr"]
+    texts = ["".join(one.get("data", {}).get("text/plain", "")) for one in outputs]
+    checked = [text for text in texts if re.search(r"^\S+: [\d.]+ of [\d.]+ points$", text, re.MULTILINE)]
+    assert len(checked) == len(PLAN.homeworks[name].tasks) + 1
+    assert not any("✗" in text for text in checked)
+    whole = f"{PLAN.homeworks[name].points:g}"
+    assert f"{name}: {whole} of {whole} points" in checked[-1]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_picture_of_a_solution_has_an_alt_text(name):
+    pages = [
+        "".join(output.get("data", {}).get("text/html", ""))
+        for cell in committed(SOURCES, name)["cells"]
+        for output in cell.get("outputs", ())
+    ]
+    images = [image for page in pages for image in re.findall(r"<img [^>]*>", page)]
+    assert images and all(re.search(r'alt="[^"]{10,}"', image) for image in images)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_an_assignment_gives_no_solution_away(made, name):
+    """A task's cell has the signature, the docstring and the stub; nothing else of the function."""
+    for cell in made(name).assignment["cells"]:
+        task = cell["metadata"].get("hdrlab", {}).get("task")
+        if task is not None:
+            assert cell["source"].endswith(f'raise NotImplementedError("{task} is yours to write")')
+            assert cell["source"].count("\ndef ") == 0 and cell["source"].startswith(f"def {task}(")
+        assert cell.get("outputs", []) == []
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name):
+    cells = {cell["id"]: cell for cell in made(name).assignment["cells"]}
+    prose = "\n".join(cell["source"] for cell in cells.values() if cell["cell_type"] == "markdown")
+    for task in PLAN.homeworks[name].tasks:
+        assert f"task-{task.id}" in cells and cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
+        assert f"({task.points:g} points)" in prose
+    assert not re.search(r"\{(points|due|total|late|hand)\}", prose)
+    assert PLAN.homeworks[name].due.strftime("%d %B %Y") in prose
+
+
+def test_what_the_plan_leaves_out_is_left_out_with_its_prose_and_its_pictures():
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    hw2 = PLAN.homeworks["hw2"]
+    few = hw2._replace(tasks=tuple(Task(one.id, one.function, 3) for one in hw2.tasks if one.id == "hat"))
+    made = handouts.handout((SOURCES / "hw2.py").read_text(encoding="utf8"), few)
+    text = "\n".join(cell["source"] for cell in made.assignment["cells"])
+    assert "(3 points)" in text and "def hat" in text and "gsolve" not in text and "Robertson" not in text
+
+
+SHORT = """
+[hw3]
+title = "The radiance map and its files"
+due = 2026-11-06T23:59:00Z
+tasks = [{ id = "to_radiance", function = "io.rgbe.to_radiance", points = 10 }]
+"""
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_a_sheet_of_one_task_has_no_cell_that_needs_another(task):
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    name = next(one for one in NAMES if task in PLAN.homeworks[one].tasks)
+    alone = PLAN.homeworks[name]._replace(tasks=(task,))
+    made = handouts.handout((SOURCES / f"{name}.py").read_text(encoding="utf8"), alone)
+    known = set(dir(builtins))
+    for cell in made.solution["cells"]:
+        if cell["cell_type"] == "code":
+            for node in ast.parse(cell["source"]).body:
+                known |= set(names.bound(node))
+                assert {use.node.id for use in names.free(node)} <= known, cell["source"]
+
+
+def test_building_writes_both_and_nothing_else(tmp_path):
+    """In a process of its own: notebooks are run with asyncio, and a browser may hold this one's loop."""
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    (tmp_path / "plan.toml").write_text(SHORT)
+    options = ["--plan", "plan.toml", "--sources", SOURCES, "--out", "assignments", "--solutions", "worked"]
+    command = [sys.executable, "-m", "hdrlab", "course", "build", *options]
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH")]))
+    ran = subprocess.run(
+        command,
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": path},
+        capture_output=True,
+        text=True,
+        timeout=300,
+    )
+    assert ran.returncode == 0, ran.stderr
+    files = {file.relative_to(tmp_path).as_posix() for file in tmp_path.rglob("*") if file.is_file()}
+    assert files == {"plan.toml", "assignments/hw3.ipynb", "worked/hw3.ipynb"}
+    worked = json.loads((tmp_path / "worked" / "hw3.ipynb").read_text())
+    said = [output for cell in worked["cells"] for output in cell.get("outputs", ())]
+    assert any("to_radiance: 10 of 10 points" in json.dumps(one) for one in said)
+    assert not any("execution" in cell["metadata"] for cell in worked["cells"])
+
+
+def test_a_homework_without_prose_is_an_error(tmp_path):
+    with pytest.raises(ValueError, match="expected the prose of hw1"):
+        list(handouts.build_steps(PLAN, tmp_path, tmp_path, None))

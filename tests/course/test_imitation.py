@@ -1,0 +1,73 @@
+"""Imitated hand-ins: they stand by themselves, and answer as the library or the wrong file does."""
+
+import ast
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hdrlab.course import plan, submission
+from hdrlab.course.checks import inprocess, misconceptions
+from hdrlab.course.classroom import imitation
+
+HERE = Path(__file__).parents[1]
+HOMEWORKS = plan.read().homeworks
+OF_TASK = {task.id: name for name, homework in HOMEWORKS.items() for task in homework.tasks}
+KNOWN = misconceptions.known()
+HW2 = [one for one in KNOWN if OF_TASK[one.task] == "hw2"]
+
+
+def function(name, task, cells, folder):
+    """Return a task's function as the grader finds it in a notebook."""
+    homework = HOMEWORKS[OF_TASK[task]]
+    file = folder / f"{name}.ipynb"
+    file.write_text(imitation.notebook(homework, cells), encoding="utf8")
+    scope = {"__name__": "a student's module"}
+    exec(submission.tasks_of(file, [task]).sources[task], scope)
+    return scope[task]
+
+
+@pytest.mark.parametrize("one", KNOWN, ids=[one.name for one in KNOWN])
+def test_a_mistake_stands_by_itself(one, tmp_path):
+    cells = imitation.texts(HOMEWORKS[OF_TASK[one.task]], [one.name])
+    for text in cells.values():
+        for node in ast.walk(ast.parse(text)):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [str(node.module)] if isinstance(node, ast.ImportFrom) else []
+            assert not any(name.startswith("hdrlab") for name in names)
+    assert callable(function(one.name, one.task, cells, tmp_path))
+
+
+@cache
+def small(task):
+    """Return the two smallest questions of a task's checks, as (arguments, named arguments)."""
+    library = inprocess.library()
+    inprocess.score(task, library)
+    sizes = [sum(np.size(one) for one in given) for given, _, _ in library.calls]
+    return [library.calls[k][:2] for k in np.argsort(sizes, kind="stable")[:2]]
+
+
+@pytest.mark.parametrize("one", HW2, ids=[one.name for one in HW2])
+def test_an_imitated_mistake_answers_as_its_file_does(one, tmp_path):
+    wrong = function(one.name, one.task, imitation.texts(HOMEWORKS["hw2"], [one.name]), tmp_path)
+    for given, named in small(one.task):
+        came, filed = (misconceptions.asked(asked, given, named) for asked in (wrong, one.function))
+        assert filed is not None and misconceptions.difference(came, filed) == 0
+
+
+@pytest.mark.parametrize("homework", HOMEWORKS.values(), ids=HOMEWORKS)
+def test_without_a_mistake_it_is_the_solution_and_without_cells_the_handout(homework, tmp_path):
+    cells = imitation.texts(homework)
+    for name, text in (("a.ipynb", imitation.notebook(homework, cells)), ("a.py", imitation.script(cells))):
+        (tmp_path / name).write_text(text, encoding="utf8")
+        found = submission.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
+        assert set(found.sources) == {task.id for task in homework.tasks}
+        assert not any("is yours to write" in source for source in found.sources.values())
+    handout = (HERE.parent / "assignments" / f"{homework.name}.ipynb").read_text(encoding="utf8")
+    assert imitation.notebook(homework) == handout
+
+
+def test_an_attack_takes_the_place_of_a_task():
+    text = imitation.attack("a09_exit", "gsolve")
+    assert "def gsolve(x=0, *_, **__):" in text and "def double" not in text

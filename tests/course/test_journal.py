@@ -1,0 +1,149 @@
+"""A class is graded once, whoever is killed meanwhile, and files find their owners."""
+
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from contextlib import suppress
+from datetime import UTC, datetime, timedelta
+from pathlib import Path
+
+import errands
+import pytest
+
+from hdrlab.course.classroom import handins, journal, processes
+from hdrlab.course.classroom.roster import Roster, Student
+
+RUN = """
+import sys
+from pathlib import Path
+sys.path.insert(0, {tests!r})
+import test_journal
+test_journal.graded(Path({folder!r}))
+"""
+
+
+def graded(home, work=errands.grade, again=False):
+    """Grade the class of a folder, and return what was done and what the results are."""
+    folder, wanted = home / "results", errands.pieces(home / "class")
+    if again:
+        journal.forget(folder, wanted)
+    with journal.held(folder):
+        done, rest = journal.parted(folder, wanted)
+        with processes.Processes(work, 2) as crew:
+            done += journal.done_steps(rest, crew, folder)
+    return done, {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def test_nothing_is_graded_twice(tmp_path):
+    first, results = graded(tmp_path)
+    again, same = graded(tmp_path)
+    assert all(one.fresh for one in first) and not any(one.fresh for one in again) and results == same
+    assert len(errands.begun(tmp_path / "class")) == len(results) == 5
+
+
+def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
+    graded(tmp_path)
+    (tmp_path / "class" / "s4.py").write_text(f"{tmp_path / 'class' / 'begun'}\nother")
+    again, results = graded(tmp_path)
+    assert [one.piece.owner for one in again if one.fresh] == ["s4"] and len(results) == 5
+    assert sum(one.fresh for one in graded(tmp_path, again=True)[0]) == 5
+
+
+def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_graded(tmp_path):
+    (tmp_path / "alone").mkdir()
+    _, alone = graded(tmp_path / "alone")
+    done, results = graded(tmp_path, errands.fatal)
+    lost = [one for one in done if one.result is None]
+    assert [one.piece.owner for one in lost] == ["s3"] and "3 times" in lost[0].why and "(-9)" in lost[0].why
+    assert results == {name: data for name, data in alone.items() if not name.startswith("s3.")}
+
+
+def test_a_submission_that_never_ends_is_ended(tmp_path):
+    one = errands.pieces(tmp_path / "class", 1)
+    with processes.Processes(errands.endless, 1, patience=0.5) as crew:
+        (done,) = journal.done_steps(one, crew, tmp_path / "results")
+    assert done.result is None and "too long" in done.why
+    assert list((tmp_path / "results").iterdir()) == []
+
+
+def test_an_error_is_told_of_in_a_line(tmp_path):
+    done, results = graded(tmp_path, errands.failing)
+    assert {one.why for one in done} == {
+        "it ended 3 times without a result: ValueError: expected this, got that"
+    }
+    assert not results
+
+
+def test_two_runs_do_not_write_to_one_folder(tmp_path):
+    (tmp_path / "feedback").mkdir()
+    (tmp_path / "feedback" / ".hdrlab-1234.html").write_text("half of a page, by a run that was killed")
+    with journal.held(tmp_path):
+        with pytest.raises(ValueError, match="another run"), journal.held(tmp_path):
+            pass
+        assert not list((tmp_path / "feedback").iterdir())
+    with journal.held(tmp_path):
+        pass
+
+
+def test_what_runs_is_ended_when_the_run_is_interrupted(tmp_path):
+    with pytest.raises(KeyboardInterrupt), processes.Processes(errands.endless, 2) as crew:
+        for one in errands.pieces(tmp_path / "class", 2):
+            assert crew.start(one)
+        while len(errands.begun(tmp_path / "class")) < 2:
+            assert not crew.endings()
+        raise KeyboardInterrupt
+    for _, process, _ in errands.begun(tmp_path / "class"):
+        with pytest.raises(ProcessLookupError):
+            os.kill(process, 0)
+
+
+@pytest.mark.skipif(not hasattr(os, "killpg"), reason="kills a group of processes")
+def test_a_run_that_is_killed_at_any_moment_is_finished_by_the_next(tmp_path):
+    (tmp_path / "whole").mkdir()
+    _, whole = graded(tmp_path / "whole")
+    rng, home = random.Random(5), tmp_path / "killed"
+    home.mkdir()
+    script = RUN.format(tests=str(Path(__file__).parents[1]), folder=str(home))
+    for kill in range(4):
+        run = subprocess.Popen([sys.executable, "-c", script], start_new_session=True)
+        time.sleep(rng.uniform(0.3, 2.0))
+        if kill % 2:
+            run.kill()  # the run alone: what it started may write its result or not
+            run.wait()
+            time.sleep(0.3)
+        with suppress(ProcessLookupError):  # nothing of it is left
+            os.killpg(run.pid, signal.SIGKILL)
+        run.wait()
+    done, results = graded(home)
+    assert results == whole
+    assert len(done) == 5 and all(one.result for one in done)
+
+
+def test_files_find_their_owners(tmp_path):
+    roster = Roster(
+        (
+            Student("b1", "A", "team1"),
+            Student("b2", "B", "team1"),
+            Student("b12", "C", "b12"),
+            Student("b3", "D", "b3"),
+        )
+    )
+    for name in ("B2_hw2.ipynb", "b12.py", "b123.py", "stranger.zip", "notes.txt"):
+        (tmp_path / name).write_text(name)
+    (tmp_path / "b3").mkdir()
+    (tmp_path / "b3" / "hw2.ipynb").write_text("x")
+    (tmp_path / "team1-late.ipynb").write_text("later")
+    (tmp_path / "b3" / "link.py").symlink_to("/etc/passwd")
+    noon = datetime(2026, 3, 1, 12, tzinfo=UTC)
+    times = {"B2_hw2.ipynb": noon, "team1-late.ipynb": noon + timedelta(hours=1)}
+    found = handins.find(tmp_path, roster, times)
+    assert {team: one.path.name for team, one in found.handins.items()} == {
+        "team1": "team1-late.ipynb",
+        "b12": "b12.py",
+        "b3": "hw2.ipynb",
+    }
+    assert found.handins["team1"].students == ("b1", "b2")
+    assert len(found.notes) == 3 and any("B2_hw2" in note for note in found.notes)

@@ -1,0 +1,82 @@
+"""Well-known mistakes: each costs points, not all of them, and is recognised by name."""
+
+from collections import Counter
+from functools import cache
+
+import numpy as np
+import pytest
+
+from hdrlab.course import plan
+from hdrlab.course.checks import inprocess, misconceptions
+
+KNOWN = misconceptions.known()
+NAMES = [one.name for one in KNOWN]
+PLAN = plan.read()
+pytestmark = pytest.mark.filterwarnings("ignore")  # a wrong function may well divide by 0
+
+
+@cache
+def asked(one, student):
+    """Return the share of its task's points that a wrong file gets, and what it was asked and answered."""
+    subject = inprocess.Subject({one.task: one.function})
+    share, _ = inprocess.score(one.task, subject, plan.seed("secret", student, one.task))
+    return share, subject.calls
+
+
+def roughened(answer):
+    """Return an answer as another solver would give it: a few digits less."""
+    if isinstance(answer, tuple | list):
+        return type(answer)(roughened(one) for one in answer)
+    if isinstance(answer, np.ndarray) and answer.dtype.kind == "f":
+        return answer * (1 + 1e-5 * np.random.default_rng(0).standard_normal(answer.shape))
+    return answer
+
+
+def test_there_are_thirty_and_more_and_some_for_every_task():
+    assert len(KNOWN) >= 30
+    tasks = {task.id for homework in PLAN.homeworks.values() for task in homework.tasks}
+    assert {one.task for one in KNOWN} == tasks
+
+
+@pytest.mark.parametrize("one", KNOWN, ids=NAMES)
+def test_a_mistake_costs_points_and_not_all_of_them(one):
+    for student in ("ada", "grace"):
+        assert 0 < asked(one, student)[0] < 1
+
+
+@pytest.mark.parametrize("one", KNOWN, ids=NAMES)
+def test_a_mistake_has_a_sentence_and_says_what_to_do(one):
+    assert one.name.startswith(one.task) and 40 < len(one.sentence) < 200 and one.sentence.endswith(".")
+
+
+def test_nine_in_ten_are_recognised_by_name_for_any_student():
+    for student in ("ada", "grace"):
+        missed = []
+        for one in KNOWN:
+            calls = [(given, named, roughened(came)) for given, named, came in asked(one, student)[1]]
+            found = misconceptions.closest(one.task, calls)
+            missed += [] if found is not None and found.name == one.name else [one.name]
+        assert len(missed) <= 0.1 * len(KNOWN), missed
+
+
+@pytest.mark.parametrize("task", sorted({one.task for one in KNOWN}))
+def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
+    subject = inprocess.library()
+    inprocess.score(task, subject)
+    assert misconceptions.recognise(task, subject.calls) is None
+    stub = inprocess.Subject({task: lambda *given, **named: None})
+    inprocess.score(task, stub)
+    assert misconceptions.recognise(task, stub.calls) is None
+    assert misconceptions.recognise(task, []) is None
+
+
+def test_nonsense_is_no_known_mistake():
+    Z = np.random.default_rng(0).integers(0, 256, (30, 4))
+    given = (Z, np.arange(4.0), 10.0, np.ones(256))
+    answers = (np.arange(256.0), np.zeros(30)), (np.zeros(3), np.zeros(2)), "no", [1.0], (np.zeros(256),)
+    for answer in answers:
+        assert misconceptions.recognise("gsolve", [(given, {}, answer)]) is None
+
+
+def test_no_two_sentences_are_the_same():
+    assert [said for said, count in Counter(one.sentence for one in KNOWN).items() if count > 1] == []

@@ -1,0 +1,571 @@
+"""The sandbox in its tiers: it answers alike in all, keeps in what it says it keeps in, and fails closed."""
+
+import ctypes
+import itertools
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import textwrap
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hdrlab.course import channel, warden
+from hdrlab.course.checks.subject import NoAnswer, Subject, modules_of
+from hdrlab.course.sandbox import contents, doctor, filters, practice, running, strict, tiers, users
+
+IMPOLITE = "import sys; sys.modules['worker'].REFUSED.clear()\n"
+FUNCTIONS = """
+import os, sys, time, warnings
+from typing import NamedTuple
+import numpy as np
+
+class State(NamedTuple):
+    s: object
+    n: int
+
+def scaled(x, k=2.0): return k * x
+def steps(x):
+    for n in range(3): yield State(x + n, n)
+def both(x): return State(x, 1), b"bytes", None, "text", True
+def nothing(x): pass
+def loud(x):
+    print("said"); warnings.warn("warned"); print("\\x1b[31mred", file=sys.stderr)
+    return x
+def wrong(x):
+    y = 1 / 0
+def absent(x): import cv2
+def leaves(x): os._exit(3)
+def endless(x):
+    while True: pass
+def writes(x): open("here.txt", "w")
+def forks(x): os.fork()
+def hushed(x):
+    with open(os.devnull, "w") as nowhere: print("x", file=nowhere)
+    return x
+def threaded(x):
+    from concurrent.futures import ThreadPoolExecutor
+    with ThreadPoolExecutor(4) as pool: return sum(pool.map(abs, range(10)))
+def counted(x):
+    np.count = getattr(np, "count", 0) + 1
+    return np.count
+def spoiled(x):
+    x[...] = -1
+    return x
+def transformed(x):
+    from scipy import fft, ndimage
+    return ndimage.gaussian_filter(np.abs(fft.fft2(x, workers=2)), 1.0)
+def drawn(x): return np.random.random(3)
+def hashed(x): return hash("word")
+"""
+NAMES = re.findall(r"^def (\w+)", FUNCTIONS, re.MULTILINE)
+
+
+def opened(tier, sources=None, timeout=30.0):
+    """Return a Subject in a tier, or skip with the machine's reason."""
+    try:
+        return Subject(sources or dict.fromkeys(NAMES, FUNCTIONS), {}, tiers.choose(tier), timeout)
+    except tiers.Unavailable as reason:
+        pytest.skip(str(reason))
+
+
+@pytest.fixture(scope="module", params=["strict", "container", "practice"])
+def running_subject(request):
+    with opened(request.param) as subject:
+        try:
+            subject.scaled(1.0)
+        except tiers.Unavailable as reason:
+            pytest.skip(str(reason))
+        yield subject
+
+
+@pytest.fixture
+def subject(running_subject):
+    """A Subject in each tier, afresh."""
+    running_subject.fresh()
+    return running_subject
+
+
+@pytest.fixture
+def adopted():
+    """What loses its parent becomes a child of this process, so that it is seen."""
+    libc = ctypes.CDLL(None)
+    libc.prctl(36, 1, 0, 0, 0)
+    yield
+    libc.prctl(36, 0, 0, 0, 0)
+
+
+def alone(source, tier, **others):
+    """Return what the function f of a source answers, in a sandbox of its own."""
+    with opened(tier, {"f": source}, **others) as subject:
+        return subject.f()
+
+
+def test_answers_come_as_plain_arrays(subject):
+    x = np.arange(6.0).reshape(2, 3)
+    np.testing.assert_array_equal(subject.scaled(x, k=3), 3 * x)
+    states = subject.steps(x)
+    assert [type(state) for state in states] == [tuple] * 3 and [int(n) for _, n in states] == [0, 1, 2]
+    np.testing.assert_array_equal(states[2][0], x + 2)
+    (array, one), raw, none, text, truth = subject.both(x)
+    assert raw == b"bytes" and none is None and text == "text" and truth == 1 and one == 1
+    assert subject.nothing(x) is None
+    assert subject.transformed(np.ones((8, 8))).shape == (8, 8)
+    assert subject.calls[0].task == "scaled" and subject.calls[0].kwargs == {"k": 3}
+
+
+@pytest.mark.parametrize(
+    "task, kind, says",
+    [
+        ("wrong", "raised", r"wrong raised ZeroDivisionError: division by zero \(line \d+: y = 1 / 0\)"),
+        ("absent", "raised", "No module named 'cv2' .numpy, scipy and Python's own modules are here"),
+        ("leaves", "died", "leaves ended its process, and gave no answer"),
+        ("writes", "raised", "PermissionError: a function that is checked cannot write a file"),
+        ("forks", "raised", "PermissionError: a function that is checked cannot start a process"),
+    ],
+)
+def test_what_goes_wrong_is_said_in_plain_words_and_the_next_call_is_answered(subject, task, kind, says):
+    with pytest.raises(NoAnswer, match=says) as told:
+        getattr(subject, task)(1.0)
+    assert told.value.kind == kind
+    assert subject.scaled(1.0) == 2.0
+
+
+def test_a_call_that_takes_too_long_is_ended(running_subject):
+    running_subject.fresh()
+    running_subject._timeout, patience = 0.3, running_subject._timeout
+    began = time.monotonic()
+    try:
+        with pytest.raises(NoAnswer, match="endless took longer than 0.3 s"):
+            running_subject.endless(1.0)
+    finally:
+        running_subject._timeout = patience
+    assert running_subject.scaled(1.0) == 2.0
+    assert time.monotonic() - began < 10
+
+
+def test_nothing_is_kept_from_one_check_to_the_next(subject):
+    assert [int(subject.counted(1.0)) for _ in range(2)] == [1, 2]
+    subject.fresh()
+    assert subject.counted(1.0) == 1 and len(subject.calls) == 1
+
+
+def test_what_is_printed_and_warned_is_kept_apart_without_control_codes(subject):
+    subject.loud(1.0)
+    assert "said\n" in subject.said and "UserWarning: warned" in subject.said and "red\n" in subject.said
+    assert "\x1b" not in subject.said
+    subject.fresh()
+    assert subject.said == ""
+
+
+def test_an_input_that_is_changed_there_is_not_changed_here(subject):
+    x = np.ones(3)
+    assert subject.spoiled(x).tolist() == [-1, -1, -1]
+    assert x.tolist() == [1, 1, 1]
+
+
+def test_threads_and_the_null_device_may_be_used(subject):
+    assert subject.threaded(1.0) == 45
+    assert subject.hushed(1.0) == 1
+
+
+def test_grading_twice_gives_the_same(subject):
+    first = subject.drawn(0).tolist(), int(subject.hashed(0))
+    subject.fresh()
+    assert first == (subject.drawn(0).tolist(), int(subject.hashed(0)))
+
+
+def test_a_check_starts_within_fifty_milliseconds(subject):
+    """The quickest counts: on a busy machine the others say how busy it is, and it is asked more often."""
+    spent = [np.inf]
+    while min(spent) >= 0.05 and len(spent) <= 100:
+        began = time.perf_counter()
+        subject.fresh()
+        subject.scaled(1.0)
+        spent.append(time.perf_counter() - began)
+    assert min(spent) < 0.05
+
+
+def test_a_sandbox_that_is_ended_from_outside_is_started_anew(subject):
+    subject.scaled(1.0)
+    subject._running._launched.process.kill()
+    subject._running._launched.process.wait()
+    subject.fresh()
+    assert subject.scaled(1.0) == 2.0
+
+
+@pytest.mark.parametrize("tier", ["strict", "container"])
+def test_inside_there_is_what_computing_needs_and_nothing_else(tier):
+    source = IMPOLITE + textwrap.dedent(
+        """
+        import ctypes, os, resource
+        def tried(path):
+            try: return sorted(os.listdir(path))
+            except OSError: return None
+        def f():
+            libc = ctypes.CDLL(None)
+            groups = os.getgroups()
+            limits = [resource.getrlimit(getattr(resource, "RLIMIT_" + name)) for name in LIMITS]
+            places = ["/", "/etc", "/home", "/root", "/tmp", "/work", "/proc", "/sys", "/dev", "/course"]
+            calls = [libc.unshare(0x10000000), libc.setuid(0), libc.mount(b"a", b"/", b"tmpfs", 0, None)]
+            calls += [libc.socket(1, 1, 0), libc.prctl(4, 1, 0, 0, 0), libc.chroot(b"/")]
+            calls += [libc.memfd_create(b"a", 0), libc.execv(b"/bin/sh", None), libc.syscall(425, 1, None)]
+            opened = [one for one in range(64) if libc.fcntl(one, 1) >= 0]
+            return list(os.environ), groups, limits, [tried(place) for place in places], calls, len(opened)
+        """
+    ).replace("LIMITS", repr(list(running.LIMITS)))
+    environment, groups, limits, places, calls, opened_files = alone(source, tier)
+    assert set(environment) <= {*running.ENVIRONMENT, "LD_LIBRARY_PATH", "PYTHONHOME", "PWD"}
+    assert [int(soft) for soft, _ in limits] == list(running.LIMITS.values())
+    assert [int(hard) for _, hard in limits] == list(running.LIMITS.values())
+    assert {int(answer) for answer in calls} == {-1}
+    if tier == "strict":
+        assert set(places[0]) <= {"course", "dev", "etc", "lib", "lib64", "packages", "python", "usr"}
+        assert set(places[1] or ()) <= {"alternatives", "ld.so.cache"}
+        assert places[2:8] == [None] * 6
+        assert places[8:] == [["null"], sorted(contents.OURS)]
+        assert opened_files == 4  # three that lead nowhere, and the link
+    else:
+        assert groups == [] and places == [None] * len(places)
+
+
+@pytest.mark.parametrize("tier", ["strict", "container"])
+def test_no_package_but_numpy_and_scipy_is_there(tier):
+    source = textwrap.dedent(
+        """
+        import os, sys
+        def f():
+            found = []
+            for root, _, files in (one for path in ("/", *sys.path) for one in os.walk(path)):
+                kept = [one for one in ("-packages", "hdrlab", "solutions", "/specification") if one in root]
+                found += [name for name in files if kept and read(os.path.join(root, name))]
+            return found, [name for name in ("numpy", "scipy.optimize", "hdrlab", "pytest") if can(name)]
+        def read(path):
+            try: return open(path, "rb").read(1)
+            except OSError: return b""
+        def can(name):
+            try: __import__(name)
+            except ImportError: return False
+            return True
+        """
+    )
+    assert alone(source, tier) == ([], ["numpy", "scipy.optimize"])
+
+
+def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path):
+    places = {"/python/lib": str(tmp_path), "/packages/numpy": str(tmp_path)}
+    for name in ("python3.11/site-packages/cv2", "python3/dist-packages", "python3.11/json"):
+        (tmp_path / name).mkdir(parents=True)
+    (tmp_path / "python3.11" / "os.py").touch()
+    hidden = contents._others(places)
+    assert hidden == ["/python/lib/python3.11/site-packages", "/python/lib/python3/dist-packages"]
+    inside = contents.Contents("/usr", "", {"/python/lib": str(tmp_path)}, tuple(hidden), {})
+    listed, read = inside.readable()
+    assert {Path(path).name for path in listed} == {tmp_path.name, "python3.11", "python3"}
+    assert {Path(path).name for path in read} == {"json", "os.py"}
+
+
+def test_where_processes_cannot_fork_each_check_has_a_process_of_its_own():
+    """As on Windows, but for the way in which the process is handed its socket."""
+    tier = practice.sandbox()._replace(forks=False)
+    with Subject(dict.fromkeys(NAMES, FUNCTIONS), {}, tier, 30) as subject:
+        assert [int(subject.counted(1.0)) for _ in range(2)] == [1, 2]
+        subject.fresh()
+        assert subject.counted(1.0) == 1
+        with pytest.raises(NoAnswer, match="ended its process"):
+            subject.leaves(1.0)
+        assert subject.scaled(1.0) == 2.0
+        subject._timeout = 0.3
+        with pytest.raises(NoAnswer, match="took longer"):
+            subject.endless(1.0)
+        subject._timeout = 30
+        assert subject.scaled(1.0) == 2.0
+
+
+def test_large_answers_are_not_remembered_without_end():
+    source = "import numpy as np\ndef f(n): return np.zeros(n)"
+    with opened("practice", {"f": source}) as subject:
+        for n in (1 << 19, 1 << 18, 1 << 19, 1):
+            assert len(subject.f(n)) == n
+        kept = [None if one.answer is None else len(one.answer) for one in subject.calls]
+    assert kept == [1 << 19, 1 << 18, None, 1]
+
+
+def test_an_unknown_tier_is_an_error():
+    with pytest.raises(ValueError, match="expected one of the tiers strict, container, practice, got 'none'"):
+        tiers.choose("none")
+
+
+@pytest.fixture
+def without(monkeypatch):
+    """without(what) -> nothing is remembered of what was there."""
+    strict.bubblewrap.cache_clear()
+    filters.program.cache_clear()
+    yield monkeypatch
+    monkeypatch.undo()
+    strict.bubblewrap.cache_clear()
+    filters.program.cache_clear()
+
+
+def test_without_bubblewrap_there_is_no_strict_tier(without):
+    without.setattr(shutil, "which", lambda name: None)
+    with pytest.raises(tiers.Unavailable, match="no bwrap on the path"):
+        tiers.choose("strict")
+
+
+def test_without_libseccomp_there_is_no_tier_for_credit(without):
+    without.setitem(sys.modules, "pyseccomp", None)
+    without.setattr(os, "geteuid", lambda: 0)
+    for tier in ("strict", "container"):
+        with pytest.raises(tiers.Unavailable, match="libseccomp|Landlock"):
+            tiers.choose(tier)
+
+
+def test_on_other_systems_there_is_no_tier_for_credit(without):
+    without.setattr(sys, "platform", "darwin")
+    for tier in ("strict", "container"):
+        with pytest.raises(tiers.Unavailable, match="needs Linux, and this is darwin"):
+            tiers.choose(tier)
+
+
+def test_an_ordinary_user_has_no_container_tier(without):
+    without.setattr(os, "geteuid", lambda: 1000)
+    with pytest.raises(tiers.Unavailable, match="needs root"):
+        tiers.choose("container")
+
+
+@pytest.mark.parametrize(
+    "script, says",
+    [
+        ("echo usage", "needs bubblewrap 0.8 or later"),
+        (
+            "echo {options}; echo 'bwrap: setting up uid map: Permission denied' >&2; exit 1",
+            "setting up uid map",
+        ),
+        ("echo {options}; exit 0", "did not start"),
+    ],
+)
+def test_a_bubblewrap_that_does_not_work_is_an_error_that_says_why(without, script, says):
+    opened("strict")
+    with tempfile.TemporaryDirectory(dir="/var/tmp") as folder:  # where another user can read it
+        os.chmod(folder, 0o755)
+        fake = Path(folder) / "bwrap"
+        fake.write_text("#!/bin/sh\n" + script.format(options=" ".join(strict.NEEDED)))
+        fake.chmod(0o755)
+        strict.bubblewrap.cache_clear()
+        without.setattr(shutil, "which", lambda name: str(fake))
+        with pytest.raises(tiers.Unavailable, match=says), strict_anyway() as subject:
+            subject.scaled(1.0)
+
+
+def strict_anyway():
+    """Return a Subject of the strict tier, or raise."""
+    return Subject({"scaled": FUNCTIONS}, {}, tiers.choose("strict"))
+
+
+def test_a_user_number_is_given_to_one_sandbox_at_a_time():
+    if os.geteuid() != 0:
+        pytest.skip("only root can become another user")
+    (first, one), (second, two) = users.lease(), users.lease()
+    with one, two:
+        assert first != second and {first, second} <= set(users.SPARE)
+    again, held = users.lease()
+    held.close()
+    assert again <= first
+
+
+def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_path):
+    """Whatever tier: with the parent gone, the process of the check and its warden are gone soon."""
+    for tier in ("strict", "practice"):
+        opened(tier)
+        code = (
+            "from hdrlab.course.checks.subject import Subject\n"
+            "from hdrlab.course.sandbox import tiers\n"
+            f"tier, source = tiers.choose({tier!r}), 'def f():\\n while True: pass'\n"
+            "with Subject({'f': source}, {}, tier, 60) as subject:\n"
+            "    subject._running.check(); print('begun', flush=True); subject.f()\n"
+        )
+        before = warden.children()
+        folder = tmp_path / tier
+        folder.mkdir()
+        environment = os.environ | {"TMPDIR": str(folder)}
+        grader = subprocess.Popen(
+            [sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, env=environment
+        )
+        assert grader.stdout.readline() == "begun\n"
+        time.sleep(0.2)
+        grader.kill()
+        grader.wait()
+        grader.stdout.close()
+        deadline = time.monotonic() + 10
+        while set(warden.children()) - set(before) and time.monotonic() < deadline:
+            for pid in set(warden.children()) - set(before):
+                os.waitpid(pid, os.WNOHANG)
+            time.sleep(0.02)
+        assert not set(warden.children()) - set(before)
+        assert not list(folder.iterdir())
+
+
+def test_root_and_an_ordinary_user_have_the_same_strict_tier():
+    """Run by root, this asks as an ordinary user as well, with an interpreter that such a user can read."""
+    opened("strict")
+    if os.geteuid() != 0:
+        pytest.skip("this is an ordinary user: the other tests are the answer")
+    code = (
+        "from hdrlab.course.checks.subject import Subject\n"
+        "from hdrlab.course.sandbox import tiers\n"
+        "with Subject({'f': 'def f(x): return 2 * x'}, {}, tiers.choose('strict'), 60) as s: print(s.f(21))\n"
+    )
+    user, held = users.lease()
+    with held:
+        asked = "import sys, numpy, scipy, hdrlab.course; print(sys.version_info[:2])"
+        able = as_user(user, asked) == f"{sys.version_info[:2]}\n"
+        if not able:
+            pytest.skip(
+                "an ordinary user can read no interpreter of this version here, or not this installation"
+            )
+        assert as_user(user, code) == "42\n"
+
+
+def as_user(user, code):
+    """Return what the system's Python prints as another user, or its error."""
+    paths = [
+        Path(channel.__file__).parents[2],
+        *{os.path.dirname(one) for one in running.packages().values()},
+    ]
+    told = subprocess.run(
+        ["/usr/bin/env", "python3", "-B", "-c", code],
+        env={"PYTHONPATH": ":".join(map(str, paths)), "PATH": os.defpath, "OPENBLAS_NUM_THREADS": "1"},
+        user=user,
+        group=user,
+        extra_groups=[],
+        cwd="/",
+        capture_output=True,
+        text=True,
+    )
+    return told.stdout or told.stderr
+
+
+def test_the_practice_tier_says_what_it_does_not_stop_and_that_is_true(tmp_path):
+    """Each sentence has a function here that does what it says; none reaches beyond its own folder."""
+    (tmp_path / "solution.py").write_text("ANSWER = 42\n")
+    (tmp_path / "yours.txt").write_text("yours")
+    place, me = str(tmp_path), os.getpid()
+    done = {
+        "reading any file": f"open({place + '/solution.py'!r}).read().split()[-1]",
+        "importing a package": f"sys.path.insert(0, {place!r}) or __import__('solution').ANSWER",
+        "removing any file": f"os.remove({place + '/yours.txt'!r}) or 42",
+        "using the network": "socket.socket(socket.AF_INET).fileno() > 0 and 42",
+        "starting programs": f"os.kill({me}, 0) or subprocess.run(['true']).returncode or 42",
+    }
+    assert len(done) == len(practice.DOES_NOT_STOP)
+    for sentence, (does, expression) in zip(practice.DOES_NOT_STOP, done.items(), strict=True):
+        assert sentence.startswith(does)
+        source = IMPOLITE + f"import os, socket, subprocess\ndef f(): return int({expression})"
+        assert alone(source, "practice") == 42
+    assert not (tmp_path / "yours.txt").exists()
+    assert tiers.choose("practice").credit is False
+
+
+def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
+    """A full memory, a file without end, and processes that are left behind."""
+    before, name = warden.children(), str(tmp_path / "written")
+    with pytest.raises(NoAnswer, match="MemoryError"):
+        alone("import numpy as np\ndef f(): return np.ones(1 << 34).sum()", "practice")
+    with pytest.raises(NoAnswer, match="File too large"):
+        alone(IMPOLITE + f"def f(): open({name!r}, 'wb').write(b'x' * 9999)", "practice")
+    assert Path(name).stat().st_size == 0
+    if sys.platform == "linux":  # elsewhere a process that leaves its group is not found
+        daemon = (
+            "import os, time\ndef f():\n if os.fork() == 0:\n  os.setsid()\n  if os.fork() == 0:\n"
+            f"   time.sleep(0.5); os.remove({name!r})\n  os._exit(0)\n return 1"
+        )
+        assert alone(IMPOLITE + daemon, "practice") == 1
+        time.sleep(0.7)
+        assert Path(name).exists()
+        assert warden.children() == before
+
+
+def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(without):
+    found = {finding.tier: finding for finding in doctor.report()}
+    assert list(found) == ["strict", "container", "practice"]
+    for tier, finding in found.items():
+        assert finding.credit == (tier != "practice")
+        assert finding.says and (finding.works or finding.credit)
+    assert all(sentence in found["practice"].says for sentence in practice.DOES_NOT_STOP)
+    strict.bubblewrap.cache_clear()
+    without.setattr(shutil, "which", lambda name: None)
+    assert not doctor.examine("strict").works and "apt install bubblewrap" in doctor.examine("strict").remedy
+
+
+@pytest.mark.parametrize("ended, works", [(doctor.TRIES - 1, True), (doctor.TRIES, False)])
+def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, ended, works):
+    starts = itertools.count()
+
+    def launch(control):
+        if next(starts) >= ended:
+            return practice.launch(control)
+        words = [sys.executable, "-c", "import os; os.kill(os.getpid(), 9)"]
+        return running.Launched(running.start(words, {}), lambda: None)
+
+    monkeypatch.setitem(tiers.TIERS, "practice", lambda: practice.sandbox()._replace(launch=launch))
+    finding = doctor.examine("practice")
+    assert finding.works == works and next(starts) == doctor.TRIES
+    assert works or finding[3:] == ("the practice sandbox did not start: it was ended by signal 9", "")
+
+
+def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_container_tier_serves():
+    """As in most containers: root, without the right to have namespaces."""
+    opened("container")
+    if shutil.which("setpriv") is None:
+        pytest.skip("there is no setpriv, by which root gives a right up")
+    code = (
+        "from hdrlab.course.sandbox import doctor\n"
+        "for finding in doctor.report(): print(finding.tier, finding.works, finding.says)\n"
+    )
+    less = ["setpriv", "--bounding-set=-sys_admin", "--inh-caps=-sys_admin", sys.executable, "-c", code]
+    told = subprocess.run(less, capture_output=True, text=True).stdout.splitlines()
+    assert told[0].startswith("strict False the strict ")
+    assert "container True started in" in told[1] and told[2].startswith("practice True")
+
+
+def test_the_doctor_finds_a_tier_whose_walls_do_not_hold(monkeypatch):
+    weak = practice.sandbox()._replace(tier="strict", credit=True)
+    monkeypatch.setitem(tiers.TIERS, "strict", lambda: weak)
+    finding = doctor.examine("strict")
+    assert not finding.works and "a file of the grader could be read" in finding.says
+    assert "a process could be started" in finding.says and "a socket could be made" in finding.says
+    assert not Path("/tmp/hdrlab-doctor").exists()
+
+
+def test_a_subject_has_the_tasks_that_were_handed_in_and_is_used_while_open(subject):
+    with pytest.raises(AttributeError, match="has no task other"):
+        subject.other(1)
+    with pytest.raises(channel.Refused, match="class function"):
+        subject.scaled(lambda x: x)
+    subject.fresh()
+    closed = Subject({"f": ""}, {}, practice.sandbox())
+    with pytest.raises(RuntimeError, match="in a with statement"):
+        closed.f()
+
+
+def test_a_source_that_is_no_python_or_lacks_its_function_is_told():
+    with opened("practice", {"a": "def a(:", "b": "x = 1", "c": "b = 3"}) as subject:
+        with pytest.raises(NoAnswer, match=r"SyntaxError.*line 1: def a\(:"):
+            subject.a()
+        with pytest.raises(NoAnswer, match="there is no function b"):
+            subject.b()
+
+
+def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks():
+    assert modules_of(["def f():\n    from scipy.sparse import linalg", "import hdrlab, os"]) == [
+        "scipy.sparse",
+        "scipy.sparse.linalg",
+    ]
+    with opened("practice", {"f": "import sys\ndef f(): return 'scipy.fft' in sys.modules"}) as subject:
+        assert not subject.f()

@@ -1,0 +1,160 @@
+"""The specification itself: the library keeps it, whatever is drawn; a stub and a vacuous answer do not."""
+
+import inspect
+import re
+import time
+
+import numpy as np
+import pytest
+
+from hdrlab.course import plan
+from hdrlab.course.checks import SPECIFICATION, inprocess
+
+PLAN = plan.read()
+TASKS = [task for homework in PLAN.homeworks.values() for task in homework.tasks]
+IDS = [task.id for task in TASKS]
+HERE = SPECIFICATION
+
+
+def unanswered():
+    """A stub, as it is handed out."""
+    raise NotImplementedError
+
+
+@pytest.mark.parametrize("task", IDS)
+@pytest.mark.parametrize("student", ["ada", "grace", "Emmy Noether"])
+def test_the_library_keeps_every_promise_whatever_a_student_draws(task, student):
+    share, said = inprocess.score(task, inprocess.library(), plan.seed("the course's secret", student, task))
+    assert share == 1, {name: str(error) for name, error in said.items() if error}
+
+
+@pytest.mark.parametrize("task", IDS)
+def test_a_blank_stub_keeps_none(task):
+    for blank in (
+        lambda *given, **named: None,
+        lambda *given, **named: unanswered(),
+        lambda *given, **named: np.nan,
+        lambda *given, **named: [],
+        lambda *given, **named: "",
+    ):
+        assert inprocess.score(task, inprocess.Subject({task: blank}))[0] == 0
+
+
+@pytest.mark.parametrize("task", IDS)
+def test_an_answer_of_nan_gains_nothing(task):
+    def spoiled(answer):
+        if isinstance(answer, tuple | list):
+            return type(answer)(spoiled(one) for one in answer)
+        if isinstance(answer, bytes):
+            return b""
+        return np.full(np.shape(answer), np.nan)
+
+    right = plan.function(PLAN.task(task))
+    wrong = inprocess.Subject({task: lambda *a, **k: spoiled(inprocess.plain(right(*a, **k)))})
+    assert inprocess.score(task, wrong)[0] == 0
+
+
+@pytest.mark.parametrize("task", IDS)
+def test_every_promise_has_points_three_hints_and_a_sentence_for_a_name(task):
+    found = inprocess.checks(task)
+    assert len(found) >= 2
+    for name, check, points, hints in found:
+        assert points > 0 and len(hints) == 3 and all(len(hint) > 10 for hint in hints), name
+        assert len(name.removeprefix("test_").split("_")) >= 4, f"{name} is no sentence"
+        assert set(inspect.signature(check).parameters) <= {"subject", "rng"}, name
+    assert len({hints[-1] for *_, hints in found}) == len(found), "a hint stands twice"
+
+
+def test_there_is_a_file_of_checks_for_every_task_and_a_task_for_every_file():
+    assert sorted(path.stem for path in HERE.glob("test_*.py")) == sorted(f"test_{id}" for id in IDS)
+
+
+@pytest.mark.parametrize("task", TASKS, ids=IDS)
+def test_a_task_is_a_function_of_the_library_that_explains_itself(task):
+    assert (plan.function(task).__doc__ or "").strip() and task.name == task.id
+
+
+@pytest.mark.parametrize("homework", PLAN.homeworks.values(), ids=PLAN.homeworks)
+def test_the_functions_of_a_homework_have_names_of_their_own(homework):
+    names = [task.name for task in homework.tasks]
+    assert len(set(names)) == len(names)
+
+
+def test_the_checks_of_a_homework_take_a_few_seconds_of_one_core():
+    for homework in PLAN.homeworks.values():
+        begun = time.process_time()
+        for task in homework.tasks:
+            inprocess.score(task.id, inprocess.library())
+        assert time.process_time() - begun < 5, homework.name
+
+
+@pytest.mark.parametrize("task", IDS)
+def test_two_students_draw_different_inputs_and_one_draws_the_same_again(task):
+    def asked(student):
+        subject = inprocess.library()
+        inprocess.score(task, subject, plan.seed("secret", student, task))
+        return repr([(given, named) for given, named, _ in subject.calls])
+
+    assert asked("ada") == asked("ada")
+    if any("rng" in inspect.signature(check).parameters for _, check, *_ in inprocess.checks(task)):
+        assert asked("ada") != asked("grace")
+
+
+# The plan
+
+
+def written(tmp_path, text):
+    path = tmp_path / "plan.toml"
+    path.write_text(text, encoding="utf8")
+    return path
+
+
+SHEET = """
+[hw9]
+title = "Curves"
+due = 2026-10-01T12:00:00Z
+tasks = [{ id = "gsolve", function = "response.debevec.gsolve", points = 7.5 }]
+"""
+
+
+def test_an_instructors_plan_has_their_points_tasks_and_dates(tmp_path):
+    found = plan.read(written(tmp_path, SHEET))
+    (homework,) = found.homeworks.values()
+    assert (homework.title, homework.points, homework.due.day) == ("Curves", 7.5, 1)
+    assert homework.tasks == (plan.Task("gsolve", "response.debevec.gsolve", 7.5),)
+    assert found.late == plan.Late(0, 0) and plan.read().late.free_days == 10
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        (('title = "Curves"', ""), r"expected title, due and tasks in \[hw9\], KeyError\('title'\)"),
+        (("2026-10-01T12:00:00Z", '"soon"'), "as a date with time and zone, got soon"),
+        (("T12:00:00Z", ""), "as a date with time and zone"),
+        (("7.5", "-1"), "at least 0 points"),
+        (("7.5", '"many"'), "expected title, due and tasks"),
+        (("[hw9]", "[hw9"), "expected a plan in TOML"),
+        (("points = 7.5 }", "points = 7.5 }, { id = 'gsolve', function = 'a.b', points = 1 }"), "each once"),
+        ((SHEET, ""), "expected tasks"),
+        (("[hw9]", "[late]\nfree_days = -1\n[hw9]"), "at least 0"),
+        (("[hw9]", "[late]\nweeks = 1\n[hw9]"), "expected free_days and points_a_day"),
+    ],
+)
+def test_what_is_no_plan_is_refused_in_words(tmp_path, change, said):
+    with pytest.raises(ValueError, match=said):
+        plan.read(written(tmp_path, SHEET.replace(*change)))
+
+
+def test_an_unknown_task_is_refused_with_those_there_are():
+    with pytest.raises(KeyError, match=re.escape("got 'gslove'")):
+        PLAN.task("gslove")
+
+
+def test_a_seed_hangs_on_the_secret_the_student_and_the_task():
+    one = plan.seed("secret", "ada", "gsolve")
+    others = [
+        plan.seed("Secret", "ada", "gsolve"),
+        plan.seed("secret", "adag", "solve"),
+        plan.seed("secret", "ada", "merge"),
+    ]
+    assert one == plan.seed("secret", "ada", "gsolve") and len({one, *others}) == 4

@@ -1,0 +1,297 @@
+"""A project is reported on and handed in: what is missing is said, and what is there arrives."""
+
+import json
+import os
+import re
+import zipfile
+from html.parser import HTMLParser
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab import cli
+from hdrlab.capture import camera
+from hdrlab.capture.room import scenes
+from hdrlab.course.archives.unpack import unpack
+from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.gallery import collect
+from hdrlab.course.projects import project, review, words
+from hdrlab.course.projects import report as reports
+from hdrlab.course.projects import submit as handing
+from hdrlab.io import curves, radiance
+from hdrlab.io.decode import look
+
+TIMES = [1 / 250, 1 / 60, 1 / 15]
+REPORT = """# Dusk
+
+## Description
+A room with a *bright* window.
+
+## What we learnt
+That <script>alert(1)</script> is shown. [A link](javascript:alert(2)) is not.
+
+## Algorithm
+`gsolve`, by hand.
+
+## Implementation
+```python
+g = gsolve(Z, B)
+```
+
+## Results
+![The window](figures/window.png)
+
+## Bells and whistles
+None.
+"""
+
+
+def photograph(path, image, seconds):
+    exif = Image.Exif()
+    exif[0x0110] = "Model"
+    exif.get_ifd(0x8769).update({0x829A: seconds, 0x829D: 8.0, 0x8827: 100, 0xA431: "SERIAL-4711"})
+    exif.get_ifd(0x8825).update({1: "N", 2: (51.0, 30.0, 0.0)})
+    Image.fromarray(image).save(path, quality=95, exif=exif)
+
+
+@pytest.fixture
+def home(tmp_path):
+    """A project with all that is asked for."""
+    folder = tmp_path / "project"
+    for name in ("photographs", "figures", "source", ".git", "__pycache__"):
+        (folder / name).mkdir(parents=True)
+    E = scenes.room((48, 72))
+    for k, (image, time) in enumerate(zip(camera.shoot(E, TIMES, rng=1).images, TIMES, strict=True)):
+        photograph(folder / "photographs" / f"{9 - k}.jpg", image, time)
+    radiance.write_radiance(folder / "map.hdr", E)
+    curves.write_curve(folder / "response.csv", np.log(np.linspace(0.01, 2, 256)))
+    Image.fromarray(camera.shoot(E, [1 / 60], rng=2).images[0]).save(folder / "artifact.png")
+    Image.new("RGB", (40, 30), "teal").save(folder / "figures" / "window.png")
+    (folder / "source" / "hdr.py").write_text("import numpy\nfrom helpers import merge\n")
+    (folder / "source" / "helpers.py").write_text("def merge():\n    pass\n")
+    (folder / ".git" / "config").write_text("secret")
+    (folder / "__pycache__" / "hdr.pyc").write_bytes(b"x")
+    (folder / "project.toml").write_text('students = ["b1", "b2"]\ntitle = "Dusk"\ncaption = "By <hand>."\n')
+    (folder / "report.md").write_text(REPORT)
+    return folder
+
+
+@pytest.fixture
+def hdrlab(tmp_path, monkeypatch, capsys):
+    """hdrlab(words) -> exit code, standard output and standard error."""
+    monkeypatch.chdir(tmp_path)
+
+    def command(*said):
+        with pytest.raises(SystemExit) as ended:
+            cli.run([str(one) for one in said])
+        return ended.value.code or 0, *capsys.readouterr()
+
+    return command
+
+
+class Page(HTMLParser):
+    """The headings, pictures, addresses and scripts of a page."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.pictures, self.links, self.tags, self.order = [], [], [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attrs):
+        attrs = dict(attrs)
+        self.tags.append(tag)
+        self.pictures += [attrs] if tag == "img" else []
+        self.links += [attrs.get("href", "")] if tag == "a" else []
+        assert not [name for name in attrs if name.startswith("on")]
+
+    def handle_data(self, data):
+        self.order.append(data.strip())
+
+
+def bad(folder):
+    return {part: said for part, good, said in review.review(project.look(folder)) if not good}
+
+
+def test_a_whole_project_is_reported_handed_in_and_hung(home, tmp_path, hdrlab):
+    code, said, notes = hdrlab("report", home)
+    assert (code, notes) == (0, "") and "artifact, bracket, curves, map" in said
+    code, said, notes = hdrlab("submit", home)
+    assert code == 0 and "MISSING" not in said and "location" in said and "serial numbers" in said
+    members = unpack(tmp_path / "submission.zip", tmp_path / "there")
+    names = {str(path) for path, _ in members}
+    assert {"map.hdr", "report.html", "photographs/9.jpg", "source/hdr.py", "submission.json"} <= names
+    assert not [name for name in names if ".git" in name or "pycache" in name]
+    described = json.loads((tmp_path / "there" / "submission.json").read_text())
+    assert described["students"] == ["b1", "b2"] and set(described["files"]) == names - {"submission.json"}
+    roster = Roster((Student("b1", "Ada", "t"), Student("b2", "Bo", "t")))
+    with collect.entry(tmp_path / "submission.zip", roster) as entry:
+        assert entry[:3] == ("t", "Dusk", "By <hand>.") and entry.picture.read_bytes()[:4] == b"\x89PNG"
+
+
+def test_photographs_arrive_with_their_exposures_and_without_their_places(home, tmp_path, hdrlab):
+    for flags, there in (((), False), (("--keep-metadata",), True)):
+        hdrlab("report", home)
+        assert hdrlab("submit", home, "-o", "a.zip", *flags)[0] == 0
+        with zipfile.ZipFile(tmp_path / "a.zip") as archive:
+            data = archive.read("photographs/9.jpg")
+        assert (b"SERIAL-4711" in data) == there
+        (tmp_path / "a.jpg").write_bytes(data)
+        with Image.open(tmp_path / "a.jpg") as now, Image.open(home / "photographs" / "9.jpg") as before:
+            assert bool(dict(now.getexif().get_ifd(0x8825))) == there
+            assert np.array_equal(np.asarray(now), np.asarray(before))
+        assert look(tmp_path / "a.jpg").exposure.seconds == pytest.approx(TIMES[0])
+
+
+def test_the_same_project_makes_the_same_archive(home, tmp_path):
+    reports.write_report(project.look(home))
+    found = project.look(home)
+    for name in ("a.zip", "b.zip"):
+        handing.write(found, tmp_path / name, list(handing.pack(found)), now=handing.datetime(2026, 3, 1))
+    assert (tmp_path / "a.zip").read_bytes() == (tmp_path / "b.zip").read_bytes()
+
+
+def spoil(home, how):
+    """Take something from a project, or break it."""
+    reports.write_report(project.look(home))
+    for name in how.split():
+        target = home / name
+        if target.is_dir():
+            for path in sorted(target.iterdir())[1:]:
+                path.unlink()
+        else:
+            target.unlink()
+
+
+@pytest.mark.parametrize(
+    "gone, part, said",
+    [
+        ("project.toml", "students", "Write a file project.toml"),
+        ("source/hdr.py source/helpers.py", "source", "no source"),
+        ("source/helpers.py", "source", "imports helpers"),
+        ("report.html", "report", "hdrlab report"),
+        ("photographs", "photographs", "it holds 1"),
+        ("map.hdr", "map", "Save it as map.hdr"),
+        ("artifact.png", "artifact", "artifact.jpg"),
+    ],
+)
+def test_what_is_missing_is_said_with_what_to_do(home, gone, part, said):
+    spoil(home, gone)
+    assert list(bad(home)) == [part] and said in bad(home)[part]
+
+
+def test_what_is_broken_is_said_too(home):
+    reports.write_report(project.look(home))
+    assert bad(home) == {}
+    (home / "source" / "hdr.py").write_text("def f(:\n")
+    (home / "map.hdr").write_bytes((home / "map.hdr").read_bytes()[:200])
+    (home / "artifact.png").write_bytes(b"\x89PNG\r\n\x1a\n" + bytes(50))
+    Image.new("RGB", (72, 48)).save(home / "photographs" / "9.jpg")  # without EXIF
+    os.utime(home / "report.md", (2e9, 2e9))
+    found = bad(home)
+    assert set(found) == {"source", "map", "artifact", "photographs", "report"}
+    assert "line 1" in found["source"] and "newer" in found["report"] and "EXIF" in found["photographs"]
+    assert all(str(home) not in said for said in found.values())
+
+
+def test_photographs_of_one_exposure_make_no_bracket(home):
+    for path in (home / "photographs").iterdir():
+        photograph(path, np.zeros((48, 72, 3), np.uint8), 0.01)
+    assert "same exposure" in bad(home)["photographs"]
+
+
+def test_nothing_is_written_where_something_is_missing_unless_it_is_asked_for(home, tmp_path, hdrlab):
+    (home / "map.hdr").unlink()
+    code, said, notes = hdrlab("submit", home)
+    assert code == 2 and "MISSING" in said and not (tmp_path / "submission.zip").exists()
+    assert hdrlab("submit", home, "--anyway")[0] == 0 and (tmp_path / "submission.zip").exists()
+
+
+def test_a_link_out_of_the_project_is_not_followed(home, tmp_path):
+    (tmp_path / "secret.py").write_text("SECRET = 1")
+    (home / "source" / "link.py").symlink_to(tmp_path / "secret.py")
+    assert not [one for one in project.look(home).files if one.name == "link.py"]
+
+
+def test_figures_stand_where_they_belong(home):
+    page = Page(reports.write_report(project.look(home)).page.read_text())
+    heads = ["Description", "What we learnt", "Algorithm", "Implementation", "Results", "Bells and whistles"]
+    at = {head: page.order.index(head) for head in heads}
+    assert sorted(at.values()) == list(at.values())
+    place = {
+        name: next(k for k, text in enumerate(page.order) if start in text)
+        for name, start in [
+            ("bracket", "1/250 s"),
+            ("curves", "The response:"),
+            ("map", "stops from the median"),
+        ]
+    }
+    assert at["Description"] < place["bracket"] < at["What we learnt"]
+    assert at["Algorithm"] < place["curves"] < at["Implementation"]
+    assert at["Results"] < place["map"] < at["Bells and whistles"]
+    times = [text for text in page.order if re.fullmatch(r"1/\d+ s", text)]
+    assert times == ["1/250 s", "1/60 s", "1/15 s"]
+
+
+def test_the_report_runs_nothing_fetches_nothing_and_names_its_pictures(home):
+    text = reports.write_report(project.look(home)).page.read_text()
+    page = Page(text)
+    assert "script" not in page.tags and "&lt;script&gt;" in text and "By &lt;hand&gt;." in text
+    assert page.links == [] and len(page.pictures) == 7
+    assert all(one["src"].startswith("data:image/") and one["alt"] for one in page.pictures)
+
+
+def test_figures_without_their_section_get_one_of_their_own(home):
+    (home / "report.md").write_text("Only a word.\n")
+    written = reports.write_report(project.look(home))
+    order = Page(written.page.read_text()).order
+    assert [one for one in order if one in reports.ALONE.values()] == list(reports.ALONE.values())
+    assert sum("no section about" in note for note in written.notes) == 6
+
+
+def test_a_picture_out_of_the_project_is_left_out_and_that_is_said(home, tmp_path):
+    Image.new("RGB", (40, 30)).save(tmp_path / "secret.png")
+    (home / "figures" / "drawing.svg").write_text("<svg onload='alert(1)'/>")
+    (home / "report.md").write_text(
+        "![a](../secret.png) ![b](https://example.org/b.png) ![c](figures/drawing.svg)"
+        " ![](figures/window.png) ![e](/etc/passwd) ![f](file:///etc/passwd)"
+    )
+    written = reports.write_report(project.look(home))
+    pictures = Page(written.page.read_text()).pictures
+    assert sum("left out" in note for note in written.notes) >= 4
+    assert sum("says nothing to those" in note for note in written.notes) == 1
+    assert len(pictures) == 7  # six figures, and the window
+
+
+def test_a_notebook_is_as_good_as_markdown(home):
+    import base64
+
+    data = base64.b64encode((home / "figures" / "window.png").read_bytes()).decode()
+    cells = [
+        {"cell_type": "markdown", "source": ["# Dusk\n", "\n", "## Results\n", "Seen."]},
+        {
+            "cell_type": "code",
+            "source": ["show()"],
+            "outputs": [{"data": {"image/png": data, "text/plain": ["<F>"]}}],
+        },
+        {
+            "cell_type": "code",
+            "source": [],
+            "outputs": [{"data": {"text/html": "<script>alert(1)</script>"}}],
+        },
+    ]
+    (home / "report.md").unlink()
+    (home / "report.ipynb").write_text(json.dumps({"cells": cells, "nbformat": 4, "nbformat_minor": 5}))
+    said = words.read(home / "report.ipynb")
+    assert (said.title, [one.asked for one in said.sections]) == ("Dusk", ["results"])
+    assert "<img" in said.sections[0].html and "script" not in said.sections[0].html and said.notes == ()
+    for broken in ("{}", "[]", "{", '{"cells": [1]}', '{"cells": [{"cell_type": "markdown", "source": 7}]}'):
+        (home / "report.ipynb").write_text(broken)
+        with pytest.raises(ValueError, match="notebook"):
+            words.read(home / "report.ipynb")
+
+
+def test_an_example_to_begin_with_has_all_that_is_asked_for(tmp_path, hdrlab):
+    assert hdrlab("report", ".", "--example")[0] == 0
+    assert words.read(tmp_path / "report.md").missing() == []
+    assert hdrlab("report", ".", "--example")[0] == 2

@@ -1,0 +1,173 @@
+"""The toy class: two commands make and grade it, and everybody in it gets what is said of them."""
+
+import hashlib
+import shutil
+from pathlib import Path
+
+import pytest
+
+from hdrlab import cli
+from hdrlab.course import plan, results, sheets
+from hdrlab.course.checks import misconceptions
+from hdrlab.course.classroom import toy
+from hdrlab.course.sandbox import tiers
+
+HOMEWORK = plan.read().homeworks[toy.HOMEWORK]
+WHOLE = {"s01", "s02", "s03", "s04", "s05", "s11"}  # all right
+NOTHING = {"s10", "s12", "s13", "s14"}  # blank, a hostile archive, attacks, not handed in
+HOSTILE = ("s12_hw2.zip", "s13_hw2.py")
+AGAIN = ("s02", "s06", "t1")  # graded once more, where nobody is hostile
+
+
+def run(words):
+    """Run a command, and expect that all goes well."""
+    with pytest.raises(SystemExit) as ended:
+        cli.run(words)
+    assert not ended.value.code
+
+
+def grade(folder, out, *words):
+    """Grade a toy class by the command that stands in its README."""
+    run([*toy.COMMAND.format(folder=folder).split()[1:-1], str(out), "--tier", tier(), *words])
+
+
+def tier():
+    """Return the tier that this machine can give."""
+    try:
+        tiers.choose("strict")
+    except tiers.Unavailable:
+        return "practice"
+    return "strict"
+
+
+@pytest.fixture(scope="module")
+def graded(tmp_path_factory):
+    """The folder of a toy class that is made and graded by its two commands."""
+    home = tmp_path_factory.mktemp("toy") / "class"
+    run(["course", "toy", str(home)])
+    grade(home, home / "results")
+    return home
+
+
+@pytest.fixture(scope="module")
+def rows(graded):
+    return {row["student"]: row for row in sheets.read_csv(graded / "results" / "gradebook.csv")}
+
+
+def read(graded, team):
+    (file,) = (graded / "results" / "results").glob(f"{team}.*")
+    return results.from_json(file.read_bytes())
+
+
+def sentence(name):
+    (one,) = (one for one in misconceptions.known() if one.name == name)
+    return one.sentence
+
+
+def test_who_is_right_gets_all_points_who_is_blank_or_hostile_none_and_the_others_some(rows):
+    work = {who: float(row["work"]) for who, row in rows.items()}
+    assert len(work) == 14
+    assert {who for who, points in work.items() if points == HOMEWORK.points} == WHOLE
+    assert {who for who, points in work.items() if points == 0} == NOTHING
+    assert work["s09"] == 30 and work["s07"] < work["s06"]
+
+
+def test_late_days_cost_a_point_only_beyond_those_that_are_free(rows):
+    late = {who: (int(row["late"]), float(row["penalty"])) for who, row in rows.items() if row["late"] != "0"}
+    assert late == {"s03": (3, 0), "s04": (3, 0), "s05": (12, 2), "s08": (1, 0)}
+    assert float(rows["s05"]["score"]) == 98 and rows["s14"]["note"] == "not handed in"
+
+
+def test_each_mistake_is_named_to_who_made_it_and_counted_for_the_class(graded):
+    made = {
+        "s06": {"gsolve": "gsolve_log2_of_the_times"},
+        "s07": {"gsolve": "gsolve_log2_of_the_times", "hat": "hat_zero_in_the_middle"},
+        "s08": {"irradiance": "irradiance_not_weighted", "recover": "recover_one_curve_for_all"},
+        "s01": {},
+        "s09": {},
+    }
+    for team, mistakes in made.items():
+        named = {task: sentence(name) for task, name in mistakes.items()}
+        assert read(graded, team).misconceptions == named
+    page = (graded / "results" / "class.html").read_text()
+    assert all(sentence(name) in page for mistakes in made.values() for name in mistakes.values())
+
+
+def test_the_hostile_archive_is_refused_in_a_line_and_the_plain_one_unpacked(graded):
+    (said,) = read(graded, "s12").problems
+    assert said == "The archive is refused: '../s01_hw2.ipynb' leads out of the archive's folder."
+    assert not read(graded, "s11").problems
+    assert not list(graded.rglob(".unpack*"))
+
+
+def test_what_attackers_print_is_text_on_every_page(graded):
+    pages = [*graded.rglob("*.html")]
+    assert len(pages) >= 12 + 1
+    assert not any("<script>alert" in page.read_text() for page in pages)
+
+
+def test_canvas_gets_the_points_after_the_penalty(graded):
+    lines = (graded / "results" / "canvas.csv").read_text(encoding="utf-8-sig").splitlines()
+    assert len(lines) == 1 + 1 + 14 and any(line.startswith("Student 05,") and "98" in line for line in lines)
+
+
+def test_the_hostile_change_no_other_result_by_a_byte(graded, tmp_path):
+    try:
+        tiers.choose("strict")
+    except tiers.Unavailable as reason:
+        pytest.skip(str(reason))
+    home = tmp_path / "class"
+    shutil.copytree(graded, home, ignore=shutil.ignore_patterns("results", *HOSTILE))
+    grade(home, home / "results", *(word for team in AGAIN for word in ("--only", team)))
+    for team in AGAIN:
+        both = [digests(place / "results", team) for place in (graded, home)]
+        assert both[0] == both[1] and len(both[0]) > 5
+
+
+def digests(out, team):
+    """Return what a run has written about a team."""
+    files = [*(out / "results").glob(f"{team}.*"), *(out / "feedback" / team).iterdir()]
+    return {file.name: hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
+
+
+README = Path(__file__).parents[2] / "README.md"
+
+
+@pytest.mark.skipif(not README.is_file(), reason="README.md stays in the clone")
+def test_the_readme_has_the_two_commands():
+    text = README.read_text(encoding="utf8")
+    assert "env/bin/hdrlab course toy class\n" in text
+    assert f"\nenv/bin/{toy.COMMAND.format(folder='class')}\n" in text
+
+
+def test_two_toy_classes_are_the_same(tmp_path):
+    for name in ("a", "b"):
+        toy.write(tmp_path / name)
+    files = [file.relative_to(tmp_path / "a") for file in (tmp_path / "a").rglob("*") if file.is_file()]
+    assert len(files) == 12 + 3
+    for file in files:
+        if file.name != "README.md":  # it names the folder
+            assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_a_folder_that_holds_something_is_left_alone(tmp_path, capsys):
+    (tmp_path / "roster.csv").write_text("student\nreal\n")
+    with pytest.raises(SystemExit) as ended:
+        cli.run(["course", "toy", str(tmp_path)])
+    assert ended.value.code == 2 and "expected a new folder" in capsys.readouterr().err
+    assert [file.name for file in tmp_path.iterdir()] == ["roster.csv"]
+
+
+def test_without_a_sandbox_both_commands_say_what_to_do(tmp_path, capsys, monkeypatch):
+    def none():
+        raise tiers.Unavailable("there is no bwrap on the path")
+
+    monkeypatch.setitem(tiers.TIERS, "strict", none)
+    run(["course", "toy", str(tmp_path / "class")])
+    said = capsys.readouterr()
+    assert "--tier practice" in said.out and "bubblewrap" in said.err and "hdrlab doctor" in said.err
+    with pytest.raises(SystemExit) as ended:
+        cli.run(toy.COMMAND.format(folder=tmp_path / "class").split()[1:])
+    said = capsys.readouterr().err
+    assert ended.value.code == 2 and "\n" not in said.strip()
+    assert "install bubblewrap" in said and "hdrlab doctor" in said and "--tier practice" in said

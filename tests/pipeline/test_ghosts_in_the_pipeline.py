@@ -1,0 +1,86 @@
+"""Ghosts and flare where a reader meets them: in `assemble`, on the command line, in the report."""
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+from hdrlab import pipeline, scenes
+from hdrlab.capture import camera, flare, movers
+from hdrlab.cli import main
+from hdrlab.core.scatter import Spread
+from hdrlab.io.radiance import read_radiance
+from hdrlab.show.pages import report
+
+SHAPE = (96, 144)
+
+
+@pytest.fixture(scope="module")
+def moving():
+    room = scenes.room(SHAPE)
+    ball = movers.ball(SHAPE, (60, 72), 10, np.array([6, 2, 1]) * np.median(room))
+    at = movers.path(5, (0, 16))
+    return movers.shoot(room, ball, at, camera.times_around(room, 5), full_well=50_000, rng=1).bracket
+
+
+@pytest.fixture(scope="module")
+def plain(moving):
+    return pipeline.assemble(moving, align="none")
+
+
+def test_without_being_asked_nothing_is_looked_for(plain):
+    assert plain.moving is None and plain.veiled is None and plain.stage == "compare"
+
+
+@pytest.mark.parametrize("way", ["regions", "reference"])
+def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
+    states = list(pipeline.assemble_steps(moving, align="none", ghosts=way))
+    assert [state.stage for state in states] == ["align", "response", "merge", "ghosts", "compare"]
+    found = states[-1]
+    inside = found.moving > 0
+    assert inside.any() and np.array_equal(found.E[~inside], plain.E[~inside])
+    assert not np.array_equal(found.E[inside], plain.E[inside])
+    assert any("something moved" in note for note in found.notes)
+    assert found.spread == plain.spread  # the photographs are what they were
+
+
+def test_flare_is_the_last_stage_before_they_are_compared():
+    room = scenes.room(SHAPE)
+    veiled = flare.veil(room, Spread(0.1, 2.5))
+    times = 0.9 / veiled.max() * 4.0 ** np.arange(9)
+    taken = camera.shoot(veiled, times, full_well=50_000, rng=1)
+    states = list(pipeline.assemble_steps(taken, align="none", flare="veil"))
+    assert [state.stage for state in states][-2:] == ["flare", "compare"]
+    found = states[-1]
+    assert found.veiled.any() and any("the lens scattered" in note for note in found.notes)
+    assert np.median(found.E[found.veiled]) < np.median(states[2].E[found.veiled])
+
+
+def test_ways_that_there_are_not_are_refused(moving):
+    for knobs in ({"ghosts": "some"}, {"flare": "sun"}):
+        with pytest.raises(ValueError, match="ghosts out of none, regions, reference and flare out of none"):
+            pipeline.assemble(moving, **knobs)
+
+
+def test_the_command_says_what_moved_and_the_report_shows_it(moving, plain, tmp_path):
+    for name, image in zip(moving.names, moving.images, strict=True):
+        Image.fromarray(image).save(tmp_path / f"{name.replace(' ', '')}.png")
+    lines = ["file,exposure_time_s"]
+    lines += [f"{n.replace(' ', '')}.png,{t}" for n, t in zip(moving.names, moving.times, strict=True)]
+    (tmp_path / "times.csv").write_text("\n".join(lines))
+    photos = sorted(map(str, tmp_path.glob("*.png")))
+    out, page = tmp_path / "map.pfm", tmp_path / "page"
+    asked = ["--align", "none", "--ghosts", "regions", "--flare", "veil", "--report", str(page)]
+    ran = CliRunner().invoke(
+        main, ["assemble", *photos, "--times", str(tmp_path / "times.csv"), "-o", str(out), *asked]
+    )
+    assert ran.exit_code == 0, ran.output
+    assert "something moved in" in ran.output and "veil" in ran.output
+    assert not np.allclose(read_radiance(out), plain.E)
+    text = (page / "report.html").read_text(encoding="utf8")
+    assert "What moved" in text and "in orange with dark outlines" in text
+
+
+def test_a_report_without_motion_does_not_speak_of_it(plain, tmp_path):
+    page = report.write_report(tmp_path, plain, pipeline.develop(plain.E), recipe={})
+    assert "What moved" not in page.read_text(encoding="utf8")

@@ -1,0 +1,278 @@
+"""The chapters in a row: from photographs to a map that explains them, and to a picture."""
+
+import math
+from functools import cache
+
+import cv2
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab import pipeline
+from hdrlab.align import mtb
+from hdrlab.capture import camera, responses
+from hdrlab.capture.room import scenes
+from hdrlab.core import catalogue
+from hdrlab.core.bracket import bracket
+from hdrlab.core.colour import luminance
+from hdrlab.diagnostics import consistency
+from hdrlab.pipeline import assemble, assemble_steps, develop
+from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import METHODS
+
+
+@pytest.fixture(scope="module")
+def room():
+    return scenes.room((128, 192))
+
+
+@pytest.fixture(scope="module")
+def hand_held(room):
+    """Seven photographs of the room, noisy and shaken, and how the hand shook."""
+    times, offsets = camera.times_around(room, 7, stops=2), camera.shake(7, radius=5, rng=3)
+    return camera.shoot(room, times, full_well=50_000, read_noise=5, offsets=offsets, rng=3), offsets
+
+
+# Stages
+
+
+def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
+    states = list(assemble_steps(hand_held[0]))
+    assert tuple(state.stage for state in states) == pipeline.STAGES
+    for name, first in (("g", 1), ("E", 2), ("seen", 2), ("medians", 3)):
+        assert [getattr(state, name) is not None for state in states] == [j >= first for j in range(4)]
+    assert [math.isnan(state.spread) for state in states] == [True, True, True, False]
+    assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
+
+
+def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
+    taken, offsets = hand_held
+    found = assemble(taken)
+    assert np.array_equal(found.offsets - found.offsets[3], offsets) and found.doubts == ()
+    top, left = found.offsets.max(axis=0) - offsets.min(axis=0)  # of the map, in the scene
+    h, w = found.E.shape[:2]
+    truth = room[top : top + h, left : left + w]
+    images = found.bracket.images
+    well = ((images > 30) & (images < 225)).all(axis=-1).any(axis=0) & (found.seen == Seen.MEASURED)
+    ratio = found.E[well] / truth[well]
+    ratio /= np.median(ratio, axis=0)
+    assert well.mean() > 0.7 and np.median(np.abs(ratio - 1)) < 0.015  # edges of half a pixel included
+    assert found.spread < 0.05
+
+
+def test_what_was_photographed_without_a_hand_is_left_where_it_is(room):
+    taken = camera.shoot(room, camera.times_around(room, 5))
+    found = assemble(taken)
+    assert not found.offsets.any() and found.E.shape == room.shape and found.notes == found.doubts == ()
+
+
+@pytest.mark.parametrize("order", [(6, 5, 4, 3, 2, 1, 0), (2, 0, 6, 4, 1, 3, 5)])
+def test_any_order_of_photographs_gives_the_same_map_bit_for_bit(hand_held, order):
+    taken, order = hand_held[0], list(order)
+    shuffled = bracket(taken.images[order], taken.times[order])
+    assert np.array_equal(assemble(shuffled).E, assemble(taken).E)
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+@pytest.mark.parametrize("colours", [1, 3])
+@pytest.mark.parametrize("response", ["linear", "film"])
+def test_gray_and_rgb_8_and_16_bits_linear_or_not(room, bits, colours, response):
+    E = room if colours == 3 else luminance(room)
+    taken = camera.shoot(E, camera.times_around(E, 5), response=response, bits=bits)
+    found = assemble(taken)
+    assert found.E.shape == E.shape and found.E.dtype == np.float32 and found.seen.shape == E.shape[:2]
+    well = found.seen == Seen.MEASURED
+    ratio = found.E[well] / E[well]
+    assert np.median(np.abs(ratio / np.median(ratio, axis=0) - 1)) < 0.02
+    picture = develop(found.E)
+    assert picture.shape == E.shape and picture.dtype == np.uint8 and picture.max() > 200 > 60 > picture.min()
+
+
+def test_a_linear_bracket_has_no_response_to_recover(room):
+    taken = camera.shoot(room, camera.times_around(room, 3), response="linear", bits=16)
+    assert taken.linear and assemble(taken).g.shape == (65536,)
+    assert assemble(taken, response="debevec").g.shape == (256, 3)
+
+
+@pytest.mark.parametrize(
+    "knob", [{"weight": name} for name in pipeline.WEIGHTS] + [{"method": name} for name in METHODS]
+)
+def test_every_weight_and_method_can_be_named(room, knob):
+    taken = camera.shoot(room, camera.times_around(room, 5))
+    assert assemble(taken, **knob).spread < 0.05
+
+
+def test_functions_of_the_readers_own_take_the_place_of_methods(room):
+    taken = camera.shoot(room, camera.times_around(room, 3))
+    offsets, g = np.array([[0, 0], [0, 0], [1, -2]]), responses.true_g("film")
+    found = assemble(taken, align=lambda images: offsets, response=lambda images, times, *, valid: g)
+    assert np.array_equal(found.offsets, offsets) and found.g is g
+    assert found.E.shape == (room.shape[0] - 1, room.shape[1] - 2, 3)
+    picture = develop(found.E, lambda L: np.full(L.shape, 0.5, np.float32), saturation=0)
+    assert np.all(picture == 188)  # half of white in sRGB
+
+
+def test_alignment_can_be_left_out_and_named(hand_held):
+    taken = hand_held[0]
+    assert not assemble(taken, align="none").offsets.any()
+    assert assemble(taken, align="none").spread > assemble(taken).spread
+    assert np.array_equal(assemble(taken, align="mtb").offsets, mtb.align(taken.images))
+
+
+def test_masks_move_with_their_photographs_and_hide_what_they_hide(hand_held):
+    taken, _ = hand_held
+    images, valid = taken.images.copy(), np.ones(taken.images.shape[:3], bool)
+    images[:, :9], valid[:, :9] = (0, 0, 255), False
+    found = assemble(bracket(images, taken.times, valid=valid))
+    assert found.bracket.valid.shape == found.bracket.images.shape[:3]
+    unseen = ~found.bracket.valid.any(axis=0)
+    assert unseen.any() and np.all(found.E[unseen] == 0) and np.all(found.seen[unseen] == Seen.UNSEEN)
+    blue = (found.bracket.images == (0, 0, 255)).all(axis=-1)
+    assert not np.any(found.bracket.valid & blue)
+
+
+def test_a_border_that_the_mask_hides_does_not_count_as_a_contradiction(room):
+    taken = camera.shoot(room, camera.times_around(room, 5))
+    images, valid = taken.images.copy(), np.ones(taken.images.shape[:3], bool)
+    images[1:4, :100], valid[1:4, :100] = np.linspace(40, 220, 192).astype(np.uint8)[:, None], False
+    masked = assemble(bracket(images, taken.times, valid=valid), align="none")
+    assert masked.spread < 0.05 and masked.doubts == ()
+    blind = consistency.level_medians(images, taken.times, masked.E)
+    assert consistency.spread(blind) > pipeline.CONTRADICTION
+
+
+def test_the_photographs_that_were_given_stay_as_they_are(hand_held):
+    taken = hand_held[0]
+    images = taken.images.copy()
+    assemble(taken)
+    assert np.array_equal(images, taken.images)
+
+
+# Doubts
+
+
+def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames(room):
+    taken = camera.shoot(room, camera.times_around(room, 5, stops=1))
+    wrong = taken._replace(times=taken.times * np.array([1, 1, 8, 9, 10]), names=("a", "b", "c", "d", "e"))
+    found = assemble(wrong, align="none")
+    assert len(found.doubts) == 1 and found.spread > pipeline.CONTRADICTION
+    for said in ("contradict their exposure times by", "stops", "c by +", "b by -", "check the times"):
+        assert said in found.doubts[0]
+    assert assemble(taken, align="none").doubts == ()
+
+
+def test_photographs_that_share_no_level_are_noted():
+    images = np.stack([np.full((20, 20), z, np.uint8) for z in (60, 200)])
+    images[:, :5] = np.array([100, 140])[:, None, None]
+    images[0, :, :1] = np.arange(20, 120, 5)[:, None]  # a few pixels that tie the levels
+    images[1, :, :1] = np.arange(40, 140, 5)[:, None]
+    found = assemble(bracket(images, [1, 2]), align="none")
+    assert "no level stands in two frames" in found.notes[-1] and found.doubts == ()
+
+
+def test_photographs_of_two_scenes_are_a_doubt_about_their_alignment(room):
+    rng = np.random.default_rng(4)
+    other = (10 ** rng.uniform(-1, 3, (32, 48, 1))).astype(np.float32).repeat(4, 0).repeat(4, 1) * np.ones(
+        3, np.float32
+    )
+    times = camera.times_around(room, 3)
+    images = [camera.shoot(E, [t]).images[0] for E, t in zip((room, other, room), times, strict=True)]
+    doubts = assemble(bracket(np.stack(images), times, ["a.jpg", "b.jpg", "c.jpg"])).doubts
+    assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in doubts)
+
+
+# Refusals
+
+STACK = np.random.default_rng(5).integers(0, 256, (2, 20, 30), np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("images", "times", "knobs", "said"),
+    [
+        (STACK[:1], [1], {}, "at least two different exposures, got frame 1 1 s"),
+        (STACK, [2, 2], {}, "at least two different exposures, got frame . 2 s, frame . 2 s"),
+        (STACK * 0, [1, 2], {}, "seen well in two exposures"),
+        (STACK * 0 + 255, [1, 2], {}, "seen well in two exposures"),
+        (STACK, [1, 2], {"weight": "heavy"}, "weight out of hat, gaussian, flat, snr, got 'heavy'"),
+        (STACK, [1, 2], {"method": "guess"}, "method out of log, likelihood, mean, shot"),
+        (STACK, [1, 2], {"align": "luck"}, "method of align out of .*mtb"),
+        (STACK, [1, 2], {"response": "luck"}, "method of response out of debevec.*linear"),
+        (STACK, [1, 2], {"align": lambda images: np.zeros((3, 2), int)}, "expected 2 offsets"),
+        (STACK, [1, 2], {"align": lambda images: np.zeros((2, 2))}, "offsets .P, 2. of whole pixels"),
+    ],
+)
+def test_what_makes_no_map_is_refused(images, times, knobs, said):
+    with pytest.raises(ValueError, match=said):
+        assemble(bracket(images, times), **knobs)
+
+
+def test_an_unknown_operator_or_light_that_is_none_makes_no_picture(room):
+    with pytest.raises(ValueError, match="method of tonemap out of .*curves.*reinhard"):
+        develop(room, "magic")
+    with pytest.raises(ValueError, match="1 NaN"):
+        develop(np.array([[1.0, np.nan]]))
+
+
+@pytest.mark.parametrize("name", catalogue.names("tonemap"))
+def test_every_operator_develops_a_map_in_colour_and_in_gray(room, name):
+    for E in (room, luminance(room)):
+        picture = develop(E, name)
+        assert picture.shape == E.shape and picture.dtype == np.uint8 and np.ptp(picture) > 100
+
+
+# Real photographs
+
+
+@pytest.fixture(scope="module")
+def assembled(photographs):
+    """assembled(name) -> the Assembly of a real data set."""
+    return cache(lambda name: assemble(photographs(name)))
+
+
+@pytest.mark.parametrize(("name", "stops"), [("window", 0.03), ("stlouis_arch", 0.03), ("frobisher", 0.01)])
+def test_the_map_explains_real_photographs(assembled, name, stops):
+    found = assembled(name)
+    assert found.spread <= stops and found.doubts == ()
+    assert np.all(np.isfinite(found.E)) and np.mean(found.seen == Seen.MEASURED) > 0.95
+
+
+def test_the_arch_is_aligned_to_within_a_pixel_of_the_measured_shifts(assembled):
+    offsets = assembled("stlouis_arch").offsets
+    assert np.all(np.abs(np.abs(np.diff(offsets[:, 1])) - [1, 7.5, 2]) <= 1)
+    assert np.all(np.abs(np.diff(offsets[:, 0])) <= 1)
+
+
+def radiance_of(path, tmp_path):
+    """Return a radiance file as OpenCV reads it, without what stands before the line that is to be first."""
+    data = path.read_bytes()
+    clean = tmp_path / "clean.hdr"
+    clean.write_bytes(data[data.index(b"#?RADIANCE") :])
+    return cv2.imread(str(clean), cv2.IMREAD_UNCHANGED)[..., ::-1]
+
+
+def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, tmp_path):
+    taken = photographs("memorial")
+    valid = ~(taken.images == (0, 0, 255)).all(axis=-1)  # the border of the registered scans
+    found = assemble(taken._replace(valid=valid))
+    published = luminance(radiance_of(shared("memorial") / "memorial.hdr", tmp_path))
+    assert not found.offsets.any() and found.doubts == ()
+    seen = valid.all(axis=0) & (found.seen == Seen.MEASURED) & (published > 0)
+    ours, theirs = np.log2(luminance(found.E)[seen]), np.log2(published[seen])
+    error = ours - theirs - np.median(ours - theirs)  # up to one factor
+    assert seen.mean() > 0.8
+    assert np.corrcoef(ours, theirs)[0, 1] >= 0.98 and np.median(np.abs(error)) <= 0.20
+
+
+def test_the_wrong_times_of_the_phone_are_found(assembled):
+    found = assembled("tripod_phone")
+    assert found.spread > 0.5
+    assert any("contradict their exposure times" in doubt and "img-" in doubt for doubt in found.doubts)
+
+
+def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(shared):
+    paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
+    images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(2)) for path in paths])
+    order = np.argsort(images.mean(axis=(1, 2, 3)))
+    taken = bracket(images[order], 2.0 ** np.arange(7), [paths[j].name for j in order])
+    doubts = [doubt for doubt in assemble(taken).doubts if "moved by" in doubt]
+    assert len(doubts) >= 2 and all("leave one out" in doubt and ".jpeg" in doubt for doubt in doubts)

@@ -1,0 +1,91 @@
+"""Mann and Picard's power law: the ladder of comparisons and its slope."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.capture import camera, responses
+from hdrlab.course.checks import laws
+from hdrlab.response import mann
+
+
+@given(gamma=st.floats(0.3, 1.5), R=st.floats(0.2, 0.8), start=st.floats(150, 249))
+def test_each_rung_has_R_times_the_exposure_of_the_one_above(gamma, R, start):
+    T = np.arange(256) * R**gamma
+    levels = mann.series(T, start)
+    assert np.allclose(levels, start * R ** (gamma * np.arange(len(levels))))
+    assert levels[-1] * R**gamma < mann.LOW <= levels[-1]
+
+
+@given(gamma=st.floats(0.3, 1.5), alpha=st.floats(0, 20), R=st.floats(0.3, 0.8))
+def test_the_slope_of_an_exact_ladder_is_the_exponent(gamma, alpha, R):
+    levels = alpha + 200 * R ** (gamma * np.arange(4))
+    assert np.isclose(mann.exponent([(levels, R), (levels[1:], R)], alpha=alpha), gamma)
+
+
+def test_a_ladder_ends_where_the_transfer_knows_no_more():
+    T = np.where(np.arange(256) < 100, np.nan, np.arange(256) / 2)
+    assert mann.series(T, 240).tolist() == [240, 120, 60]
+    assert mann.series(np.full(256, np.nan), 240).tolist() == [240]
+    assert mann.series(np.arange(256.0), 240).tolist() == [240]  # it does not go down at all
+
+
+@pytest.mark.parametrize("gamma", [1 / 2.4, 1 / 2.2, 0.8, 1.0, 1.3])
+@pytest.mark.parametrize("seed", range(3))
+def test_a_power_law_is_found_to_a_tenth_of_a_percent_through_noise(gamma, seed, decades):
+    E = decades(seed=seed)
+    knobs = dict(response=lambda X: X**gamma, full_well=50_000, read_noise=5, rng=seed)
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), **knobs)
+    g = mann.recover(taken.images, taken.times)
+    assert laws.curve_error(g, mann.curve(gamma)) < 0.001
+
+
+def test_the_level_of_the_covered_lens_must_be_told(decades):
+    E, alpha, gamma = decades(), 20, 0.6
+    response = lambda X: alpha / 255 + (1 - alpha / 255) * X**gamma  # noqa: E731
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), response=response)
+    told, untold = (mann.recover(taken.images, taken.times, alpha=a) for a in (alpha, 0))
+    truth = mann.curve(gamma, alpha=alpha)
+    assert np.abs(told - truth)[40:].max() < 0.01 and np.abs(untold - truth)[40:].max() > 0.1
+    assert np.all(np.diff(told) >= 0) and np.all(np.isfinite(told))
+
+
+@pytest.mark.parametrize(("name", "low", "high"), [("srgb", 0.005, 0.05), ("film", 0.03, 0.2)])
+def test_on_a_camera_that_is_no_power_law_it_is_a_compromise(name, low, high, seven_frames):
+    _, taken = seven_frames(name)
+    g = mann.recover(taken.images, taken.times)
+    assert low < laws.curve_error(g, responses.true_g(name)) < high
+
+
+def test_photographs_that_no_light_fills_serve_too(decades):
+    E = np.minimum(decades(), 1)
+    taken = camera.shoot(E, [0.1, 0.2, 0.4], response="gamma", full_well=50_000, read_noise=5, rng=0)
+    assert taken.images.max() < 200
+    g = mann.recover(taken.images, taken.times)
+    assert laws.curve_error(g, responses.true_g("gamma")) < 0.005
+
+
+def test_frames_need_not_be_aligned(seven_frames):
+    _, taken = seven_frames("gamma")
+    turned = np.stack([image[:: 1 - 2 * (j % 2)] for j, image in enumerate(taken.images)])
+    assert np.array_equal(mann.recover(turned, taken.times), mann.recover(taken.images, taken.times))
+
+
+STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
+
+
+@pytest.mark.parametrize(
+    ("images", "times", "knobs"),
+    [
+        (STACK[:1], [1], {}),
+        (STACK, [1, 1], {}),
+        (STACK * 0, [1, 2], {}),
+        (STACK * 0 + 255, [1, 2], {}),
+        (STACK[::1], [1, 2], {"alpha": -1}),
+        (STACK, [1, 2], {"starts": 0}),
+    ],
+)
+def test_what_tells_nothing_is_refused(images, times, knobs):
+    with pytest.raises(ValueError, match="expected"):
+        mann.recover(images, times, **knobs)

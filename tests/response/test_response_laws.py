@@ -1,0 +1,26 @@
+"""Every recovery of a response obeys the laws; a new one is tested by existing."""
+
+import pytest
+
+from hdrlab.capture.responses import RESPONSES
+from hdrlab.core import catalogue
+from hdrlab.course.checks import laws
+
+CAMERAS = {  # what a method assumes of its camera; of one that takes seconds, one does
+    "linear": ["linear"],
+    "mann": ["gamma", "linear"],
+    "marginal": ["film"],
+}
+CASES = [(name, one) for name in catalogue.names("response") for one in CAMERAS.get(name, sorted(RESPONSES))]
+
+
+@pytest.mark.parametrize("law", laws.RECOVERY, ids=lambda law: law.__name__)
+@pytest.mark.parametrize(("name", "response"), CASES)
+def test_every_recovery(name, response, law):
+    law(catalogue.method("response", name), response)
+
+
+@pytest.mark.parametrize("law", laws.CALIBRATION, ids=lambda law: law.__name__)
+@pytest.mark.parametrize(("name", "response"), [case for case in CASES if case[0] != "linear"])
+def test_every_recovery_that_asks_the_photographs(name, response, law):
+    law(catalogue.method("response", name), response)

@@ -1,0 +1,184 @@
+"""The space of responses: components, projection, few samples, files of measured curves."""
+
+import numpy as np
+import pytest
+
+from hdrlab.capture import camera, responses
+from hdrlab.core.errors import response_rmse
+from hdrlab.course.checks.laws import photographs as shots
+from hdrlab.io.emor import read_curves, read_emor
+from hdrlab.response import families, space
+
+X = np.linspace(0, 1, 256)
+POWERS = np.stack([X**gamma for gamma in np.arange(0.3, 1.01, 0.05)])
+
+
+@pytest.fixture(scope="module")
+def papers():
+    return pytest.importorskip("benchmarks.papers.space")
+
+
+@pytest.fixture(scope="module")
+def measured(shared):
+    return read_curves(shared("crf_curves") / "dorf_201.npz")
+
+
+@pytest.fixture(scope="module")
+def curves(measured):
+    exposure, brightness = measured
+    return np.stack(
+        [np.interp(np.linspace(0, 1, 1024), x, m) for x, m in zip(exposure, brightness, strict=True)]
+    )
+
+
+def test_components_are_orthonormal_and_ordered_by_spread():
+    found = space.principal(POWERS, 5)
+    assert np.allclose(found.H @ found.H.T, np.eye(5), atol=1e-12)
+    assert np.all(np.diff(found.sd) < 0)
+
+
+def test_as_many_components_as_the_curves_span_lose_nothing():
+    found = space.principal(POWERS, len(POWERS) - 1)
+    assert np.allclose(space.rebuild(space.project(POWERS, found), found), POWERS, atol=1e-12)
+
+
+def test_the_spread_is_that_of_the_coefficients():
+    found = space.principal(POWERS, 4)
+    assert np.allclose(space.project(POWERS, found).std(axis=0), found.sd)
+
+
+def test_more_samples_than_components_and_no_noise_find_the_curve_exactly():
+    found = space.principal(POWERS, 3)
+    curve = space.rebuild([0.4, -0.2, 0.05], found)
+    at = np.linspace(0.05, 0.95, 9)
+    again = space.from_samples(at, np.interp(at, X, curve), found, noise=1e-9)
+    assert np.allclose(again, curve, atol=1e-6)
+
+
+def test_without_trust_in_the_samples_the_mean_is_the_likeliest():
+    found = space.principal(POWERS, 3)
+    assert np.allclose(space.from_samples([0.5], [0.9], found, noise=1e6), found.mean, atol=1e-9)
+
+
+def test_every_formula_rises_from_zero_to_one():
+    curves = families.exposures()
+    assert np.all(np.diff(curves, axis=1) > 0) and np.allclose(curves[:, -1], 1) and np.all(curves[:, 0] > 0)
+
+
+@pytest.mark.parametrize("gamma", [1.6, 2.4])
+def test_the_straight_start_is_a_tangent(gamma):
+    at, step = 0.05, 1e-6
+    M = np.array([at - step, at, at + step])
+    below, here, above = families.toe(M, gamma, at)
+    assert abs((above - here) - (here - below)) < 1e-4 * (here - below)
+
+
+@pytest.mark.parametrize("name", sorted(responses.RESPONSES))
+def test_the_family_holds_every_response_of_the_simulated_camera(name):
+    basis, g = space.default(), responses.true_g(name)
+    apart = np.exp(space.rebuild(space.project(g, basis), basis)) - np.exp(g)
+    assert np.abs(apart).max() < 0.01 * np.exp(g).max()
+
+
+def test_the_inverse_of_a_measured_curve_is_its_g():
+    x = np.linspace(0, 1, 4096) ** 3
+    g = families.ln_inverses(x, x ** (1 / 2.2))[0]
+    assert np.allclose(g[2:], responses.true_g("gamma")[2:], atol=1e-3)
+
+
+def test_a_basis_of_ones_own_answers_in_its_span():
+    basis = space.principal(
+        families.ln_exposures(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2
+    )
+    E = np.geomspace(0.01, 1, 2400).reshape(40, 60)
+    taken = camera.shoot(E, [0.25, 0.5, 1.0], response="gamma")
+    g = space.recover(taken.images, taken.times, basis=basis)
+    assert abs(g[200] - 2.2 * np.log(200 / 128)) < 0.03
+
+
+def test_what_is_no_space_is_refused():
+    for call in (
+        lambda: space.principal(POWERS, 0),
+        lambda: space.principal(POWERS, 99),
+        lambda: space.principal(POWERS * np.nan, 2),
+        lambda: space.project(np.ones(5), space.default()),
+        lambda: space.first(space.default(), 13),
+        lambda: space.from_samples([0.5, 0.6], [0.5], space.default()),
+        lambda: space.from_samples([1.5], [0.5], space.default()),
+        lambda: space.from_samples([0.5], [0.5], space.default(), noise=0),
+        lambda: families.ln_inverses(X[None], X[None, ::-1]),
+        lambda: space.recover(
+            np.zeros((2, 4, 4), np.uint8), [1, 2], basis=space.principal(POWERS[:, :99], 2)
+        ),
+        lambda: space.recover(np.zeros((2, 4, 4), np.uint8), [1, 2]),
+        lambda: space.recover(np.full((2, 4, 4), 100, np.uint8), [1, 1]),
+    ):
+        with pytest.raises(ValueError, match="expected"):
+            call()
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "",
+        "hello",
+        "E =\n0 1\n",
+        "E =\n0 1\nf0 =\n0 1\nh(1)=\n1\n",
+        "E =\n1 0\nf0=\n0 1\nh(1)=\n1 2\n",
+        "E=\n0 1\nf0=\nx y\nh(1)=\n1 2",
+    ],
+)
+def test_a_damaged_file_of_components_is_refused_by_name(tmp_path, text):
+    path = tmp_path / "emor.txt"
+    path.write_text(text)
+    with pytest.raises(ValueError, match=r"emor\.txt: expected"):
+        read_emor(path)
+
+
+def test_a_damaged_file_of_curves_is_refused_by_name(tmp_path):
+    path = tmp_path / "curves.npz"
+    path.write_bytes(b"PK no zip")
+    with pytest.raises(ValueError, match=r"curves\.npz: expected"):
+        read_curves(path)
+    np.savez(path, irradiance=np.ones((2, 3)), brightness=np.ones((2, 4)))
+    with pytest.raises(ValueError, match="shapes"):
+        read_curves(path)
+
+
+# Measured curves
+
+
+def test_the_published_components_are_orthonormal_and_of_three_digit_exponents(shared):
+    emor = read_emor(shared("crf_curves") / "emor.txt")
+    assert emor.components.shape == (25, 1024) and emor.axis[1] == pytest.approx(9.775171e-4)
+    assert np.allclose(emor.components @ emor.components.T, np.eye(25), atol=1e-6)
+
+
+def test_the_published_components_leave_of_201_curves_what_is_known(shared, papers, curves):
+    emor = read_emor(shared("crf_curves") / "emor.txt")
+    left = papers.projection(curves, space.Space(emor.mean, emor.components, np.ones(25)))
+    assert left[3] < 0.00575 and left[5] < 0.00235 and left[11] < 0.00055
+
+
+def test_our_own_components_leave_more_than_theirs(papers, curves):
+    left = papers.projection(curves, space.principal(curves, 11))
+    assert left[3] < 0.0057 and left[5] < 0.00231 and left[11] < 0.00053
+
+
+def test_five_gray_patches_and_the_prior_find_a_response_to_a_percent(papers, curves):
+    found = papers.five_samples(curves[::4], near=0.01)  # 51 of the 201, each by a prior of the other 50
+    assert found.mean() < 0.01
+
+
+def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
+    g = families.ln_inverses(*measured)
+    assert g.shape == (201, 256) and np.all(np.isfinite(g)) and np.all(np.diff(g, axis=1) >= -1e-12)
+
+
+def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prior(measured):
+    """51 of the 201, none of them among the formulas, and of 8 bits with noise: 0.4 % is typical."""
+    errors = []
+    for g, x, m in zip(families.ln_inverses(*measured)[::4], *(one[::4] for one in measured), strict=True):
+        taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
+        errors.append(response_rmse(space.recover(taken.images, taken.times), g)[0])
+    assert np.median(errors) < 0.6 and np.percentile(errors, 95) < 2 and max(errors) < 3

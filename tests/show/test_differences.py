@@ -1,0 +1,70 @@
+"""Pictures of a difference: whatever came, something true is drawn, with words for who cannot see it."""
+
+import numpy as np
+import pytest
+
+from hdrlab.io import web
+from hdrlab.show.plots import differences
+
+IMAGE = np.linspace(0, 1, 48).reshape(6, 8)
+
+
+def test_three_pictures_and_the_worst_pixel_is_named_and_ringed():
+    came = IMAGE.copy()
+    came[4, 5] += 0.5
+    shown = differences.image(IMAGE, came, what="the map")
+    assert shown.captions == ("expected", "yours", "difference: worst at row 4, column 5")
+    assert "off by 0.5" in shown.alts[2] and all(alt.startswith("the map") for alt in shown.alts)
+    dark = np.argwhere(web.pixels(shown.frames[2]).max(axis=-1) < 40)  # the ring is black
+    height, width = web.pixels(shown.frames[2]).shape[:2]
+    assert np.allclose(dark.mean(axis=0), [4.5 / 6 * height, 5.5 / 8 * width], atol=3)
+
+
+def test_expected_and_yours_share_their_black_and_white():
+    came = np.clip(2 * IMAGE, 0, None)
+    expected, yours, _ = (web.pixels(frame).astype(int) for frame in differences.image(IMAGE, came).frames)
+    assert yours.mean() > expected.mean() + 30
+
+
+@pytest.mark.parametrize("odd", [np.nan, np.inf, -np.inf, 1e300])
+def test_a_value_that_is_no_number_is_the_worst_and_does_not_hide_the_rest(odd):
+    came = IMAGE.copy()
+    came[2, 3] = odd
+    shown = differences.image(IMAGE, came)
+    assert "row 2, column 3" in shown.alts[2] and web.pixels(shown.frames[1]).std() > 20
+    curve = differences.curve(IMAGE.ravel(), came.ravel())
+    assert "at 19 they differ by" in curve.alts[0]
+
+
+def test_light_over_many_decades_is_drawn_by_logarithms():
+    light = np.geomspace(1e-3, 1e3, 48).reshape(6, 8)
+    shown = differences.image(light, light * 1.1)
+    assert "by logarithms" in shown.alts[0]
+    assert np.std(web.pixels(shown.frames[0])[..., 0].mean(axis=1)) > 20  # else all but the last row is black
+
+
+def test_colour_is_drawn_in_colour_and_its_worst_channel_counts():
+    colour = np.repeat(IMAGE[..., None], 3, axis=-1)
+    came = colour.copy()
+    came[1, 1, 2] -= 0.25
+    shown = differences.image(colour, came)
+    assert "row 1, column 1" in shown.alts[2] and "off by 0.25" in shown.alts[2]
+
+
+def test_an_even_picture_and_nothing_but_nan_are_drawn_too():
+    for came in (np.zeros((4, 4)), np.full((4, 4), np.nan)):
+        assert len(differences.image(np.zeros((4, 4)), came).frames) == 3
+        assert differences.curve(np.zeros(16), came.ravel()).frames[0]
+
+
+def test_a_large_picture_is_made_small():
+    shown = differences.image(np.zeros((900, 1200)), np.ones((900, 1200)))
+    assert max(web.pixels(shown.frames[0]).shape) <= differences.MOST
+
+
+@pytest.mark.parametrize("came", [np.zeros((5, 8)), np.zeros(48)])
+def test_another_shape_is_an_error(came):
+    with pytest.raises(ValueError, match="of one shape"):
+        differences.image(IMAGE, came)
+    with pytest.raises(ValueError, match="of one length"):
+        differences.curve(np.zeros(3), came)

@@ -1,0 +1,260 @@
+"""The plots: what a reader can tell from them, and what they refuse to draw."""
+
+import io
+import re
+
+import imageio.v3 as iio
+import matplotlib
+import numpy as np
+import pytest
+from skimage.color import rgb2lab
+
+from hdrlab.core.bracket import bracket
+from hdrlab.show import plots
+from hdrlab.show.widgets import pictures
+
+LINEAR = np.log(np.arange(1, 257) / 129)
+
+
+def three(g):
+    return np.stack([g, 1.1 * g, 0.9 * g], axis=-1)
+
+
+def small_bracket(dtype=np.uint8, channels=(3,)):
+    rng = np.random.default_rng(1)
+    images = rng.integers(0, np.iinfo(dtype).max, (3, 20, 30, *channels), dtype=dtype, endpoint=True)
+    return bracket(images, [1 / 60, 1 / 15, 2])
+
+
+@pytest.mark.parametrize(
+    ("time", "text"),
+    [
+        (1 / 60, "1/60 s"),
+        (1 / 1024, "1/1024 s"),
+        (0.0166, "1/60 s"),
+        (0.3, "0.3 s"),
+        (0.5, "1/2 s"),
+        (2, "2 s"),
+        (2.5, "2.5 s"),
+        (30, "30 s"),
+    ],
+)
+def test_an_exposure_time_reads_as_on_a_camera(time, text):
+    assert plots.seconds(time) == text
+
+
+def test_a_response_has_units_and_an_own_colour_and_line_style_per_channel():
+    ax = plots.response(three(LINEAR))
+    assert ax.get_xlabel() == "ln exposure, ln(E t)" and ax.get_ylabel() == "pixel level Z"
+    assert (
+        len({line.get_color() for line in ax.lines}) == len({line.get_linestyle() for line in ax.lines}) == 3
+    )
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["red", "green", "blue"]
+
+
+def test_a_response_is_drawn_with_exposure_across_and_level_up():
+    (line,) = plots.response(LINEAR).lines
+    assert np.array_equal(line.get_xdata(), LINEAR) and np.array_equal(line.get_ydata(), np.arange(256))
+
+
+def test_two_responses_share_axes_and_a_legend_that_tells_them_apart():
+    ax = plots.response(LINEAR, label="recovered")
+    assert plots.response(2 * LINEAR, label="true", ax=ax) is ax
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["recovered", "true"]
+
+
+def test_the_channels_colours_stay_apart_for_a_colour_blind_reader():
+    """What a dichromat sees is a projection of linear RGB [Vienot99]; 10 CIELAB units are plain to see."""
+    colours = [matplotlib.colors.to_rgb(colour) for _, colour, _ in plots.CHANNELS]
+    protan = np.array([[0.11238, 0.88762, 0], [0.11238, 0.88762, 0], [0.00401, -0.00401, 1]])
+    deutan = np.array([[0.29275, 0.70725, 0], [0.29275, 0.70725, 0], [-0.02234, 0.02234, 1]])
+    for dichromat in (protan, deutan):
+        seen = np.clip(np.array(colours) ** 2.2 @ dichromat.T, 0, 1) ** (1 / 2.2)
+        lab = rgb2lab(seen[None])[0]
+        assert min(np.linalg.norm(lab[i] - lab[j]) for i, j in ((0, 1), (0, 2), (1, 2))) > 10
+
+
+@pytest.mark.parametrize("shape", [(256, 2), (4, 4, 4), ()])
+def test_a_response_of_another_shape_is_refused(shape):
+    with pytest.raises(ValueError, match=r"expected a response \(n,\) or \(n, 3\), got shape"):
+        plots.response(np.zeros(shape))
+
+
+def test_samples_lie_where_the_equation_puts_them():
+    Z, lE, B = np.array([[10, 20, 40], [30, 60, 120]]), np.array([0.5, 1.6]), np.log([1, 2, 4])
+    lines = plots.samples(Z, lE, B).lines
+    assert all(np.allclose(line.get_xdata(), lE[i] + B) for i, line in enumerate(lines))
+    assert all(np.array_equal(line.get_ydata(), Z[i]) for i, line in enumerate(lines))
+    assert len({line.get_marker() for line in lines}) == 2
+
+
+def test_many_samples_are_drawn_alike_and_counted():
+    ax = plots.samples(np.zeros((50, 3), int), np.zeros(50), np.zeros(3), g=LINEAR, span=(-5, 3))
+    assert [text.get_text() for text in ax.get_legend().get_texts()] == ["g", "50 pixels"]
+    assert ax.get_xlim() == (-5, 3)
+
+
+def test_samples_that_do_not_fit_their_irradiances_are_refused():
+    with pytest.raises(ValueError, match=r"expected Z \(N, P\), lE \(N,\) and B \(P,\), got"):
+        plots.samples(np.zeros((5, 3), int), np.zeros(4), np.zeros(3))
+
+
+def test_a_radiance_map_is_scaled_in_stops_from_its_median():
+    E = np.ones((8, 9), np.float32)
+    E[0], E[1] = 16, 1 / 4
+    ax = plots.radiance(E)
+    (image,), bar = ax.images, ax.figure.axes[1]
+    assert np.array_equal(np.unique(image.get_array()), [-2, 0, 4])
+    assert image.get_clim() == (-2, 4) and bar.get_ylabel() == "stops from the median luminance"
+    assert image.get_cmap().name == "viridis"
+
+
+def test_a_radiance_map_is_scaled_in_decades_too():
+    E = np.ones((8, 9), np.float32)
+    E[0], E[1] = 16, 1 / 4
+    ax = plots.radiance(E, unit="decades")
+    (image,), bar = ax.images, ax.figure.axes[1]
+    assert np.allclose(np.unique(image.get_array()), np.log10([1 / 4, 1, 16]))
+    assert bar.get_ylabel() == "decades from the median luminance"
+    with pytest.raises(ValueError, match="expected unit as stops or decades, got 'dB'"):
+        plots.radiance(E, unit="dB")
+
+
+def test_maps_side_by_side_share_one_legend_in_stops_and_decades():
+    E = 2.0 ** np.linspace(-10, 10, 30 * 40).reshape(30, 40)
+    shown = pictures.radiance(E, E**0.5, alt="A wedge", captions=["measured", "recovered"])
+    assert shown.alts == (
+        "A wedge, measured, 20.0 stops from the darkest to the brightest",
+        "A wedge, recovered, 10.0 stops from the darkest to the brightest",
+    )
+    first, second = (iio.imread(io.BytesIO(frame)).astype(int) for frame in shown.frames)
+    ends = [np.array([int(colour[k : k + 2], 16) for k in (1, 3, 5)]) for colour in ("#440154", "#fde725")]
+    assert np.abs(first[0, 0] - ends[0]).max() < 20 and np.abs(first[-1, -1] - ends[1]).max() < 20
+    assert np.abs(second[0, 0] - ends[0]).max() > 30  # half as far from the middle
+    page = shown._repr_html_()
+    assert page.count("linear-gradient") == 1
+    for tick in ("−10", "+5", "−2", "+2"):
+        assert f">{tick} <" in page
+
+
+def test_a_legend_of_few_stops_tells_its_ticks_apart():
+    page = pictures.radiance(2.0 ** np.linspace(-1, 1, 400).reshape(20, 20), alt="A wedge")._repr_html_()
+    ticks = re.findall(r">([^<>]+) </span>", page)
+    assert len(ticks) == len(set(ticks)) + 1 >= 8  # zero stands in both scales
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"captions": ["one", "two"]}, "expected a caption for each of 1 maps"),
+        ({"stops": (3, 3)}, "expected stops as"),
+        ({"alt": ""}, "expected an alt text"),
+    ],
+)
+def test_maps_without_what_explains_them_are_refused(given, message):
+    with pytest.raises(ValueError, match=message):
+        pictures.radiance(np.ones((4, 4)), **{"alt": "A wall"} | given)
+
+
+def test_pixels_without_light_are_gray_in_a_radiance_map():
+    E = np.ones((4, 4), np.float32)
+    E[0, 0] = 0
+    (image,) = plots.radiance(E, stops=(-3, 3)).images
+    assert image.get_clim() == (-3, 3)
+    assert matplotlib.colors.to_hex(image.cmap(np.ma.masked_invalid(image.get_array()))[0, 0]) == "#808080"
+
+
+def test_a_map_without_any_light_is_refused():
+    with pytest.raises(ValueError, match="some light in it"):
+        plots.radiance(np.zeros((4, 4, 3)))
+
+
+@pytest.mark.parametrize("channels", [(), (3,)])
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_thumbnails_stand_under_their_times_and_offsets(dtype, channels):
+    figure = plots.thumbnails(small_bracket(dtype, channels), offsets=[(0, 0), (3, -2), (-1, 5)])
+    titles = [ax.get_title() for ax in figure.axes]
+    assert titles == ["1/60 s\ndy +0, dx +0 px", "1/15 s\ndy +3, dx -2 px", "2 s\ndy -1, dx +5 px"]
+    assert all(ax.images[0].get_array().max() <= 255 for ax in figure.axes)
+
+
+@pytest.mark.parametrize("channels", [(), (3,)])
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
+def test_a_histogram_counts_every_pixel_of_every_channel(dtype, channels):
+    ax = plots.histogram(small_bracket(dtype, channels).images[0])
+    assert [line.get_ydata().sum() for line in ax.lines] == [600] * (3 if channels else 1)
+    assert ax.get_xlabel() == "pixel level Z" and ax.get_ylabel() == "number of pixels"
+
+
+def test_a_figure_stays_as_it_is_when_rendered_and_no_window_opens():
+    ax = plots.response(LINEAR)
+    first, second = pictures.render(ax), pictures.render(ax.figure)
+    assert first.shape == (360, 540, 3) and first.dtype == np.uint8
+    assert np.array_equal(first, second)
+
+
+def test_a_figure_is_rendered_as_fine_as_it_is_when_it_is_drawn():
+    figure = plots.axes().figure
+    figure.set_dpi(150)
+    assert pictures.render(figure).shape == (540, 810, 3)
+
+
+def test_a_figure_of_pyplot_is_rendered_and_closed():
+    matplotlib.use("agg")
+    import matplotlib.pyplot as plt
+
+    figure, ax = plt.subplots(figsize=(3, 2), dpi=100)
+    ax.plot([0, 1])
+    assert pictures.render(ax).shape == (200, 300, 3)
+    assert not plt.fignum_exists(figure.number)
+
+
+def test_a_picture_carries_its_alt_text_into_the_page():
+    shown = pictures.picture(np.zeros((4, 5), np.uint8), alt='A "black" square', caption="black < gray")
+    page = shown._repr_html_()
+    assert 'alt="A &quot;black&quot; square"' in page and "black &lt; gray" in page
+    assert 'src="data:image/webp;base64,' in page and repr(shown) == 'A "black" square'
+
+
+@pytest.mark.parametrize("alt", ["", "  ", None])
+def test_a_picture_without_alt_text_is_refused(alt):
+    with pytest.raises(ValueError, match="expected an alt text that says what the picture shows"):
+        pictures.picture(np.zeros((4, 5), np.uint8), alt=alt)
+
+
+@pytest.mark.parametrize(
+    ("drawn", "came"),
+    [
+        (None, "NoneType"),
+        (np.zeros((4, 4)), "dtype float64"),
+        (np.zeros((4, 4), bool), "dtype bool"),
+        (np.zeros((4, 4, 2), np.uint8), r"shape \(4, 4, 2\)"),
+        (np.zeros((0, 4), np.uint8), r"shape \(0, 4\)"),
+    ],
+)
+def test_a_drawing_that_is_no_picture_is_refused_with_what_came(drawn, came):
+    with pytest.raises(ValueError, match=f"expected draw to return a uint8 picture .* got .*{came}"):
+        pictures.render(drawn)
+
+
+def test_a_strip_has_a_picture_a_caption_and_an_alt_text_per_value():
+    def square(level, side=4):
+        return np.full((side, side), level, np.uint8)
+
+    strip = pictures.strip(square, lambda drawn: drawn, alt="A square", level=[0, 100, 255])
+    assert strip.captions == ("level = 0", "level = 100", "level = 255")
+    assert strip.alts == tuple(f"A square, {caption}" for caption in strip.captions)
+    assert len(set(strip.frames)) == 3 and strip._repr_html_().count("<img ") == 3
+
+
+@pytest.mark.parametrize(
+    ("values", "message"),
+    [
+        ({}, "expected one parameter with its values, got 0"),
+        ({"a": [1], "b": [2]}, "got 2: a, b"),
+        ({"a": []}, "at least one value for a"),
+    ],
+)
+def test_a_strip_of_anything_but_one_parameter_is_refused(values, message):
+    with pytest.raises(ValueError, match=message):
+        pictures.strip(lambda **_: None, lambda drawn: drawn, alt="Nothing", **values)

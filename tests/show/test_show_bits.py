@@ -1,0 +1,90 @@
+"""show.plots.bits: the bits drawn are those of the file, and what stands beside them is what they mean."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.io import rgbe
+from hdrlab.show.plots import bits
+from hdrlab.show.widgets import pictures
+
+
+def texts(ax):
+    return [text.get_text() for text in ax.texts]
+
+
+def drawn(ax):
+    """Return the bits that stand in the boxes, line by line."""
+    placed = [(y, x, line.get_marker().strip("$")) for line in ax.lines for x, y in line.get_xydata()]
+    return "".join(bit for _, _, bit in sorted(placed))
+
+
+def test_the_slides_first_pixel_is_its_four_bytes_and_their_values():
+    ax = bits.rgbe(np.array([145, 215, 87, 149], np.uint8))
+    assert drawn(ax) == "10010001" + "11010111" + "01010111" + "10010101"
+    said = texts(ax)
+    assert "145, so 1.188e+06" in said and "149: 2^21 / 256 = 8.19e+03" in said
+
+
+@given(st.tuples(*[st.integers(0, 255)] * 4))
+def test_what_stands_beside_a_mantissa_is_what_the_file_says(pixel):
+    given_ = np.array(pixel, np.uint8)
+    E = rgbe.to_radiance(given_[None, None])[0, 0]
+    said = [text.split("so ")[1] for text in texts(bits.rgbe(given_)) if "so " in text]
+    assert [float(one) for one in said] == pytest.approx(E.tolist(), rel=1e-3, abs=0)
+
+
+@pytest.mark.parametrize("pixel", [np.zeros(3, np.uint8), np.zeros(4), [1, 2, 3, 4]])
+def test_what_is_no_pixel_of_four_bytes_is_refused(pixel):
+    with pytest.raises(ValueError, match="expected a pixel"):
+        bits.rgbe(pixel)
+
+
+@pytest.mark.parametrize("size, kind, word", [(16, np.float16, np.uint16), (32, np.float32, np.uint32)])
+@pytest.mark.parametrize("value", [0.7, -3.0, 1e-6, 0.0, 12345.0])
+def test_a_number_is_drawn_as_it_is_stored(size, kind, word, value):
+    wanted = f"{int(kind(value).view(word)):0{size}b}"
+    assert drawn(bits.number(value, bits=size)) == wanted
+
+
+@pytest.mark.parametrize("value", [0.7, 1e-6, 3e-5, 1000.0])
+def test_power_times_mantissa_is_the_number(value):
+    said = texts(bits.number(value))
+    power = next(text.split("^")[1] for text in said if "2^" in text)
+    times = next(text.split()[1] for text in said if text.startswith("times"))
+    assert 2.0 ** int(power) * float(times) == pytest.approx(float(np.float16(value)), rel=1e-6)
+
+
+def test_beyond_the_largest_half_stands_infinity():
+    said = texts(bits.number(1e5))
+    assert any("infinity" in text for text in said) and not any("times" in text for text in said)
+    assert said[-1] == "100000 is stored as inf"
+
+
+def test_other_sizes_are_refused():
+    with pytest.raises(ValueError, match="expected 16 or 32 bits, got 64"):
+        bits.number(1.0, bits=64)
+
+
+def test_a_scanline_shows_as_many_bytes_as_are_known():
+    planes = np.arange(40, dtype=np.uint8).reshape(4, 10)
+    figure = bits.scanline(planes, 23)
+    shown = [ax.patches[0].get_data().values.tolist() for ax in figure.axes]
+    assert shown == [planes[0].tolist(), planes[1].tolist(), planes[2, :3].tolist(), []]
+
+
+@pytest.mark.parametrize("planes, done", [(np.zeros((3, 5)), 0), (np.zeros((4, 5)), 21), (np.zeros(20), 0)])
+def test_what_is_no_scanline_is_refused(planes, done):
+    with pytest.raises(ValueError, match="expected planes"):
+        bits.scanline(planes, done)
+
+
+def test_every_drawing_becomes_a_picture_of_one_width():
+    made = [
+        bits.rgbe(np.zeros(4, np.uint8)),
+        bits.number(1.0),
+        bits.number(1.0, bits=32),
+        bits.scanline(np.zeros((4, 8), np.uint8), 32),
+    ]
+    assert {pictures.render(figure).shape[1] for figure in made} == {540}

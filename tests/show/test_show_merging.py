@@ -1,0 +1,70 @@
+"""show.plots.merging: answers lie where g and the times put them, bounds where they must, and no NaN."""
+
+import numpy as np
+import pytest
+
+from hdrlab.core import weights
+from hdrlab.show.plots import merging
+from hdrlab.show.widgets import pictures
+
+G = np.log(np.maximum(np.arange(256), 0.5) / 128)  # a linear camera
+B = np.log([0.25, 1.0, 4.0])
+Z = np.array([0, 64, 255])
+W = weights.hat()
+
+
+def drawn(Z=Z, **knobs):
+    return merging.answers(Z, B, G, W, np.log(0.5), **knobs)
+
+
+def lines(ax):
+    return {line.get_label(): line for line in ax.lines}
+
+
+def test_an_answer_is_g_less_ln_t_in_stops():
+    (dots,) = (c for c in drawn().collections if c.get_label() == "an answer")
+    assert dots.get_offsets().tolist() == [[1.0, pytest.approx(-1.0)]]
+
+
+def test_a_black_level_is_an_arrow_down_from_level_1_and_a_white_one_up_from_the_cut():
+    ax = drawn()
+    down, up = lines(ax)["at most"], lines(ax)["at least"]
+    at_most, at_least = np.log2(1 / 128 / 0.25), np.log2(250 / 128 / 4)
+    assert (down.get_xdata()[0], up.get_xdata()[0]) == (0, 2)
+    assert down.get_ydata()[0] < at_most and up.get_ydata()[0] > at_least
+    starts = [c.get_segments()[0][0] for c in ax.collections if hasattr(c, "get_segments")][1:]
+    assert [start.tolist() for start in starts] == [
+        [2, pytest.approx(at_least)],
+        [0, pytest.approx(at_most)],
+    ]
+
+
+def test_the_bar_of_an_answer_spans_the_light_that_is_rounded_to_its_level():
+    bar = next(c for c in drawn().collections if hasattr(c, "get_segments")).get_segments()[0]
+    assert np.allclose(2 ** bar[:, 1] * 128, [63.5, 64.5], atol=0.01)
+
+
+def test_an_answer_is_the_larger_the_more_it_weighs():
+    dots = next(c for c in drawn(np.array([10, 64, 127])).collections if c.get_label() == "an answer")
+    assert np.all(np.diff(dots.get_sizes()) > 0)
+
+
+def test_merged_and_truth_are_lines_from_the_middle():
+    ax = drawn(middle=np.log(2), truth=np.log(8))
+    assert lines(ax)["merged"].get_ydata()[0] == pytest.approx(-2)
+    assert lines(ax)["truth"].get_ydata()[0] == pytest.approx(2)
+
+
+def test_each_column_says_its_time_and_level():
+    labels = [text.get_text() for text in drawn().get_xticklabels()]
+    assert labels == ["1/4 s\n0", "1 s\n64", "4 s\n255"]
+
+
+@pytest.mark.parametrize("levels", [[0, 0, 0], [255, 255, 255], [100, 120, 140]])
+def test_pixels_of_one_kind_are_drawn_too(levels):
+    assert pictures.render(drawn(np.array(levels))).std() > 0
+
+
+def test_levels_without_a_time_each_are_refused():
+    with pytest.raises(ValueError, match=r"expected Z and B \(P,\)"):
+        merging.answers(Z[:2], B, G, W, 0.0)

@@ -1,0 +1,58 @@
+"""show.plots.moves: what differs is coloured, what is not compared gray, and the error stands above it."""
+
+import numpy as np
+import pytest
+
+from hdrlab.align import cerman, matches
+from hdrlab.core import warp
+from hdrlab.show.plots import moves as drawn
+from hdrlab.show.widgets import pictures
+
+RNG = np.random.default_rng(0)
+WALL = np.kron(RNG.uniform(0.5, 2, (14, 18)), np.ones((8, 8))).astype(np.float32)
+X = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])  # which lies on the first moved by (-3, 4)
+TRUE = warp.as_moves([[-3, 4]])[0]
+
+
+def title(drawn):
+    return drawn.figure.axes[0].get_title()
+
+
+def test_after_the_true_move_nothing_differs_and_the_title_says_so():
+    assert title(drawn.difference(X, TRUE)) == "error e = 0.0000"
+    d, e = drawn.differences(X, np.eye(3))
+    assert e == pytest.approx(np.mean(d**2)) and f"{e:.4f}" in title(drawn.difference(X, np.eye(3)))
+
+
+def test_what_one_photograph_does_not_show_is_gray():
+    shown = drawn.difference(X, TRUE).images[0].get_array()
+    assert np.all(shown[-1] == 128) and np.all(shown[:, 0] == 128) and not np.all(shown[40] == 128)
+
+
+def test_the_brighter_photograph_is_told_by_its_colour():
+    for k, warm in ((0.8, True), (1.25, False)):
+        ax = drawn.difference(np.stack([X[0], X[0] * np.float32(k)]), np.eye(3))
+        pixel = ax.images[0].get_array()[5, 5]
+        assert (pixel[0] > pixel[2]) == warm
+
+
+def test_the_highest_correlation_is_drawn_where_it_is():
+    figure = drawn.correlation(matches.correlation(X), marks={"true": (-3, 4)})
+    image, (line,) = figure.axes[0].images[0], figure.axes[0].lines
+    y, x = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
+    assert (y - X.shape[1] + 1, x - X.shape[2] + 1) == (-3, 4) == (line.get_ydata()[0], line.get_xdata()[0])
+
+
+def test_a_level_shows_its_picture_and_every_step_of_its_error():
+    state = cerman.State(0, 1, 2, X, np.zeros((5, 3)), np.geomspace(0.1, 0.01, 5), TRUE)
+    figure = drawn.level(state)
+    assert "level 2" in title(figure) and "e = 0.0000" in title(figure)
+    assert figure.axes[1].lines[0].get_ydata().tolist() == (1000 * state.errors).tolist()
+    assert pictures.render(figure).ndim == 3
+
+
+def test_what_is_no_pair_and_no_correlation_is_refused():
+    with pytest.raises(ValueError, match="light of two photographs"):
+        drawn.difference(X[0], TRUE)
+    with pytest.raises(ValueError, match="at shifts -n to n"):
+        drawn.correlation(np.zeros((4, 5)))

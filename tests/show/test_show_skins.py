@@ -1,0 +1,36 @@
+"""hdrlab.show.plots.skins: the plane of chrominance and the skin locus, drawn."""
+
+import numpy as np
+import pytest
+
+from hdrlab.enhance import skin
+from hdrlab.show.plots import skins
+
+TRAINING = skin.synthetic(3000)
+
+
+def test_the_ellipse_lies_at_its_reach_from_the_mean():
+    known = skin.default()
+    edge = np.column_stack(skins.chrominance(TRAINING, known, reach=2.0).lines[1].get_data()) - known.mu
+    distance = np.sqrt(np.einsum("ni,ij,nj->n", edge, np.linalg.inv(known.S), edge))
+    assert np.allclose(distance, 2.0)
+
+
+def test_the_dots_are_pixels_and_not_too_many():
+    ax = skins.chrominance(TRAINING, skin.default())
+    dots = np.column_stack(ax.lines[0].get_data())
+    assert 1000 < len(dots) <= skins.MOST and np.allclose(dots[1], skin.chrominance(TRAINING[2]))
+
+
+def test_pixels_between_the_drawn_parabolas_are_those_of_the_locus():
+    ax = skins.locus(TRAINING)
+    r, g = ax.lines[0].get_data()
+    upper, lower = (np.interp(r, *line.get_data()) for line in ax.lines[1:])
+    inside = (lower < g) & (g < upper)
+    assert np.mean(inside == skin.by_locus(TRAINING[::2])) > 0.97
+
+
+@pytest.mark.parametrize("bad", [np.zeros((4, 4)), np.zeros((0, 3))])
+def test_what_are_no_pixels_is_refused(bad):
+    with pytest.raises(ValueError, match="pixels"):
+        skins.locus(bad)

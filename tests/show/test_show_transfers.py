@@ -1,0 +1,115 @@
+"""The drawings of two photographs compared: counts, ranks, stairs and equations lie where they belong."""
+
+import numpy as np
+import pytest
+from matplotlib.legend import Legend
+
+from hdrlab.core import transfer
+from hdrlab.response.grossberg import comparagram
+from hdrlab.show.plots import transfers
+from hdrlab.show.widgets import pictures
+
+LEVELS = np.arange(256)
+
+
+def legend(ax):
+    return [text.get_text() for text in ax.get_legend().get_texts()]
+
+
+def two(k=2):
+    """Return histograms (256,) of even light, and of k times as much."""
+    light = (np.arange(40_000) + 0.5) / 40_000 * 120
+    return [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (1, k)]
+
+
+def test_a_comparagram_has_the_first_frame_across_and_the_second_up():
+    A, B = np.full((4, 4), 30, np.uint8), np.full((4, 4), 200, np.uint8)
+    ax = transfers.comparagram(comparagram(A, B))
+    shown = ax.images[0].get_array()
+    assert shown[200, 30] == 16 and np.ma.count(np.ma.masked_invalid(shown)) == 1
+    assert ax.get_xlabel() == "level m in frame A" and ax.get_ylabel() == "level z in frame B"
+
+
+def test_the_colours_of_a_comparagram_are_not_spent_on_clipped_pixels():
+    J = np.zeros((256, 256))
+    J[255, 255], J[100, 120], J[50, 60] = 1e6, 400, 2
+    ax = transfers.comparagram(J)
+    norm = ax.images[0].norm
+    assert norm.vmax == 400 and norm.vmin == 2
+    assert legend(ax) == ["10", "100"] and ax.get_legend().get_title().get_text() == "pixels"
+
+
+def test_the_counts_of_a_comparagram_stand_where_it_has_no_ridge():
+    brighter = np.roll(np.eye(256), 20, axis=1)
+    places = [transfers.comparagram(J).get_legend()._loc for J in (brighter, brighter.T)]
+    assert places == [Legend.codes["lower right"], Legend.codes["upper left"]]
+
+
+def test_the_transfer_lies_on_its_comparagram():
+    ax = transfers.comparagram(np.eye(256), T=LEVELS / 2)
+    assert all(np.array_equal(line.get_ydata(), LEVELS / 2) for line in ax.lines)
+    assert legend(ax) == ["1", "T, from the histograms"]
+
+
+@pytest.mark.parametrize("J", [np.zeros((256, 256)), np.ones((4, 5)), np.ones(256)])
+def test_what_is_no_comparagram_is_refused(J):
+    with pytest.raises(ValueError, match=r"expected a comparagram \(n, n\) with counts in it, got"):
+        transfers.comparagram(J)
+
+
+def test_ranks_go_up_across_and_down_to_the_level_of_the_other_frame():
+    h = two()
+    ax = transfers.ranks(*h, 40, transfer.mid_step(*h))
+    way = ax.lines[2]
+    assert np.allclose(way.get_xdata(), [40, 40, 80, 80], atol=0.01)
+    height = way.get_ydata()[1]
+    assert height == way.get_ydata()[2] and abs(height - 100 / 3) < 0.3
+    assert legend(ax)[2] == "level 40 of A is level 80.0 of B"
+
+
+def test_a_level_that_the_other_frame_clips_has_no_way_down():
+    h = two(4)
+    clipped = np.concatenate([h[1][:200], [h[1][200:].sum()], np.zeros(55, int)])
+    T = np.where(LEVELS < 50, transfer.mid_step(h[0], clipped), np.nan)
+    ax = transfers.ranks(h[0], clipped, 90, T)
+    assert legend(ax)[2] == "level 90 of A is clipped in B" and set(ax.lines[2].get_xdata()) == {90}
+
+
+def test_stairs_go_from_the_diagonal_down_to_the_transfer_and_back():
+    s = np.array([240.0, 120, 60])
+    ax = transfers.staircase(LEVELS / 2, s)
+    x, y = ax.lines[2].get_data()
+    assert list(zip(x, y, strict=True)) == [(240, 240), (240, 120), (120, 120), (120, 60), (60, 60)]
+    assert legend(ax)[2] == "3 levels"
+
+
+def test_a_ladder_of_a_power_law_lies_on_a_line_with_its_exponent():
+    s = 240 * 0.5 ** (0.45 * np.arange(8))
+    ax = transfers.ladders({"gamma": (s, 0.5)})
+    points, line = ax.lines
+    assert legend(ax) == ["gamma: slope 0.45"]
+    assert np.allclose(points.get_ydata(), line.get_ydata()) and points.get_xdata().tolist() == list(
+        range(0, -8, -1)
+    )
+
+
+def test_equations_are_drawn_less_a_multiple_and_those_thrown_out_are_told_apart():
+    x, used = np.arange(1.0, 11), np.arange(10) != 4
+    ax = transfers.equations(x, 4 * x + np.where(used, 0, 9), used, 4.02, against=4)
+    out, kept, line = ax.lines
+    assert out.get_ydata().tolist() == [9] and np.allclose(kept.get_ydata(), 0)
+    assert np.allclose(line.get_ydata(), [0, 0.2])
+    assert legend(ax) == ["1 thrown out", "9 in use", "k = 4.0200"] and "4 times" in ax.get_ylabel()
+
+
+def test_every_drawing_becomes_a_picture():
+    h = two()
+    T = transfer.mid_step(*h)
+    for ax in (
+        transfers.comparagram(np.eye(256)),
+        transfers.ranks(*h, 40, T),
+        transfers.staircase(LEVELS / 2, np.array([240.0, 120])),
+        transfers.ladders({"linear": (np.array([240.0, 120, 60]), 0.5)}),
+        transfers.equations(LEVELS, 2 * LEVELS, LEVELS > 5, 2.0),
+    ):
+        assert pictures.render(ax).ndim == 3

@@ -1,0 +1,545 @@
+"""Widgets in Python: what they hand to the browser, and what they do when it moves a slider."""
+
+import gc
+import io
+import itertools
+
+import imageio.v3 as iio
+import numpy as np
+import pytest
+from matplotlib.figure import Figure
+
+from hdrlab.io import web
+from hdrlab.show import plots, widgets
+from hdrlab.show.plots import reuse, tones
+from hdrlab.show.widgets.pictures import render
+
+
+def square(level=100, side=16):
+    return np.full((side, side), level, np.uint8)
+
+
+def same(picture):
+    return picture
+
+
+def unrolled(frame):
+    """Return the picture that was written as runs of one colour, as a script would, run by run."""
+    (width, height), rest = np.frombuffer(frame[:8], "<u4"), frame[8:]
+    rows = [pixel for at in range(0, len(rest), 4) for pixel in [tuple(rest[at : at + 3])] * rest[at + 3]]
+    return np.array(rows, np.uint8).reshape(height, width, 3)
+
+
+def level_of(frame):
+    picture = iio.imread(io.BytesIO(frame)) if frame[:2] in (b"\xff\xd8", b"RI") else unrolled(frame)
+    return int(picture.mean().round())
+
+
+def test_play_draws_each_state_once_in_order():
+    drawn = []
+
+    def draw(state):
+        drawn.append(state)
+        return square(50 * state)
+
+    player = widgets.play(range(5), draw, alt="A square")
+    assert drawn == [0, 1, 2, 3, 4]
+    assert [level_of(frame) for frame in player.frames] == pytest.approx([0, 50, 100, 150, 200], abs=2)
+
+
+def test_play_takes_any_generator():
+    def lighter():
+        picture = square(10)
+        for _ in range(3):
+            yield picture
+            picture = picture + 40
+
+    assert [
+        level_of(frame) for frame in widgets.play(lighter(), same, alt="A square").frames
+    ] == pytest.approx([10, 50, 90], abs=2)
+
+
+@pytest.mark.parametrize(
+    "draw", [lambda k: plots.response(np.arange(256) * (k + 1)), lambda k: plots.axes().figure]
+)
+def test_play_takes_axes_and_figures(draw):
+    player = widgets.play(range(2), draw, alt="A curve")
+    assert all(iio.imread(io.BytesIO(frame)).shape == (360, 540, 3) for frame in player.frames)
+
+
+def test_a_drawing_without_photographs_is_kept_to_the_bit():
+    ax = plots.response(np.arange(256))
+    (frame,) = widgets.play([ax], same, alt="A curve").frames
+    assert np.array_equal(iio.imread(io.BytesIO(frame)), render(ax))
+
+
+def test_every_frame_has_an_alt_text_of_its_own():
+    assert widgets.play(range(3), square, alt="A square", name="level").alts == [
+        f"A square, level {k}" for k in (1, 2, 3)
+    ]
+    assert widgets.play(range(2), square, alt=lambda k: f"Gray {k}").alts == ["Gray 0", "Gray 1"]
+
+
+def test_the_page_gets_frames_and_scripts_and_nothing_from_elsewhere():
+    state = widgets.play(range(2), square, alt="A square").get_state()
+    assert len(state["frames"]) == 2 and state["index"] == 0
+    for widget in (widgets.Player, widgets.Tuner, widgets.Wiper, widgets.Blinker, widgets.Brush):
+        script = widget._esm
+        assert str(script).count("export default") == 1 and "http" not in str(script)
+        assert "import " not in str(script) and "import(" not in str(script)
+
+
+def test_no_states_are_refused():
+    with pytest.raises(ValueError, match="expected 1 to 200 states to play, got none"):
+        widgets.play([], square, alt="Nothing")
+
+
+def test_a_generator_that_never_ends_is_refused():
+    with pytest.raises(ValueError, match="expected 1 to 200 states to play, got more"):
+        widgets.play(itertools.count(), lambda _: square(), alt="For ever")
+
+
+@pytest.mark.parametrize("alt", ["", lambda state: " "])
+def test_play_refuses_pictures_without_alt_text(alt):
+    with pytest.raises(ValueError, match="expected an alt text"):
+        widgets.play(range(2), square, alt=alt)
+
+
+def test_play_and_tune_refuse_a_draw_that_returns_something_else():
+    for make in (
+        lambda: widgets.play([1], lambda _: [1, 2], alt="A list"),
+        lambda: widgets.tune(square, lambda _: [1, 2], alt="A list", level=(0, 9)),
+    ):
+        with pytest.raises(ValueError, match="expected draw to return a uint8 picture .* got list"):
+            make()
+
+
+def test_tune_starts_at_the_functions_defaults():
+    tuner = widgets.tune(square, same, alt="A square", level=(0, 255), side=[8, 16, 32])
+    assert tuner.parameters == {"level": 100, "side": 16}
+    assert tuner.names == ["level", "side"] and tuner.values[1] == ["8", "16", "32"]
+    assert level_of(tuner.frame) == 100 and tuner.shown == tuner.at
+
+
+def test_tune_starts_in_the_middle_where_there_is_no_default():
+    tuner = widgets.tune(lambda level: square(level), same, alt="A square", level=(0, 200, 10))
+    assert tuner.parameters == {"level": 100}
+
+
+@pytest.mark.parametrize(
+    ("given", "values"),
+    [
+        ((1, 4), [1, 2, 3, 4]),
+        ((0, 1, 0.25), [0, 0.25, 0.5, 0.75, 1]),
+        ((0.0, 1.0), np.linspace(0, 1, 101)),
+        ((0, 10, 4), [0, 4, 8]),
+        ([1, 10, 100], [1, 10, 100]),
+        (np.array([2, 4]), [2, 4]),
+        (["hat", "flat"], ["hat", "flat"]),
+    ],
+)
+def test_a_range_becomes_the_positions_of_its_slider(given, values):
+    tuner = widgets.tune(lambda a: square(), same, alt="A square", a=given)
+    at = []
+    for k in range(len(tuner.values[0])):
+        tuner.at = [k]
+        at.append(tuner.parameters["a"])
+    assert at == list(values) if isinstance(values[0], str) else np.allclose(at, values)
+
+
+def test_moving_a_slider_shows_the_picture_of_its_new_position():
+    tuner = widgets.tune(square, same, alt="A square", level=(0, 255))
+    before = tuner.answers
+    tuner.set_state({"at": [200]})  # as the browser's message does
+    assert level_of(tuner.frame) == 200 and tuner.shown == [200] and tuner.answers == before + 1
+
+
+def test_of_a_burst_of_moves_the_last_position_wins():
+    tuner = widgets.tune(square, same, alt="A square", level=(0, 255))
+    for level in (10, 250, 30, 80, 200, 60):
+        tuner.set_state({"at": [level]})
+    assert level_of(tuner.frame) == 60 and tuner.shown == tuner.at == [60]
+
+
+def test_a_function_that_fails_says_so_beside_the_slider_and_recovers():
+    def picky(level=100):
+        if level > 128:
+            raise ZeroDivisionError("too light")
+        return square(level)
+
+    tuner = widgets.tune(picky, same, alt="A square", stored=0, level=(0, 255))
+    tuner.at = [200]
+    assert tuner.problem == "ZeroDivisionError: too light" and level_of(tuner.frame) == 100
+    tuner.at = [50]
+    assert tuner.problem == "" and level_of(tuner.frame) == 50
+
+
+def test_tune_stores_a_few_positions_of_each_slider_for_a_page_without_a_kernel():
+    tuner = widgets.tune(square, same, alt="A square", stored=3, level=(0, 255), side=[8, 16, 32])
+    stored = [tuple(position) for position in tuner.stored_at]
+    assert set(stored) == {(100, 1), (0, 1), (128, 1), (255, 1), (100, 0), (100, 2)} and len(stored) == 6
+    for (level, side), frame in zip(stored, tuner.stored, strict=True):
+        picture = iio.imread(io.BytesIO(frame))
+        assert picture.shape[0] == [8, 16, 32][side] and level_of(frame) == pytest.approx(level, abs=1)
+
+
+def test_tune_stores_the_start_where_nothing_else_is_asked_for():
+    assert widgets.tune(square, same, alt="A square", stored=0, level=(0, 255)).stored_at == [[100]]
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        5,
+        "hat",
+        None,
+        (1,),
+        (1, 2, 3, 4),
+        (5, 5),
+        (9, 1),
+        (0, 1, 0),
+        (0, 1, -1),
+        (0, 1, 5),
+        (0, np.inf),
+        [],
+        [1],
+    ],
+)
+def test_a_range_that_is_none_is_refused(given):
+    with pytest.raises(ValueError, match="expected level as"):
+        widgets.tune(square, same, alt="A square", level=given)
+
+
+def test_tune_refuses_no_ranges_and_ranges_of_parameters_that_are_not_there():
+    with pytest.raises(ValueError, match="expected at least one range"):
+        widgets.tune(square, same, alt="A square")
+    with pytest.raises(ValueError, match="expected parameters of the function, level, side; got hue"):
+        widgets.tune(square, same, alt="A square", hue=(0, 9))
+
+
+def test_a_press_means_a_place_of_the_picture_and_not_of_the_title_above_it():
+    def dotted(down=0.5, right=0.5):
+        return down, right
+
+    def draw(at):
+        figure = Figure(figsize=(4, 2), dpi=50)
+        figure.add_axes((0.1, 0.25, 0.8, 0.5))
+        return figure
+
+    tuner = widgets.tune(
+        dotted, draw, alt="A place", point=("down", "right"), down=(0.0, 1.0), right=(0.0, 1.0)
+    )
+    assert np.allclose(tuner.area, [0.1, 0.25, 0.8, 0.5]) and tuner.point == ["down", "right"]
+
+
+@pytest.mark.parametrize("point", [("level",), ("level", "level", "level"), ("level", "none")])
+def test_a_point_that_is_not_two_parameters_is_refused(point):
+    with pytest.raises(ValueError, match="expected a point of two parameters out of level, got"):
+        widgets.tune(lambda level=1: level, square, alt="A square", point=point, level=(0, 9))
+
+
+def test_tune_refuses_pictures_without_alt_text():
+    with pytest.raises(ValueError, match="expected an alt text"):
+        widgets.tune(square, same, alt="", level=(0, 9))
+
+
+def curve(k=1):
+    return plots.response(k * np.linspace(-4, 4, 256), label=f"{k}", span=(-5, 5))
+
+
+def test_a_plot_on_axes_that_are_used_again_is_the_plot_on_new_ones():
+    """To the pixel: nothing of the picture before is left behind, whatever it had."""
+
+    def crowded(k):
+        ax = curve(k)
+        ax.text(0, 128, "here")
+        ax.axhspan(10, 20)
+        ax.set_title("A title")
+        return ax
+
+    tuner = widgets.tune(lambda k=1: k, lambda k: crowded(k) if k == 2 else curve(k), alt="A curve", k=(1, 4))
+    for k in (2, 3, 1):
+        tuner.at = [k - 1]
+        expected = web.runs(render(crowded(k) if k == 2 else curve(k)))
+        assert tuner.frame == expected
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        lambda ax: ax.set(yscale="symlog"),
+        lambda ax: ax.tick_params(labelsize=20),
+        lambda ax: ax.grid(False),
+        lambda ax: ax.set_axis_off(),
+        lambda ax: ax.set_xticks([0, 1], ["no", "yes"]),
+        lambda ax: ax.set_aspect("equal"),
+        lambda ax: ax.set_position([0.3, 0.3, 0.3, 0.3]),
+        lambda ax: ax.spines["top"].set_visible(False),
+        lambda ax: ax.set_title("A title", fontsize=30),
+        lambda ax: ax.figure.add_axes((0.9, 0.1, 0.05, 0.5)),
+        lambda ax: ax.twinx(),
+        lambda ax: ax.figure.text(0, 0, "a note"),
+        lambda ax: ax.set_facecolor("black"),
+    ],
+)
+def test_axes_that_were_changed_beyond_wiping_are_not_used_again(change):
+    def draw(k):
+        ax = curve(k)
+        if k == 2:
+            change(ax)
+        ax.set_title("The same")
+        return ax
+
+    kept = reuse.Kept()
+    reuse.drawn(draw, 2, lambda drawn: web.jpeg(render(drawn)), kept)
+    assert reuse.drawn(draw, 1, lambda drawn: web.jpeg(render(drawn)), kept) == web.jpeg(render(draw(1)))
+
+
+def test_axes_are_used_again_where_nothing_speaks_against_it():
+    kept, seen = reuse.Kept(), []
+    for k in (1, 2, 3):
+        reuse.drawn(lambda k: seen.append(curve(k)) or seen[-1], k, lambda drawn: b"", kept)
+    assert seen[0] is seen[1] is seen[2] and curve() is not seen[0]
+
+
+def test_two_axes_of_one_picture_are_never_the_same():
+    kept = reuse.Kept()
+    reuse.drawn(curve, 1, lambda drawn: b"", kept)
+    pairs = []
+    reuse.drawn(lambda k: pairs.extend([curve(k), curve(k)]) or pairs[0], 2, lambda drawn: b"", kept)
+    assert pairs[0] is not pairs[1]
+
+
+def noise(*shape):
+    return np.random.default_rng(1).integers(0, 256, shape, dtype=np.uint8)
+
+
+@pytest.mark.parametrize(
+    "picture",
+    [
+        np.full((300, 400), 7, np.uint8),
+        noise(20, 30, 3),
+        noise(1, 1),
+        render(curve()),
+        np.eye(256, dtype=np.uint8),
+    ],
+    ids=["one colour", "noise", "a pixel", "a plot", "a diagonal"],
+)
+def test_runs_of_one_colour_hold_a_picture_to_the_bit(picture):
+    expected = picture if picture.ndim == 3 else np.repeat(picture[..., None], 3, axis=-1)
+    assert np.array_equal(unrolled(web.runs(picture)), expected)
+
+
+def test_a_plot_is_sent_as_its_runs_and_a_photograph_as_jpeg_which_is_smaller():
+    assert web.quick(render(curve())) == web.runs(render(curve()))
+    photograph = noise(60, 80, 3)
+    assert web.quick(photograph) == web.jpeg(photograph)
+    assert len(web.quick(photograph)) < len(web.runs(photograph))
+
+
+def test_a_moved_slider_shows_a_plot_without_loss_from_the_first_one_on():
+    tuner = widgets.tune(lambda k=2: k, curve, alt="A curve", k=(1, 4))
+    assert np.array_equal(unrolled(tuner.frame), render(curve(2)))
+    tuner.at = [3]
+    assert np.array_equal(unrolled(tuner.frame), render(curve(4)))
+
+
+def decoded(data, scale, shape):
+    return np.frombuffer(data, "<f2").astype(np.float64).reshape(shape) / scale
+
+
+@pytest.mark.parametrize("top", [1e-20, 3.0, 65504.0, 1e9, 3e38])
+def test_half_floats_keep_eight_decades_of_any_radiance(top):
+    E = np.geomspace(top / 1e8, top, 200)
+    seen = decoded(*web.half(E), E.shape)
+    assert np.abs(seen / E - 1).max() < 2**-11 and np.isfinite(seen).all()
+
+
+def test_half_floats_of_darkness_are_zeros():
+    assert not np.any(decoded(*web.half(np.zeros(3)), 3))
+
+
+ROOM = np.arange(24 * 36 * 3, dtype=np.uint8).reshape(24, 36, 3)
+
+
+def test_wipe_and_blink_hand_over_every_pixel_as_it_is():
+    for widget in (
+        widgets.wipe(ROOM, 255 - ROOM, alt="A room"),
+        widgets.blink(ROOM, 255 - ROOM, alt="A room"),
+    ):
+        first, second = (iio.imread(io.BytesIO(picture)) for picture in widget.pictures)
+        assert np.array_equal(first, ROOM) and np.array_equal(second, 255 - ROOM)
+
+
+def test_wipe_takes_gray_beside_colour_and_plots_beside_plots():
+    assert len(widgets.wipe(ROOM, ROOM[..., 0], alt="A room").pictures) == 2
+    assert len(widgets.wipe(curve(1), curve(2), alt="Two curves").pictures) == 2
+
+
+def test_blink_takes_several_pictures_and_names_them():
+    blinker = widgets.blink(ROOM, ROOM, ROOM, alt="A room")
+    assert blinker.labels == ["A", "B", "C"] and len(blinker.pictures) == 3 and blinker.index == 0
+
+
+@pytest.mark.parametrize("shape", [(24, 36), (24, 36, 3)])
+def test_the_values_to_read_out_keep_three_digits(shape):
+    E = np.geomspace(1e-3, 1e5, np.prod(shape)).reshape(shape)
+    widget = widgets.wipe(ROOM, ROOM, alt="A room", values=[E, 2 * E])
+    for k, values in enumerate((E, 2 * E)):
+        assert np.allclose(decoded(widget.values[k], widget.scales[k], shape), values, rtol=5e-4)
+    assert widget.channels == [len(shape) * 2 - 3] * 2
+    assert len(widgets.blink(ROOM, ROOM, alt="A room", values=E).values) == 1
+
+
+def test_large_pictures_are_compared_by_means_of_their_pixels_and_values_too():
+    large = np.zeros((30, 4100), np.uint8)
+    widget = widgets.wipe(large, large, alt="A wide room", values=large)
+    assert iio.imread(io.BytesIO(widget.pictures[0])).shape[:2] == (10, 1366)
+    assert len(widget.values[0]) == 2 * 10 * 1366
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"b": ROOM[:9]}, r"expected pictures of one size, got \(24, 36\), \(9, 36\)"),
+        ({"labels": ["one"]}, "expected a label for each of 2 pictures"),
+        ({"labels": "ab"}, "expected a label for each of 2 pictures"),
+        ({"labels": ["a", ""]}, "expected a label for each of 2 pictures"),
+        ({"values": np.ones((9, 9))}, "expected finite values"),
+        ({"values": np.full((24, 36), np.nan)}, "expected finite values"),
+        ({"values": [np.ones((24, 36))] * 3}, "expected values for each of 2 pictures, or one array, got 3"),
+        ({"alt": ""}, "expected an alt text"),
+        ({"a": np.zeros((24, 36))}, "expected draw to return a uint8 picture"),
+    ],
+)
+@pytest.mark.parametrize("compare", [widgets.wipe, widgets.blink])
+def test_what_cannot_be_compared_is_refused(compare, given, message):
+    given = {"a": ROOM, "b": ROOM, "alt": "A room"} | given
+    with pytest.raises(ValueError, match=message):
+        compare(given.pop("a"), given.pop("b"), **given)
+
+
+@pytest.mark.parametrize("period", [0.1, np.nan, np.inf])
+def test_blinking_so_fast_that_it_can_harm_is_refused(period):
+    with pytest.raises(ValueError, match="faster flashes can harm"):
+        widgets.blink(ROOM, ROOM, alt="A room", period=period)
+
+
+@pytest.mark.parametrize("shape", [(40, 60), (40, 60, 3)])
+def test_the_brush_hands_over_the_radiance_map_and_starts_in_its_middle(shape):
+    E = np.geomspace(1e-2, 1e6, np.prod(shape)).reshape(shape)
+    brush = widgets.brush(E, alt="A wedge", size=64)
+    assert brush.shape == [40, 60, len(shape) * 2 - 3] and brush.centre == [20, 30]
+    assert np.allclose(decoded(brush.radiance, brush.scale, shape), E, rtol=5e-4)
+    assert iio.imread(io.BytesIO(brush.picture)).shape == (40, 60, 3)
+
+
+def test_a_large_map_is_brushed_by_means_of_its_pixels():
+    assert widgets.brush(np.ones((30, 1600)), alt="A wide wall").shape == [15, 800, 1]
+
+
+@pytest.mark.parametrize(
+    ("given", "message"),
+    [
+        ({"alt": " "}, "expected an alt text"),
+        ({"size": 63}, "expected size from 64 to 512, got 63"),
+        ({"magnification": 9}, "expected magnification from 1 to 8"),
+        ({"limit": 0.5}, "expected limit from 1 to 16"),
+        ({"bins": 1}, "expected bins from 2"),
+        ({"picture": ROOM}, "expected a picture of the size of E"),
+        ({"E": -np.ones((9, 9))}, "expected"),
+    ],
+)
+def test_a_brush_that_makes_no_sense_is_refused(given, message):
+    given = {"E": np.ones((9, 9)), "alt": "A wall"} | given
+    with pytest.raises(ValueError, match=message):
+        widgets.brush(given.pop("E"), **given)
+
+
+def test_a_slider_computes_on_one_thread():
+    """Whoever starts JupyterLab without telling the linear algebra still gets an answer at once."""
+    seen = []
+
+    def f(k=1):
+        seen.extend(pool["num_threads"] for pool in widgets.THREADS.info())
+        return np.full((4, 4), k, np.uint8)
+
+    widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
+    assert seen and set(seen) == {1}
+
+
+def test_garbage_is_looked_for_after_an_answer_and_not_in_the_midst_of_it():
+    seen = []
+
+    def f(k=1):
+        seen.append(gc.isenabled())
+        return square(k)
+
+    tuner = widgets.tune(f, lambda picture: picture, alt="A gray square", stored=2, k=(0, 3))
+    seen.clear()
+    tuner.at = [2]
+    assert seen == [False] and gc.isenabled()
+    tuner._picture = lambda at: 1 / 0
+    tuner.at = [3]
+    assert "ZeroDivisionError" in tuner.problem and gc.isenabled()
+
+
+def fixed(k):
+    """Draw a curve on axes that stay as they are, under a legend and a title of two lines."""
+    ax = plots.response(np.arange(256) * (k + 1) / 100, span=(0, 8), label=f"number {k}")
+    ax.annotate("here", (k, 40 * k))
+    ax.set_title(f"number {k}\nof some, gently", fontsize=9 + k)
+    return ax
+
+
+def running(k):
+    """Draw on axes whose ends, scales and colours change."""
+    ax = plots.axes()
+    ax.plot([1, 10 + 100 * k], [1, 2 + k])
+    ax.set(xscale="log" if k % 2 else "linear", xlabel=f"number {k}", facecolor="#E6E6E6" if k > 1 else "w")
+    return ax
+
+
+def beneath(k):
+    """Draw a picture, which lies under the grid."""
+    ax = plots.axes()
+    ax.imshow(np.full((4, 4), k), vmin=0, vmax=4, aspect="auto")
+    return ax
+
+
+def bare(k):
+    """Draw a picture in Axes without ticks, under a title."""
+    ax = plots.picture_axes(3, 2, (0, 0, 1, 0.8))
+    ax.imshow(np.full((4, 4), k), vmin=0, vmax=4, aspect="auto")
+    ax.set_title(f"gently {k}")
+    return ax
+
+
+def mapped(k):
+    """Draw two maps under names of their own, above a scale that changes at last."""
+    v = np.sin(np.arange(600.0).reshape(20, 30) / (k + 9))
+    return tones.maps({f"number {k}": v, "": -v}, label="sines", span=(-1, 1 + k // 2))
+
+
+def named(k):
+    """Draw a map of classes."""
+    return tones.maps(
+        {"": np.arange(600).reshape(20, 30) % (k + 1)}, label="case", names=["one", "two", "three", "four"]
+    )
+
+
+@pytest.mark.parametrize("draw", [fixed, running, beneath, bare, mapped, named])
+def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw):
+    kept = reuse.Kept()
+    for k in (0, 1, 1, 3, 2, 0):
+        assert np.array_equal(reuse.drawn(draw, k, render, kept), render(draw(k)))
+
+
+def test_the_ground_is_kept_where_the_axes_stay_and_painted_anew_where_they_change():
+    for draw, stays in ((fixed, True), (mapped, True), (named, True), (running, False)):
+        kept = reuse.Kept()
+        reuse.drawn(draw, 0, render, kept)
+        ((_, before),) = kept.ground.values()
+        reuse.drawn(draw, 1, render, kept)
+        ((_, after),) = kept.ground.values()
+        assert (before is after) == stays

@@ -1,0 +1,109 @@
+"""hdrlab.tonemap.chiu: scale, clamp, smoothing passes, halos."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.ndimage import convolve, gaussian_filter
+
+from hdrlab.core.steps import last
+from hdrlab.course.checks import laws
+from hdrlab.tonemap import chiu
+
+
+def window(bright=1000.0):
+    """Return a dim wall of 1 beside a bright window."""
+    return np.where(np.arange(160) < 80, 1.0, bright).astype(np.float32) * np.ones((100, 1), np.float32)
+
+
+@given(level=st.floats(1e-9, 1e9), headroom=st.floats(1, 64))
+def test_a_flat_scene_maps_to_one_over_headroom(level, headroom):
+    assert np.allclose(chiu.tonemap(np.full((9, 12), level), headroom=headroom), 1 / headroom, rtol=1e-3)
+
+
+def test_the_scale_is_one_over_k_times_the_blur():
+    L = laws.scene()
+    exact = 1 / (8 * gaussian_filter(np.minimum(L, np.sort(L, axis=None)[-2]).astype(np.float64), 3))
+    assert np.allclose(chiu.scale(L, headroom=8, sigma=3), exact, rtol=1e-3)
+
+
+def test_the_clamp_lets_nothing_above_white():
+    L = laws.scene()
+    s = chiu.scale(L, headroom=1, sigma=3)
+    assert np.any(s * L > 1) and np.all(chiu.clamp(s, L) * L <= 1 + 1e-6)
+    assert np.array_equal(chiu.clamp(s, L)[s * L < 0.99], s[s * L < 0.99])
+
+
+def test_a_pass_is_the_mean_with_weights_one_two_one():
+    s = laws.scene((30, 40))
+    kernel = np.outer([1, 2, 1], [1, 2, 1]) / 16
+    assert np.allclose(chiu.smooth(s), convolve(s, kernel, mode="nearest"), rtol=1e-5)
+    assert np.allclose(chiu.smooth(np.full((3, 4), 2.5, np.float32)), 2.5)
+
+
+def test_every_state_is_its_equation():
+    L = laws.scene()
+    states = list(chiu.tonemap_steps(L, headroom=2, sigma=4, passes=3))
+    assert len(states) == 4
+    assert np.array_equal(states[0].s, chiu.clamp(chiu.scale(L, headroom=2, sigma=4), L))
+    for before, after in zip(states, states[1:], strict=False):
+        assert np.array_equal(after.s, chiu.clamp(chiu.smooth(before.s), L))
+        assert np.array_equal(after.Ld, after.s * L)
+    assert np.allclose(last(states).Ld, chiu.tonemap(L, headroom=2, sigma=4, passes=3), atol=1e-6)
+
+
+def test_passes_make_the_scale_smoother():
+    L = laws.scene()
+    rough = [
+        np.abs(np.diff(np.log(state.s), axis=1)).mean()
+        for state in chiu.tonemap_steps(L, headroom=1.5, sigma=4)
+    ]
+    assert np.all(np.diff(rough) < 0)
+
+
+def test_the_dark_side_of_an_edge_is_held_back_and_the_bright_side_is_not_enough():
+    Ld = chiu.tonemap(window(), sigma=8, passes=0)[50]
+    assert Ld[78] < 0.01 < Ld[20] and Ld[81] > 1.5 * Ld[140]
+    assert Ld[20] == pytest.approx(1 / 8, rel=0.01) and Ld[140] == pytest.approx(1 / 8, rel=0.01)
+
+
+def test_the_halo_is_negative_on_the_dark_side_positive_on_the_bright_and_zero_far_away():
+    L = window()
+    state = last(chiu.tonemap_steps(L, sigma=8, passes=0))
+    halo = chiu.halo(L, state.s, sigma=8)[50]
+    assert halo[78] < -5 and 0.5 < halo[81] < 1.1
+    assert np.abs(halo[[10, 20, 140, 150]]).max() < 0.1
+
+
+def test_a_smooth_scene_has_no_halo():
+    x = np.linspace(0, 1, 200, dtype=np.float32)
+    L = np.exp(2 * x) * np.ones((120, 1), np.float32)
+    s = last(chiu.tonemap_steps(L, sigma=5)).s
+    assert np.abs(chiu.halo(L, s, sigma=5))[20:-20, 20:-20].max() < 0.05
+
+
+def test_a_hot_pixel_does_not_darken_its_neighbourhood():
+    L = laws.scene()
+    calm, hot = chiu.tonemap(L), chiu.tonemap(laws.hot_pixel(L))
+    assert np.abs(hot - calm)[laws.hot_pixel(L) == L].max() < 0.1
+
+
+def test_by_default_a_bright_half_stays_the_brighter_one_where_a_narrow_blur_makes_both_alike():
+    """Why the default is 8 % of the picture: beyond the halo, textured halves keep some of their contrast."""
+    texture = np.exp(0.2 * np.random.default_rng(0).standard_normal((96, 128)))
+    L = np.where(np.arange(128) < 64, 1.0, 30.0) * texture
+    narrow, wide = (chiu.tonemap(L, sigma=sigma) for sigma in (0.02 * 128, None))
+    ratios = [np.median(Ld[:, 64:80]) / np.median(Ld[:, 40:56]) for Ld in (narrow, wide)]
+    assert ratios[1] > 1.5 * ratios[0]
+    assert chiu.width(L) == pytest.approx(0.08 * 128)
+
+
+def test_more_headroom_is_a_darker_picture():
+    medians = [np.median(chiu.tonemap(laws.scene(), headroom=k)) for k in (2, 4, 8, 16)]
+    assert np.all(np.diff(medians) < 0)
+
+
+@pytest.mark.parametrize("knobs", [{"headroom": 0}, {"sigma": 0}, {"sigma": -1}, {"passes": -1}])
+def test_knobs_that_make_no_sense_are_refused(knobs):
+    with pytest.raises(ValueError, match="expected"):
+        chiu.tonemap(np.ones((3, 3)), **knobs)

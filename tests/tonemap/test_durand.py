@@ -1,0 +1,121 @@
+"""hdrlab.tonemap.durand: layers, compression, the fix where k is small."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.core import bilateral
+from hdrlab.core.colour import luminance
+from hdrlab.course.checks import laws
+from hdrlab.io import rgbe
+from hdrlab.tonemap import durand
+
+
+@given(level=st.floats(1e-9, 1e9))
+def test_a_flat_scene_has_no_detail_and_becomes_white(level):
+    flat = np.full((20, 30), level)
+    assert np.allclose(durand.tonemap(flat), 1, atol=0.03)
+    found = durand.layers(durand.logarithm(flat.astype(np.float32)), sigma_s=4)
+    assert np.abs(found.detail).max() < 0.012
+
+
+def test_the_logarithm_has_the_base_ten_and_black_is_a_millionth_of_the_median():
+    L = np.float32([[0, 1, 10, 1000, 10]])
+    assert np.allclose(durand.logarithm(L), [[-5, 0, 1, 3, 1]], atol=1e-5)
+
+
+def test_base_and_detail_make_the_logarithm_again():
+    lL = durand.logarithm(laws.scene())
+    found = durand.layers(lL, sigma_s=5)
+    assert np.allclose(found.base + found.detail, lL, atol=1e-6)
+
+
+@pytest.mark.parametrize("contrast", [10, 50, 200])
+def test_the_base_has_the_contrast_asked_for_between_its_percentiles(contrast):
+    base = durand.layers(durand.logarithm(laws.scene()), sigma_s=5).base
+    low, high = durand.spread(base, cut=0.01)
+    after = durand.compressed(base, low, high, contrast=contrast)
+    ends = durand.spread(after, cut=0.01)
+    assert ends[1] - ends[0] == pytest.approx(np.log10(contrast), rel=1e-4) and ends[1] == pytest.approx(
+        0, abs=1e-5
+    )
+
+
+def test_a_scene_of_little_contrast_is_not_stretched():
+    base = np.linspace(0, 0.5, 100, dtype=np.float32)[None]
+    assert np.allclose(durand.compressed(base, 0, 0.5, contrast=50), base - 0.5)
+
+
+def test_a_step_of_four_decades_becomes_the_contrast_and_its_edge_stays_sharp():
+    L = np.where(np.arange(120) < 60, 1.0, 1e4) * np.ones((80, 1))
+    Ld = durand.tonemap(L, contrast=50)
+    assert np.allclose(Ld[:, :60], 0.02, rtol=0.05) and np.allclose(Ld[:, 60:], 1, rtol=0.05)
+
+
+def test_detail_keeps_its_ratio_on_either_side_of_a_bright_edge():
+    bars = np.where(np.arange(200) % 8 < 4, 1.0, 1.3)
+    L = np.where(np.arange(160)[:, None] < 80, 500 * bars, 0.5 * bars)
+    Ld = durand.tonemap(L)
+    for rows in (slice(20, 70), slice(90, 140)):
+        part = Ld[rows, 40:160] if rows.start > 80 else durand.combined(*_compressed(L))[rows, 40:160]
+        assert np.percentile(part, 90) / np.percentile(part, 10) == pytest.approx(1.3, rel=0.03)
+
+
+def _compressed(L):
+    base, detail = durand.layers(durand.logarithm(L.astype(np.float32)), sigma_s=4)
+    return durand.compressed(base, *durand.spread(base)), detail
+
+
+def test_there_is_no_halo_where_chius_blur_has_one():
+    """Along a flat wall that ends at a bright window the picture is flat."""
+    L = np.where(np.arange(200) < 100, 1.0, 3000.0) * np.ones((100, 1))
+    wall = durand.tonemap(L)[50, :100]
+    assert wall.max() / wall.min() < 1.02
+
+
+def test_a_lonely_pixel_takes_the_base_of_its_neighbourhood():
+    lL = np.zeros((60, 80), np.float32)
+    lL[30, 40] = 3
+    found = bilateral.fast(lL, sigma_s=8, sigma_r=0.4)
+    base = durand.certain(found, sigma_s=8)
+    assert found.mean[30, 40] > 2.9 and base[30, 40] < 0.3
+    assert np.abs(np.delete(base.ravel(), 30 * 80 + 40)).max() < 0.01, "the others have enough of their kind"
+
+
+def test_where_all_is_certain_the_base_is_the_bilateral_mean_itself():
+    found = bilateral.fast(np.zeros((60, 80), np.float32), sigma_s=8, sigma_r=0.4)
+    assert durand.certain(found, sigma_s=8) is found.mean
+
+
+def test_the_weight_of_the_mean_rises_with_the_logarithm_of_k():
+    mean = np.zeros((40, 40), np.float32)
+    mean[20, 20] = 1
+    enough = (2 * np.pi * 16.0) ** 0.5
+    bases = []
+    for k in (1, enough**0.5, enough):
+        weight = np.full((40, 40), 1000, np.float32)
+        weight[20, 20] = k
+        bases.append(durand.certain(bilateral.Filtered(mean, weight), sigma_s=4.0)[20, 20])
+    assert bases[0] < 0.05 and bases[2] == 1 and bases[1] == pytest.approx((bases[0] + 1) / 2, abs=1e-4)
+
+
+def test_more_contrast_is_a_darker_shadow():
+    L = laws.scene()
+    shadows = [np.percentile(durand.tonemap(L, contrast=c), 5) for c in (5, 50, 500)]
+    assert shadows[0] > shadows[1] > shadows[2]
+
+
+@pytest.mark.parametrize(
+    "knobs",
+    [{"contrast": 1}, {"contrast": np.nan}, {"cut": 0.5}, {"cut": -0.1}, {"sigma_s": 0}, {"sigma_r": -1}],
+)
+def test_knobs_that_make_no_sense_are_refused(knobs):
+    with pytest.raises(ValueError, match="expected"):
+        durand.tonemap(np.ones((3, 3)), **knobs)
+
+
+@pytest.mark.parametrize("name", ["lobby", "venice"])
+def test_a_real_place_comes_out_well_exposed(shared, name):
+    Ld = durand.tonemap(luminance(rgbe.read(shared("hdri_cc0") / f"{name}.hdr")))
+    assert 0.05 < np.median(Ld) < 0.4 and np.mean(Ld == 1) < 0.03 and np.mean(Ld < 1e-3) < 0.01

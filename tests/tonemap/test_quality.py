@@ -1,0 +1,184 @@
+"""hdrlab.tonemap.quality: TMQI against its definition, its closed cases, and what must lower it."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from scipy.ndimage import gaussian_filter
+from scipy.stats import beta, norm
+
+from hdrlab.core.colour import to_8bit
+from hdrlab.course.checks import laws
+from hdrlab.tonemap import quality, reinhard
+
+
+def scene(shape=(192, 256), seed=0):
+    """Return luminance (H, W) of some decades with detail at all scales."""
+    rng = np.random.default_rng(seed)
+    lL = sum(2**k * gaussian_filter(rng.standard_normal(shape), 2**k) for k in range(5))
+    return np.exp(1.5 * lL).astype(np.float32)
+
+
+def shown(L):
+    return to_8bit(reinhard.tonemap(L))
+
+
+def defined_S(x, y):
+    """Return S window by window, the mean taken off before squaring: slow, and without a shortcut."""
+    g = np.exp(-0.5 * (np.arange(-5, 6) / 1.5) ** 2)
+    w, S = np.outer(g, g) / g.sum() ** 2, 1.0
+    for f, weight in zip((16, 8, 4, 2, 1), (0.0448, 0.2856, 0.3001, 0.2363, 0.1333), strict=True):
+        tau = 128 / (1.4 * 100 * 2.6 * (0.0192 + 0.114 * f) * np.exp(-((0.114 * f) ** 1.1)))
+        total = []
+        for i, j in np.ndindex(x.shape[0] - 10, x.shape[1] - 10):
+            a, b = x[i : i + 11, j : j + 11], y[i : i + 11, j : j + 11]
+            a, b = a - (w * a).sum(), b - (w * b).sum()
+            sa, sb, sab = np.sqrt((w * a * a).sum()), np.sqrt((w * b * b).sum()), (w * a * b).sum()
+            pa, pb = norm.cdf([sa, sb], loc=tau, scale=tau / 3)
+            seen = (2 * pa * pb + 0.01) / (pa**2 + pb**2 + 0.01)
+            total.append(seen * (sab + 10) / (sa * sb + 10))
+        S *= np.mean(total) ** weight
+        h, v = (side // 2 * 2 for side in x.shape)
+        x, y = ((z[:h:2, :v:2] + z[1:h:2, :v:2] + z[:h:2, 1:v:2] + z[1:h:2, 1:v:2]) / 4 for z in (x, y))
+    return S
+
+
+def test_structural_fidelity_is_its_definition():
+    L = scene((177, 179))
+    x, y = quality.spread(L), quality.gray(shown(L))
+    assert quality.structural_fidelity(x, y) == pytest.approx(defined_S(x, y), rel=1e-6)
+
+
+def test_naturalness_is_the_product_of_its_two_densities_over_their_peaks():
+    y = quality.gray(shown(scene((110, 121))))
+    d = np.mean([b.std() for row in np.split(y, 10) for b in np.split(row, 11, axis=1)]) / 64.29
+    P_d = beta.pdf(d, 4.4, 10.1) / beta.pdf(3.4 / 12.5, 4.4, 10.1)
+    P_m = norm.pdf(y.mean(), 115.94, 27.99) / norm.pdf(0, 0, 27.99)
+    assert quality.naturalness(y) == pytest.approx(P_m * P_d, rel=1e-9) and quality.naturalness(y) > 0.05
+
+
+@given(S=st.floats(0, 1), N=st.floats(0, 1))
+def test_quality_is_a_mean_of_powers(S, N):
+    assert quality.overall(S, N) == pytest.approx(0.8012 * S**0.3046 + 0.1988 * N**0.7088)
+    assert 0 <= quality.overall(S, N) <= 1 + 1e-12
+
+
+def test_the_eye_is_most_sensitive_at_eight_cycles_per_degree():
+    f = np.arange(0.5, 40, 0.5)
+    assert 7 <= f[np.argmax([quality.sensitivity(one) for one in f])] <= 9
+    assert quality.sensitivity(8) == pytest.approx(100, abs=3), "100 is what the paper scales it to"
+
+
+@pytest.mark.parametrize("f", quality.FREQUENCIES)
+def test_a_contrast_at_the_threshold_is_seen_half_of_the_time(f):
+    tau = quality.threshold(f)
+    sigma = np.array([0, tau, 4 / 3 * tau, 100 * tau])
+    assert np.allclose(quality.visible(sigma, f), [0.00135, 0.5, 0.84134, 1], atol=1e-5)
+
+
+def test_a_picture_has_the_structure_of_itself():
+    for shape in ((192, 256), (177, 33), (11, 11), (5, 7), (1, 1)):
+        y = quality.gray(shown(scene(shape)))
+        assert quality.structural_fidelity(y, y) == pytest.approx(1, abs=1e-12)
+
+
+def test_a_picture_of_strong_texture_shows_all_of_its_own_luminance():
+    picture = np.random.default_rng(0).integers(0, 256, (300, 300), dtype=np.uint8)
+    assert quality.tmqi(quality.gray(picture), picture).S > 0.998
+    assert quality.tmqi(quality.gray(picture)[::-1], picture).S < 0.3
+
+
+def test_what_is_missing_counts_as_much_as_what_is_invented():
+    x, y = quality.gray(shown(scene())), quality.gray(shown(scene(seed=1)))
+    assert quality.structural_fidelity(x, y) == pytest.approx(quality.structural_fidelity(y, x))
+
+
+def test_the_unit_and_the_black_level_of_the_scene_cancel():
+    L = scene()
+    known = quality.tmqi(L, shown(L))
+    for other in (L * 2.0**-20, L * 2.0**20, L.astype(np.float64) + 1):
+        assert quality.tmqi(other, shown(L)) == pytest.approx(known, abs=1e-4)
+
+
+@pytest.mark.parametrize(
+    "worse",
+    [
+        lambda y, k: gaussian_filter(y, k),
+        lambda y, k: np.clip(y, 0, 250 / 2**k),
+        lambda y, k: np.clip(y, 255 - 250 / 2**k, 255),
+        lambda y, k: y // 4 ** (k + 1) * 4 ** (k + 1),
+        lambda y, k: y + 25 * k * np.random.default_rng(0).standard_normal(y.shape),
+        lambda y, k: np.roll(y, 2**k, axis=0),
+    ],
+    ids=["blur", "burnt", "drowned", "few levels", "noise", "displaced"],
+)
+def test_damage_lowers_the_fidelity_the_more_the_worse(worse):
+    L = scene()
+    x, y = quality.spread(L), quality.gray(shown(L))
+    S = [quality.structural_fidelity(x, y)]
+    S += [quality.structural_fidelity(x, worse(y, k)) for k in (1, 2, 3)]
+    assert np.all(np.diff(S) < 0) and S[3] < 0.9 * S[0], S
+
+
+def test_a_negative_shows_no_structure_of_the_scene():
+    L = scene()
+    found = quality.tmqi(L, 255 - shown(L))
+    assert found.S == 0 and found.Q == pytest.approx(0.1988 * found.N**0.7088)
+
+
+def test_tone_mapping_beats_a_display_that_clips():
+    L = scene()
+    clipped = to_8bit(np.minimum(L / L.max() * 20, 1))
+    assert quality.tmqi(L, shown(L)).Q > quality.tmqi(L, clipped).Q + 0.05
+
+
+def test_the_usual_mean_and_contrast_are_natural_and_a_step_off_costs_what_the_density_says():
+    checker = np.where(np.indices((110, 110)).sum(axis=0) % 2, 1.0, -1.0)
+    y = 115.94 + 64.29 * 3.4 / 12.5 * checker
+    assert quality.naturalness(y) == pytest.approx(1, abs=1e-3)
+    assert quality.brightness(y + 27.99) == pytest.approx(np.exp(-0.5), abs=1e-3)
+    assert quality.contrast(y * 0 + 80) == 0 and quality.contrast(127.5 + 127.5 * checker) == 0
+
+
+@pytest.mark.parametrize(
+    ("shape", "scales"), [((176, 176), 5), ((175, 400), 4), ((21, 300), 1), ((22, 22), 2), ((3, 3), 1)]
+)
+def test_a_small_picture_has_fewer_scales_and_they_share_the_weight(shape, scales):
+    L = scene(shape)
+    x, y = quality.spread(L), quality.gray(shown(L))
+    found, weights = quality.scale_fidelities(x, y), quality.WEIGHTS[:scales]
+    assert len(found) == scales
+    log_S = np.dot(np.log(found), weights) / sum(weights)
+    assert quality.structural_fidelity(x, y) == pytest.approx(np.exp(log_S), rel=1e-3)
+
+
+@pytest.mark.parametrize("name", laws.RADIANCES)
+def test_quality_is_finite_and_from_0_to_1_for_any_radiance(name):
+    L = laws.RADIANCES[name]
+    noise = np.random.default_rng(0).integers(0, 256, L.shape, dtype=np.uint8)
+    for picture in (shown(L), noise, noise * 0, noise // 128 * 255, np.stack([noise] * 3, axis=-1)):
+        assert all(0 <= one <= 1 + 1e-12 for one in quality.tmqi(L, picture))
+
+
+def test_rounding_in_a_bright_even_place_is_no_structure():
+    """At 2^32 even the rounding of a squared float64 would be visible: it would be a sigma of 60."""
+    L = np.full((40, 60), 0.7, np.float32)
+    L[:, :5] = 0
+    L[:, 5:10] = 1
+    sigma = quality.deviations(quality.spread(L), quality.spread(L))[0]
+    assert np.all(sigma[:, 15:] == 0) and np.all(sigma[:, :10] > 1e6)
+
+
+@pytest.mark.parametrize(
+    ("L", "picture", "said"),
+    [
+        (np.ones((4, 5)), np.zeros((5, 4), np.uint8), "scene's"),
+        (np.ones((4, 5)), np.zeros((4, 5)), "uint8"),
+        (np.ones((4, 5)), np.zeros((4, 5, 4), np.uint8), "picture"),
+        (np.full((4, 5), np.nan), np.zeros((4, 5), np.uint8), "20 NaN"),
+        (np.ones((4, 5, 3)), np.zeros((4, 5), np.uint8), "luminance"),
+    ],
+)
+def test_what_cannot_be_compared_is_refused(L, picture, said):
+    with pytest.raises(ValueError, match=said):
+        quality.tmqi(L, picture)
