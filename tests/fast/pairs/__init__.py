@@ -1,9 +1,9 @@
 """Input for the pairs of lesson and fast function; a file for each module of `fast`, which is found here.
 
-Each file has PAIRS, {"function": (make, tolerance)}. make(kind, rng) returns (arguments, named arguments) for
-a kind of input, or None where such input has no meaning for this function. The tolerance is the largest
-difference that is allowed, absolute, or relative to the largest finite value of the lesson's answer, whichever
-is larger; exact is 0.
+Each file has PAIRS, {"function": (make, tolerance)}. make(kind, rng) returns (arguments, named arguments)
+for a kind of input, or None where such input has no meaning for this function. The tolerance is the largest
+allowed difference, absolute, or relative to the largest finite value of the lesson's answer, whichever is
+larger; exact is 0.
 """
 
 import pkgutil
@@ -17,7 +17,7 @@ KINDS = ("random", "flat", "tiny", "row", "clipped", "deep", "gray", "colour")
 
 
 def photographs(kind, rng, frames=3):
-    """Return photographs (P, H, W[, 3]) of a kind: `deep` has 16 bits, `tiny` 1 to 3 pixels, `row` one row."""
+    """Return photographs (P, H, W[, 3]) of a kind: `deep` has 16 bits, `tiny` three pixels."""
     shape = {"tiny": (1, 3), "row": (1, 24)}.get(kind, (23, 37))
     shape = (frames, *shape, *((3,) if kind == "colour" else ()))
     if kind == "flat":
@@ -29,7 +29,7 @@ def photographs(kind, rng, frames=3):
 
 
 def luminance(kind, rng):
-    """Return a luminance (H, W) float32 of a kind: `clipped` has large areas at one top, `deep` 12 decades."""
+    """Return a luminance (H, W) float32 of a kind: `clipped` has areas at one top, `deep` 12 decades."""
     shape = {"tiny": (1, 3), "row": (1, 24)}.get(kind, (23, 37))
     if kind == "flat":
         return np.full(shape, 0.7, np.float32)
@@ -38,7 +38,7 @@ def luminance(kind, rng):
 
 
 def compare(slow, quick, args, named, tolerance):
-    """Assert that both functions answer the same, or refuse with errors of one type; input stays as it was."""
+    """Assert that both functions answer the same, or both refuse; input stays as it was."""
     before = deepcopy((args, named))
     expected, came = (_answer(one, *deepcopy((args, named))) for one in (slow, quick))
     _same(came, expected, tolerance)
