@@ -18,11 +18,11 @@ from numpy.typing import ArrayLike, NDArray
 from benchmarks.experiments import Experiment, along, at_most, real, spread
 from hdrlab.capture import camera
 from hdrlab.capture.room import scenes
-from hdrlab.core import catalogue
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import response_rmse
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.io.emor import read_curves
+from hdrlab.pipeline import catalogue
 from hdrlab.response import debevec, families, mitsunaga
 
 Float = NDArray[np.float64]

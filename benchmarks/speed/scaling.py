@@ -7,9 +7,9 @@ from pathlib import Path
 from benchmarks import data
 from benchmarks.rows import Case, Row, Run, grows, within
 from hdrlab import pipeline
-from hdrlab.core import catalogue
 from hdrlab.core.colour import luminance
 from hdrlab.enhance import mertens
+from hdrlab.pipeline import catalogue
 from hdrlab.radiance.merge import merge
 
 SIZES = {"2 MP": data.SMALL, "12 MP": data.LARGE}

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import common
-from hdrlab.core import catalogue
+from hdrlab.pipeline import catalogue
 
 if TYPE_CHECKING:
-    from hdrlab.pipeline import Assembly
+    from hdrlab.pipeline.assembly import Assembly
 
 METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
 SUFFIXES = ".csv, .npz, .m (pfstools) or .luminance.csv (Luminance HDR)"

@@ -5,7 +5,7 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
-from hdrlab.core import catalogue
+from hdrlab.pipeline import catalogue
 
 WAY = click.option(
     "--way", type=click.Choice(["ratio", "chroma"]), default="ratio", help="Of colour, see below."

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import common, curves
-from hdrlab.core import catalogue
+from hdrlab.pipeline import catalogue
 
 if TYPE_CHECKING:
     from hdrlab.core.bracket import Bracket
-    from hdrlab.pipeline import Assembly
+    from hdrlab.pipeline.assembly import Assembly
 
 
 @click.command()

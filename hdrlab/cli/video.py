@@ -69,8 +69,8 @@ def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any
     """Return the response: of a file, or found in the frames of a turn."""
     import numpy as np
 
-    from hdrlab.core import catalogue
     from hdrlab.core.bracket import bracket
+    from hdrlab.pipeline import catalogue
 
     if isinstance(response, Path):
         return curves.given(response)()  # type: ignore[operator]  # of a file it is a function

@@ -9,12 +9,11 @@ n       256 or 65536, the number of levels a pixel value can take
 """
 
 from collections.abc import Sequence
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Array = NDArray[Any]
+from hdrlab.core.types import Array
 
 
 def describe(array: ArrayLike) -> str:

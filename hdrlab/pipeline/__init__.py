@@ -1,207 +1,28 @@
 """Where the chapters meet: a bracket of photographs -> a radiance map -> a picture.
 
-Each stage may be a method's name or a function of the same signature, so a reader's own plugs in wherever the
-library's does. `assemble_steps` yields what is known after each stage; `assemble` returns the last of it.
+Its functions are loaded when they are first used, so that the command line lists the methods at once.
 """
 
-from collections.abc import Callable, Iterator
+from importlib import import_module
 from typing import Any
 
-import numpy as np
-from numpy.typing import NDArray
-
-from hdrlab.core import catalogue, weights
-from hdrlab.core.bracket import Bracket
-from hdrlab.core.steps import last
-from hdrlab.diagnostics import consistency
-from hdrlab.diagnostics import exposure_times as timing
-from hdrlab.diagnostics.contradictions import contradictions, doubt
-from hdrlab.pipeline.assembly import Assembly, Method, Table
-from hdrlab.pipeline.pictures import develop, own_saturation
-from hdrlab.pipeline.registration import aligned, moved
-from hdrlab.radiance import flare as glare
-from hdrlab.radiance.deghosting import ghosts as moving
-from hdrlab.radiance.merge import METHODS, Merged, merge_seen
-
-__all__ = [
-    "Assembly",
-    "Method",
-    "aligned",
-    "assemble",
-    "assemble_steps",
-    "develop",
-    "moved",
-    "own_saturation",
-]
-
-STAGES = ("align", "response", "merge", "compare")
-GHOSTS = ("none", "regions", "reference")
-FLARE = ("none", "veil")
-WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
-    "hat": lambda g: weights.hat(len(g)),
-    "gaussian": lambda g: weights.gaussian(len(g)),
-    "flat": lambda g: weights.flat(len(g)),
-    "snr": weights.snr,
+PLACES = {
+    "Assembly": "assembly",
+    "Method": "assembly",
+    "aligned": "registration",
+    "moved": "registration",
+    "assemble": "stages",
+    "assemble_steps": "stages",
+    "STAGES": "stages",
+    "WEIGHTS": "stages",
+    "CONTRADICTION": "stages",
+    "develop": "pictures",
+    "own_saturation": "pictures",
 }
-CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
+__all__ = list(PLACES)  # names, all of them
 
 
-def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
-    """Return the radiance map of a bracket, with all that was found on the way.
-
-    Parameters
-    ----------
-    bracket : Bracket
-        At least two photographs of different exposure.
-    align : str or function
-        A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels or moves
-        (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is. "cerman" turns too and
-        "homography" takes scale and tilt; both compare light, and resample it, by a provisional response
-        out of the histograms. "auto" takes whichever lays the photographs on each other best, see
-        `align.auto`.
-    response : str or function
-        A method of `response`, "auto" (linear where the bracket is, else Debevec), or your own
-        `recover(images, times, *, valid) -> g`.
-    weight : {"gaussian", "hat", "flat", "snr"}
-        How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the frames of
-        real brackets contradict each other least.
-    method : {"log", "likelihood", "mean", "shot"}
-        How the frames are merged, see `radiance.merge`.
-    times : {"stated", "estimate"}
-        "estimate" corrects rough times by the pixels, where that makes the frames agree better: see
-        `diagnostics.exposure_times`.
-    ghosts : {"none", "regions", "reference"}
-        What becomes of what moved: it stays half transparent; in each region its best exposure leads, or the
-        middle photograph in all of them: see `radiance.deghosting.ghosts`.
-    flare : {"none", "veil"}
-        Whether light that the lens scattered is taken off, where the map shows it: see `radiance.flare`.
-
-    Returns
-    -------
-    Assembly
-        Read its `doubts` before you trust its `E`.
-
-    Raises
-    ------
-    ValueError
-        For brackets that hold fewer than two exposures or nothing that two of them see well, and for
-        names that no method has.
-
-    Examples
-    --------
-    >>> from hdrlab.capture import camera, scenes
-    >>> photographs = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], rng=1)
-    >>> assembly = assemble(photographs)
-    >>> assembly.E.shape, assembly.doubts
-    ((96, 144, 3), ())
-    """
-    return last(assemble_steps(bracket, **knobs))
-
-
-def assemble_steps(
-    bracket: Bracket,
-    *,
-    align: Method = "mtb",
-    response: Method = "auto",
-    weight: str = "gaussian",
-    method: str = "log",
-    times: str = "stated",
-    ghosts: str = "none",
-    flare: str = "none",
-) -> Iterator[Assembly]:
-    """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
-    _check_exposures(bracket)
-    if weight not in WEIGHTS:
-        raise ValueError(f"expected a weight out of {', '.join(WEIGHTS)}, got {weight!r}")
-    if method not in METHODS:
-        raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
-    if times not in ("stated", "estimate"):
-        raise ValueError(f"expected times out of stated, estimate, got {times!r}")
-    if ghosts not in GHOSTS or flare not in FLARE:
-        ways = f"ghosts out of {', '.join(GHOSTS)} and flare out of {', '.join(FLARE)}"
-        raise ValueError(f"expected {ways}, got {ghosts!r} and {flare!r}")
-    state = aligned(bracket, align, response)
-    yield state
-    if response == "auto":
-        response = "linear" if bracket.linear else "debevec"
-    w = WEIGHTS[weight]
-    if times == "estimate":
-        yield (state := retimed(state, response, w, method))
-    images, seconds, _, valid, _ = state.bracket
-    g = catalogue.method("response", response)(images, seconds, valid=valid)
-    yield (state := state._replace(stage="response", g=g))
-    E, seen = merge_seen(images, seconds, g, w(g), method=method, valid=valid)
-    yield (state := state._replace(stage="merge", E=E, seen=seen))
-    if ghosts != "none":
-        yield (state := unghosted(state, ghosts, w, method))
-    if flare != "none":
-        yield (state := unveiled(state))
-    yield compared(state, consistency.level_medians(images, seconds, E, valid=valid))
-
-
-def _check_exposures(bracket: Bracket) -> None:
-    """Raise a ValueError where a bracket holds fewer than two exposures."""
-    if len(set(bracket.times.tolist())) < 2:
-        exposures = zip(bracket.names, bracket.times, strict=True)
-        got = ", ".join(f"{name} {time:.6g} s" for name, time in exposures)
-        raise ValueError(f"expected photographs of at least two different exposures, got {got}")
-
-
-def unghosted(state: Assembly, way: str, w: Callable[[Table], Table], method: str) -> Assembly:
-    """Return the Assembly without the ghosts of what moved; the reference is the middle photograph."""
-    images, times, names, valid, _ = state.bracket
-    found = moving.remove(
-        images,
-        times,
-        state.g,
-        w(state.g),
-        merged=Merged(state.E, state.seen),
-        reference=len(images) // 2 if way == "reference" else None,
-        method=method,
-        valid=valid,
-    )
-    notes = (*state.notes, moving.note(found, names))
-    return state._replace(stage="ghosts", E=found.E, seen=found.seen, moving=found.labels, notes=notes)
-
-
-def unveiled(state: Assembly) -> Assembly:
-    """Return the Assembly without the light that the lens scattered."""
-    found = glare.remove(state.E)
-    return state._replace(
-        stage="flare", E=found.E, veiled=found.region, notes=(*state.notes, glare.note(found))
-    )
-
-
-def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], method: str) -> Assembly:
-    """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
-    images, stated, names, valid, _ = state.bracket
-    recover = catalogue.method("response", response)
-
-    def spread(times: NDArray[np.float64]) -> float:
-        g = recover(images, times, valid=valid)
-        E = merge_seen(images, times, g, w(g), method=method, valid=valid).E
-        return consistency.spread(consistency.level_medians(images, times, E, valid=valid))
-
-    known = recover(images, stated, valid=valid) if response == "linear" else None
-    found = timing.estimate(images, stated, spread, g=known, valid=valid)
-    bracket = state.bracket._replace(times=found.times)
-    notes, doubts = (*state.notes, timing.note(found, names)), (*state.doubts, *timing.doubts(found))
-    return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
-
-
-def compared(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
-    """Return the Assembly with what its frames say of each level, and what that puts in doubt."""
-    state = state._replace(stage="compare", medians=medians)
-    images, times, names, valid, _ = state.bracket
-    alone = "no level stands in two frames, so the times cannot be compared with the pixels"
-    if np.isnan(state.spread):
-        return state._replace(notes=(*state.notes, alone))
-    said = doubt(contradictions(images, times, valid=valid), names)
-    if not said and state.spread > CONTRADICTION:
-        stops = zip(names, consistency.deviations(medians), strict=True)
-        off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
-        said = (
-            f"the photographs contradict their exposure times by {state.spread:.2f} stops ({off}): "
-            "check the times, and that the camera did not change ISO, aperture or its processing"
-        )
-    return state._replace(doubts=(*state.doubts, said)) if said else state
+def __getattr__(name: str) -> Any:
+    if name not in PLACES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{PLACES[name]}"), name)

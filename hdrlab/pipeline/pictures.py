@@ -1,13 +1,14 @@
 """A radiance map becomes a picture, by an operator of `tonemap` or a function of yours."""
 
-import sys
 from collections.abc import Callable
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import catalogue, colour
+from hdrlab.core import colour
+from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 
 
@@ -51,5 +52,6 @@ def develop(
 
 
 def own_saturation(operator: Callable[..., Any]) -> float:
-    """Return the SATURATION that the module of an operator states, or 1."""
-    return float(getattr(sys.modules[operator.__module__], "SATURATION", 1.0))
+    """Return the SATURATION that the chapter's module of an operator states, or 1."""
+    module = operator.__module__.replace("hdrlab.fast.", "hdrlab.tonemap.")
+    return float(getattr(import_module(module), "SATURATION", 1.0))

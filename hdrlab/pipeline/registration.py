@@ -8,8 +8,9 @@ from numpy.typing import NDArray
 from hdrlab.align import auto, cerman, homography, judge, matches, mtb, pairs
 from hdrlab.align.resample import photographs
 from hdrlab.align.shift import as_offsets, shift
-from hdrlab.core import catalogue, warp
+from hdrlab.core import warp
 from hdrlab.core.bracket import Bracket
+from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Assembly, Method
 
 Found = pairs.Verdict | matches.Match

@@ -9,9 +9,9 @@ from PIL import Image
 from test_cli import hdrlab
 
 from hdrlab.capture.room import scenes
-from hdrlab.core import catalogue
 from hdrlab.io import radiance
 from hdrlab.io.terminal import elapsed
+from hdrlab.pipeline import catalogue
 
 
 @pytest.fixture

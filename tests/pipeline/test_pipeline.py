@@ -12,11 +12,10 @@ from hdrlab import pipeline
 from hdrlab.align import mtb
 from hdrlab.capture import camera, responses
 from hdrlab.capture.room import scenes
-from hdrlab.core import catalogue
 from hdrlab.core.bracket import bracket
 from hdrlab.core.colour import luminance
 from hdrlab.diagnostics import consistency
-from hdrlab.pipeline import assemble, assemble_steps, develop
+from hdrlab.pipeline import assemble, assemble_steps, catalogue, develop
 from hdrlab.radiance.bounds import Seen
 from hdrlab.radiance.merge import METHODS
 

@@ -3,8 +3,8 @@
 import pytest
 
 from hdrlab.capture.responses import RESPONSES
-from hdrlab.core import catalogue
 from hdrlab.course.checks import laws
+from hdrlab.pipeline import catalogue
 
 CAMERAS = {  # what a method assumes of its camera; of one that takes seconds, one does
     "linear": ["linear"],

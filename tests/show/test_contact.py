@@ -8,9 +8,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from PIL import Image
 
 from hdrlab import pipeline
-from hdrlab.core import catalogue, colour
+from hdrlab.core import colour
 from hdrlab.core.picture import Statistics, statistics
 from hdrlab.course.checks import laws
+from hdrlab.pipeline import catalogue
 from hdrlab.show.pages import contact
 from hdrlab.show.pages.sheet import GAP, Entry, draw, write_sheet
 from hdrlab.show.widgets.pictures import render

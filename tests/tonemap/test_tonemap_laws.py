@@ -13,8 +13,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from hdrlab.core import catalogue
 from hdrlab.course.checks import laws
+from hdrlab.pipeline import catalogue
 
 OPERATORS = {name: catalogue.method("tonemap", name) for name in catalogue.names("tonemap")}
 VARIED = {

@@ -13,10 +13,11 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab import pipeline
-from hdrlab.core import catalogue, colour
+from hdrlab.core import colour
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.picture import statistics
-from hdrlab.pipeline import Method
+from hdrlab.pipeline import catalogue
+from hdrlab.pipeline.assembly import Method
 from hdrlab.show.pages.sheet import SIDE, Entry, draw
 from hdrlab.tonemap import quality
 

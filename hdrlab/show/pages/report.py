@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike
 from hdrlab.core.arrays import describe
 from hdrlab.core.errors import Truth
 from hdrlab.io.files import replacing
-from hdrlab.pipeline import Assembly
+from hdrlab.pipeline.assembly import Assembly
 from hdrlab.show.pages import sections
 from hdrlab.show.pages.templates import templates
 from hdrlab.show.plots import figures

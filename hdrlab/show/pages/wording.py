@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.pipeline import CONTRADICTION
+from hdrlab.pipeline.stages import CONTRADICTION
 from hdrlab.radiance.bounds import Seen
 
 CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach

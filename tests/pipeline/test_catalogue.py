@@ -1,10 +1,12 @@
 """A method is a module with its chapter's verb, and is found by existing."""
 
 import inspect
+from importlib import import_module
+from importlib.util import find_spec
 
 import pytest
 
-from hdrlab.core import catalogue
+from hdrlab.pipeline import catalogue
 
 
 @pytest.mark.parametrize(
@@ -19,9 +21,18 @@ def test_a_chapter_lists_its_methods_and_nothing_else(chapter, some):
 
 
 def test_a_method_is_the_verb_of_its_module():
-    from hdrlab.response import debevec
+    from hdrlab.response import linear
 
-    assert catalogue.method("response", "debevec") is debevec.recover
+    assert catalogue.method("response", "linear") is linear.recover
+
+
+@pytest.mark.parametrize("chapter", catalogue.VERBS)
+def test_the_fast_verb_is_taken_where_there_is_one(chapter):
+    for name in catalogue.names(chapter):
+        fast = find_spec(f"hdrlab.fast.{name}") and import_module(f"hdrlab.fast.{name}")
+        own = import_module(f"hdrlab.{chapter}.{name}")
+        verb = catalogue.VERBS[chapter]
+        assert catalogue.method(chapter, name) is getattr(fast or own, verb, getattr(own, verb))
 
 
 def test_a_readers_own_function_is_taken_as_it_is():
