@@ -22,7 +22,7 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import response_rmse
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.io.emor import read_curves
-from hdrlab.pipeline import catalogue
+from hdrlab.pipeline import catalogue, recovery
 from hdrlab.response import debevec, families, mitsunaga
 
 Float = NDArray[np.float64]
@@ -54,7 +54,7 @@ def photographs(exposure: Float, brightness: Float, *, off: float, k: int) -> Br
 
 def named(name: str, bracket: Bracket) -> Float:
     """Return g by a method of the catalogue, as it is offered."""
-    return np.asarray(catalogue.method("response", name)(bracket.images, bracket.times))
+    return np.asarray(recovery.validated(name)(bracket.images, bracket.times))
 
 
 def by_ratios(bracket: Bracket) -> Float:

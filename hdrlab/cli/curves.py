@@ -115,6 +115,7 @@ def _one(
     state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None, rounds: int, seed: int
 ) -> None:
     from hdrlab.diagnostics import bootstrap, residuals
+    from hdrlab.pipeline import recovery
     from hdrlab.show.plots import calibration
 
     images, times, names, valid, _ = state.bracket
@@ -124,7 +125,7 @@ def _one(
         click.echo(f"warning: {doubt}", err=True)
     band = None
     if rounds:
-        method = catalogue.method("response", name)
+        method = recovery.validated(name)
         steps = bootstrap.bootstrap_steps(method, images, times, rounds=rounds, rng=seed, valid=valid)
         band = bootstrap.band(common.progress(steps, "bootstrap", rounds))
     r = residuals.residuals(images, times, g, valid=valid)

@@ -70,16 +70,14 @@ def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any
     import numpy as np
 
     from hdrlab.core.bracket import bracket
-    from hdrlab.pipeline import catalogue
+    from hdrlab.pipeline import recovery
 
     if isinstance(response, Path):
         return curves.given(response)()  # type: ignore[operator]  # of a file it is a function
     if len(frames) < len(turn):
         raise ValueError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
     taken = bracket(np.stack(frames), turn)
-    return catalogue.method("response", "space" if response == "auto" else response)(
-        taken.images, taken.times
-    )
+    return recovery.validated("space" if response == "auto" else response)(taken.images, taken.times)
 
 
 def pictures(maps: Iterator[Any], *, key: float, span: int) -> Iterator[Any]:

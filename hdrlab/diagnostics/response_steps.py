@@ -26,6 +26,7 @@ from scipy.linalg import null_space
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_times
+from hdrlab.core.tables import second_differences
 
 Float = NDArray[np.float64]
 W = weights.cut(weights.hat(), below=0.02)
@@ -35,7 +36,7 @@ SIGMA = 0.15 * np.log(
 CORE = 0.01 * np.log(2)  # patches that miss by less are no outliers, however well the others fit
 FEWEST = 5  # patches, weighted, without which a pair of frames says nothing
 MOST = 100  # patches a pair of frames speaks with: what they err in common does not average away
-CURVATURES = W[1:-1, None] * np.diff(np.eye(256), 2, axis=0)  # w(z) g''(z), as Debevec weights it
+CURVATURES = second_differences(W, 1)  # w(z) g''(z), as Debevec weights it
 
 
 class Fit(NamedTuple):

@@ -12,6 +12,7 @@ from hdrlab.core import warp
 from hdrlab.core.bracket import Bracket
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Assembly, Method
+from hdrlab.pipeline.recovery import validated
 
 Found = pairs.Verdict | matches.Match
 BY_LIGHT = {"auto": auto, "cerman": cerman, "homography": homography}  # these want times and a response
@@ -66,7 +67,7 @@ def provisional(bracket: Bracket, response: Method) -> NDArray[np.float64] | Non
     """
     if not callable(response):
         response = "linear" if response == "linear" or (response == "auto" and bracket.linear) else "debevec"
-    recover = catalogue.method("response", response)
+    recover = validated(response)
     try:
         return np.asarray(recover(bracket.images, bracket.times, valid=bracket.valid), np.float64)
     except ValueError:  # nothing that two photographs see well: alignment can do without

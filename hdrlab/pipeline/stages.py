@@ -16,7 +16,7 @@ from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.diagnostics.contradictions import contradictions, doubt
-from hdrlab.pipeline import catalogue
+from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, Table
 from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as glare
@@ -117,7 +117,7 @@ def assemble_steps(
     if times == "estimate":
         yield (state := retimed(state, response, w, method))
     images, seconds, _, valid, _ = state.bracket
-    g = catalogue.method("response", response)(images, seconds, valid=valid)
+    g = recovery.validated(response)(images, seconds, valid=valid)
     yield (state := state._replace(stage="response", g=g))
     E, seen = merge_seen(images, seconds, g, w(g), method=method, valid=valid)
     yield (state := state._replace(stage="merge", E=E, seen=seen))
@@ -164,7 +164,7 @@ def unveiled(state: Assembly) -> Assembly:
 def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], method: str) -> Assembly:
     """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
     images, stated, names, valid, _ = state.bracket
-    recover = catalogue.method("response", response)
+    recover = recovery.validated(response)
 
     def spread(times: NDArray[np.float64]) -> float:
         g = recover(images, times, valid=valid)

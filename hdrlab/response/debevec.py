@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
-from hdrlab.response.plausibility import checked
+from hdrlab.core.tables import make_monotone
 
 Float = NDArray[np.float64]
 
@@ -190,8 +190,7 @@ def recover(
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, photographs that hold no level seen in two exposures, and
-        times that they flatly contradict: see `plausible`.
+        For fewer than two photographs or two times, and photographs that hold no level seen in two exposures.
 
     References
     ----------
@@ -215,8 +214,8 @@ def recover(
     g = np.stack([gsolve(Z[..., c], np.log(times), smoothness, w).g for c in range(Z.shape[-1])], axis=-1)
     g = straight_toe(g, w)
     if monotone:
-        g = rising(g)
-    return checked(g.reshape(256, *stack.shape[3:]), stack, times, valid=valid)
+        g = make_monotone(g)
+    return g.reshape(256, *stack.shape[3:])
 
 
 def straight_toe(g: Float, w: Float) -> Float:
@@ -225,13 +224,6 @@ def straight_toe(g: Float, w: Float) -> Float:
     g = g.copy()
     g[:first] = g[first] + np.log((np.arange(first) + 0.5) / (first + 0.5))[:, None]
     return g
-
-
-def rising(g: Float) -> Float:
-    """Return g with every fall levelled, outward from the middle, which stays where the gauge put it."""
-    m = len(g) // 2
-    up, down = np.maximum.accumulate(g[m:], axis=0), np.minimum.accumulate(g[m::-1], axis=0)
-    return np.concatenate([down[::-1], up[1:]])
 
 
 def _checked(

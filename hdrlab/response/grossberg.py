@@ -22,10 +22,9 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_mask, as_stack, as_table, as_times
 from hdrlab.core.sampling import to_256
+from hdrlab.core.tables import make_monotone, second_differences
 from hdrlab.core.transfer import histogram, mid_step
 from hdrlab.response import linear
-from hdrlab.response.debevec import rising
-from hdrlab.response.plausibility import checked
 from hdrlab.response.polynomial import basis, curve
 
 Float = NDArray[np.float64]
@@ -110,7 +109,7 @@ def table(found: Equations, w: ArrayLike, *, smoothness: float = 2.0) -> Float:
     w = np.asarray(w, np.float64)
     n = len(w)
     data = found.weight[:, None] * (rows_at(found.T, n) - np.eye(n)[found.m])
-    bends = smoothness * w[1:-1, None] * np.diff(np.eye(n), 2, axis=0)
+    bends = second_differences(w, smoothness)
     A, b = (
         np.concatenate([data, bends]),
         np.concatenate([-found.weight * np.log(found.R), bends @ linear.curve(n)]),
@@ -172,8 +171,7 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, arrays that are no bracket, and
-        times that the photographs flatly contradict: see `plausible`.
+        For photographs whose histograms do not overlap between two exposures, and arrays that are no bracket.
 
     References
     ----------
@@ -207,5 +205,4 @@ def recover(
             if model == "table"
             else curve(polynomial(found, order=order))
         )
-    g = rising(np.stack(curves, axis=-1)).reshape(256, *stack.shape[3:])
-    return checked(g, stack, times, valid=valid)
+    return make_monotone(np.stack(curves, axis=-1)).reshape(256, *stack.shape[3:])

@@ -22,7 +22,6 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_stack, as_times
 from hdrlab.core.transfer import mid_step
 from hdrlab.response.grossberg import histograms
-from hdrlab.response.plausibility import checked
 
 Float = NDArray[np.float64]
 LOW = 12.0  # of 256 levels: below, rounding and noise bend a logarithm
@@ -109,8 +108,7 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs whose histograms do not overlap between two exposures, arrays that are no bracket, and
-        times that the photographs flatly contradict: see `plausible`.
+        For photographs whose histograms do not overlap between two exposures, and arrays that are no bracket.
 
     References
     ----------
@@ -134,5 +132,4 @@ def recover(
         exponent(list(ladders(h, times, starts=starts, low=low)), alpha=alpha)
         for h in histograms(stack, valid)
     ]
-    g = np.stack([curve(gamma, alpha=alpha) for gamma in gammas], axis=-1).reshape(256, *stack.shape[3:])
-    return checked(g, stack, times, valid=valid)
+    return np.stack([curve(gamma, alpha=alpha) for gamma in gammas], axis=-1).reshape(256, *stack.shape[3:])

@@ -32,7 +32,6 @@ from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
 from hdrlab.response.pairs import HIGHEST, Moments, average, both, held, moments
-from hdrlab.response.plausibility import checked
 from hdrlab.response.polynomial import basis, curve, misfit
 
 Float = NDArray[np.float64]
@@ -213,8 +212,7 @@ def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = No
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, photographs that share no levels worth using, and times
-        that they flatly contradict: see `plausible`.
+        For fewer than two photographs or two times, and photographs that share no levels worth using.
 
     References
     ----------
@@ -230,4 +228,4 @@ def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = No
     True
     """
     g = np.stack([curve(c) for c in calibrate(images, times, valid=valid, **knobs).c], axis=-1)
-    return checked(g.reshape(256, *np.shape(images)[3:]), images, times, valid=valid)
+    return g.reshape(256, *np.shape(images)[3:])

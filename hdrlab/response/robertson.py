@@ -27,9 +27,8 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank, to_256
 from hdrlab.core.steps import last
-from hdrlab.response.debevec import rising
+from hdrlab.core.tables import make_monotone, second_differences
 from hdrlab.response.joint import Table, table, turned
-from hdrlab.response.plausibility import checked
 
 Float = NDArray[np.float64]
 ENOUGH = 2**16  # pixels of a frame: an even choice of about so many has the ranks of all
@@ -83,7 +82,7 @@ def smoother(empty: NDArray[np.bool_], w: Float, smoothness: float) -> Float:
 
     Empty levels are left out of the first sum.
     """
-    bends = smoothness * w[1:-1, None] * np.diff(np.eye(len(w)), 2, axis=0)
+    bends = second_differences(w, smoothness)
     data = np.diag(np.where(empty, 1e-6, 1.0))
     A = data + bends.T @ bends  # five diagonals, of which the lower three tell all
     bands = [np.pad(np.diagonal(A, -k), (0, k)) for k in range(3)]
@@ -175,8 +174,7 @@ def recover(
     Raises
     ------
     ValueError
-        For photographs that hold no level seen in two exposures, for arrays that are no bracket, and for
-        times that the photographs flatly contradict: see `plausible`.
+        For photographs that hold no level seen in two exposures, and for arrays that are no bracket.
 
     References
     ----------
@@ -200,7 +198,7 @@ def recover(
 
     channels = chosen(stack, samples, choose, as_mask(valid, stack))
     f = np.stack([found(Z) for Z in channels], axis=-1)
-    return checked(rising(np.log(f)).reshape(256, *stack.shape[3:]), stack, times, valid=valid)
+    return make_monotone(np.log(f)).reshape(256, *stack.shape[3:])
 
 
 def chosen(

@@ -19,9 +19,8 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
+from hdrlab.core.tables import make_monotone
 from hdrlab.response import families
-from hdrlab.response.debevec import rising
-from hdrlab.response.plausibility import checked
 
 Float = NDArray[np.float64]
 
@@ -190,7 +189,7 @@ def recover(
     ------
     ValueError
         For fewer than two photographs or two times, a basis that is not of 256 levels, or photographs that
-        hold no level seen in two exposures, and times that they flatly contradict: see `plausible`.
+        hold no level seen in two exposures.
 
     References
     ----------
@@ -218,7 +217,7 @@ def recover(
     g = np.stack(
         [_one(Z[..., c], np.log(times), w / w.max(), space, noise) for c in range(Z.shape[-1])], axis=-1
     )
-    return checked(g.reshape(256, *stack.shape[3:]), stack, times, valid=valid)
+    return g.reshape(256, *stack.shape[3:])
 
 
 def _one(Z: NDArray[np.intp], B: Float, w: Float, space: Space, noise: float) -> Float:
@@ -228,4 +227,4 @@ def _one(Z: NDArray[np.intp], B: Float, w: Float, space: Space, noise: float) ->
         raise ValueError("expected samples seen well in two exposures, which tie levels together; got none")
     A, b = rows(Z, B, w, space)
     g = rebuild(likeliest(A / noise, b / noise, space.sd), space)
-    return rising(g - g[128])
+    return make_monotone(g - g[128])

@@ -304,7 +304,9 @@ RECOVERY = (
 CALIBRATION = (  # of those that ask the photographs
     refuses_one_photograph_and_times_that_are_all_alike,
     refuses_photographs_that_share_no_level,
+    answers_nonsense_with_a_rising_curve_or_an_error,
+)
+CONSISTENCY = (  # of a response that was validated against its photographs
     refuses_times_that_are_wrong_by_a_factor_of_100,
     refuses_frames_in_the_wrong_order,
-    answers_nonsense_with_a_rising_curve_or_an_error,
 )

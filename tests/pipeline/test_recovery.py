@@ -1,0 +1,39 @@
+"""A response that its photographs contradict is refused; one that a reader brings is taken as it is."""
+
+import numpy as np
+import pytest
+
+from hdrlab import pipeline
+from hdrlab.capture import camera
+from hdrlab.capture.responses import RESPONSES
+from hdrlab.course.checks import laws
+from hdrlab.pipeline import catalogue, recovery
+from hdrlab.response import debevec, linear
+
+CAMERAS = {"mann": ["gamma", "linear"], "marginal": ["film"]}
+METHODS = [name for name in catalogue.names("response") if name != "linear"]
+CASES = [(name, one) for name in METHODS for one in CAMERAS.get(name, sorted(RESPONSES))]
+
+
+@pytest.mark.parametrize("law", laws.CONSISTENCY, ids=lambda law: law.__name__)
+@pytest.mark.parametrize(("name", "response"), CASES)
+def test_every_recovery_by_name_is_validated(name, response, law):
+    law(recovery.validated(name), response)
+
+
+def test_assemble_refuses_times_that_the_photographs_contradict(decades):
+    taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64], response="film")
+    wrong = taken._replace(times=taken.times * [1, 1, 1, 10_000])
+    with pytest.raises(ValueError, match="expected times consistent with the images"):
+        pipeline.assemble(wrong, align="none", response="debevec")
+
+
+def test_linear_and_a_function_are_taken_as_they_are():
+    assert recovery.validated("linear") is linear.recover
+    assert recovery.validated(debevec.recover) is debevec.recover
+
+
+def test_a_validated_response_is_the_method_s_own(decades):
+    taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64])
+    g = recovery.validated("debevec")(taken.images, taken.times)
+    assert np.array_equal(g, debevec.recover(taken.images, taken.times))
