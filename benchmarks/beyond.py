@@ -69,7 +69,7 @@ def bracket(name: str, step: int) -> movers.Moving:
     place = layers(name, SHAPE)
     times = camera.times_around(place.radiance, 3, stops=3)
     at = movers.path(3, (0, step))
-    return movers.shoot(place.radiance, figure(place), at, times, rng=0, **WELL)
+    return movers.shoot(place.radiance, figure(place), at, times, camera.Camera(**WELL), rng=0)
 
 
 def film(name: str, step: int, *, pan: int = 1) -> Film:
@@ -85,7 +85,7 @@ def film(name: str, step: int, *, pan: int = 1) -> Film:
         )
         truth.append(seen)
         hidden.append(mask > 0)
-        frames.append(camera.shoot(truth[-1], turn[[j % 2]], rng=rng, **WELL).images[0])
+        frames.append(camera.shoot(truth[-1], turn[[j % 2]], camera.Camera(**WELL), rng=rng).images[0])
     return Film(np.stack(frames), turn, np.stack(truth), ~np.any(hidden, axis=0))
 
 
@@ -170,7 +170,9 @@ def split(_: Path) -> dict[str, list[float]]:
         room = colour.luminance(place.radiance) / unit
         walker = movers.Figure(colour.luminance(place.mover) / unit, place.mask)
         at = movers.path(3, (0, step))
-        taken = movers.shoot(room, walker, at, e[::-1], response="linear", bits=16, rng=0, **WELL)
+        taken = movers.shoot(
+            room, walker, at, e[::-1], camera.Camera(response="linear", bits=16, **WELL), rng=0
+        )
         start = process_time()
         E = splitter.merge(splitter.shoot(taken.moments[1], e, bits=16, **WELL), e)
         seconds += process_time() - start

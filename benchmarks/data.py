@@ -46,9 +46,7 @@ def photographs(folder: Path, size: Size = SMALL, *, radius: int = 0) -> Bracket
         shot = camera.shoot(
             E,
             times,
-            response=RESPONSE,
-            full_well=FULL_WELL,
-            read_noise=READ_NOISE,
+            camera.Camera(response=RESPONSE, full_well=FULL_WELL, read_noise=READ_NOISE),
             offsets=moves(radius),
             rng=1,
         )

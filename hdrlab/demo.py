@@ -19,8 +19,7 @@ from hdrlab.show.pages.report import write_report
 
 STEPS = 9
 OPERATOR = "reinhard"
-RESPONSE = "film"
-NOISE = {"full_well": 60_000.0, "read_noise": 6.0, "hot": 2e-5}
+CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=2e-5)
 
 
 def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
@@ -31,7 +30,7 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     yield f"scene      a chapel with stained glass, {scenes.decades(scene):.1f} decades"
     times = camera.times_around(scene)
     shaken = camera.shake(len(times), rng=rng)
-    bracket = camera.shoot(scene, times, response=RESPONSE, offsets=shaken, rng=rng, **NOISE)  # type: ignore[arg-type]
+    bracket = camera.shoot(scene, times, CAMERA, offsets=shaken, rng=rng)
     yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
     for assembly in pipeline.assemble_steps(bracket):
         yield f"{assembly.stage:<10} {_said(assembly)}"
@@ -41,9 +40,10 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
         write_radiance(out / f"radiance{suffix}", assembly.E)
     write_picture(out / "picture.png", picture)
     yield f"files      radiance.hdr, .exr, .pfm and picture.png in {out}"
-    seen = camera.views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
-    truth = Truth(seen, responses.true_g(RESPONSE), shaken)
-    recipe = {"tonemap": OPERATOR, "seed": seed, "camera": RESPONSE, **NOISE}
+    light = camera.views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
+    truth = Truth(light, responses.true_g(CAMERA.response), shaken)
+    noise = {name: getattr(CAMERA, name) for name in ("full_well", "read_noise", "hot")}
+    recipe = {"tonemap": OPERATOR, "seed": seed, "camera": CAMERA.response, **noise}
     page = write_report(out, assembly, picture, recipe=recipe, truth=truth)
     yield f"report     {page}"
 

@@ -69,7 +69,11 @@ from hdrlab.show.widgets import pictures
 room = scenes.room((240, 320))
 moved = camera.shake(5, radius=9, rng=3)
 bracket = camera.shoot(
-    room, 2.0 ** np.arange(-8, 2, 2), offsets=moved, sensitivity=1 / 16, full_well=2e4, read_noise=5, rng=3
+    room,
+    2.0 ** np.arange(-8, 2, 2),
+    camera.Camera(sensitivity=1 / 16, full_well=2e4, read_noise=5),
+    offsets=moved,
+    rng=3,
 )
 grays = bracket.images[..., 1]
 pictures.picture(

@@ -40,7 +40,10 @@ from hdrlab.show.widgets import pictures
 # %%
 room = scenes.room((240, 320))
 bracket = camera.shoot(
-    room, 2.0 ** np.arange(-10, 3, 2), sensitivity=1 / 16, full_well=20_000, read_noise=5, rng=4
+    room,
+    2.0 ** np.arange(-10, 3, 2),
+    camera.Camera(sensitivity=1 / 16, full_well=20_000, read_noise=5),
+    rng=4,
 )
 grays = bracket.images[..., 1]
 Z, B = sampling.by_grid(grays, 60), np.log(bracket.times)

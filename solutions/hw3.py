@@ -28,7 +28,10 @@ from hdrlab.show.widgets import pictures
 # %%
 room = scenes.room((240, 320))
 bracket = camera.shoot(
-    room, 2.0 ** np.arange(-9, 1, 2), response="gamma", sensitivity=1 / 16, full_well=2e4, read_noise=5, rng=5
+    room,
+    2.0 ** np.arange(-9, 1, 2),
+    camera.Camera(response="gamma", sensitivity=1 / 16, full_well=2e4, read_noise=5),
+    rng=5,
 )
 g = responses.true_g("gamma")
 pictures.picture(

@@ -57,7 +57,7 @@ from hdrlab.show.widgets import pictures
 FOLDER = ""
 room = scenes.room((240, 320))
 bracket = camera.shoot(
-    room, 2.0 ** np.arange(-9, 2, 2), sensitivity=1 / 16, full_well=2e4, read_noise=5, rng=6
+    room, 2.0 ** np.arange(-9, 2, 2), camera.Camera(sensitivity=1 / 16, full_well=2e4, read_noise=5), rng=6
 )
 if FOLDER:
     bracket = photos.read_bracket(Path(FOLDER))

@@ -87,6 +87,8 @@ def seven_frames(decades):
     def shoot(response, shape=(120, 160), bits=8):
         E = decades(shape)
         times = camera.times_around(E, 7, stops=2)
-        return E, camera.shoot(E, times, response=response, bits=bits, full_well=50_000, read_noise=5, rng=7)
+        return E, camera.shoot(
+            E, times, camera.Camera(response=response, bits=bits, full_well=50_000, read_noise=5), rng=7
+        )
 
     return shoot

@@ -54,7 +54,11 @@ def pair(i: int, E: Array, moves: Array, rng: np.random.Generator, stops: float 
     stops = rng.uniform(1, 3) if stops is None else stops
     times = camera.times_around(E, 2, stops=stops)
     taken = camera.shoot(
-        E, times, offsets=moves, full_well=FULL_WELL, read_noise=READ_NOISE, rng=rng, response="film"
+        E,
+        times,
+        camera.Camera(full_well=FULL_WELL, read_noise=READ_NOISE, response="film"),
+        offsets=moves,
+        rng=rng,
     )
     return Case(taken.images, taken.times, motion.frames(moves, E.shape)[0])
 
@@ -100,9 +104,9 @@ def moving(i: int) -> Case:
     moved = np.where(np.arange(SHAPE[1])[:, None] < strip, E, other)
     times = camera.times_around(E, 2, stops=rng.uniform(1, 3))
     both = [
-        camera.shoot(one, [t], full_well=FULL_WELL, read_noise=READ_NOISE, rng=dark, response="film").images[
-            0
-        ]
+        camera.shoot(
+            one, [t], camera.Camera(full_well=FULL_WELL, read_noise=READ_NOISE, response="film"), rng=dark
+        ).images[0]
         for one, t in zip((moved, E), times, strict=True)
     ]
     return Case(np.stack(both), times, None)

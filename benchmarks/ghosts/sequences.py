@@ -22,7 +22,7 @@ from hdrlab.scenes.places import PLACES, resample
 FRAMES = 7
 WHO = ("visitor", "bright ball", "dark ball")
 SEQUENCES = tuple(product(PLACES, WHO))
-CAMERA = {"full_well": 50_000, "read_noise": 5.0}
+CAMERA = camera.Camera(full_well=50_000, read_noise=5.0)
 SHAPE = (256, 384)
 STILL = (*PLACES, "room")
 RNG = 1
@@ -40,7 +40,7 @@ def sequence(place: str, who: str, shape: tuple[int, int] = SHAPE) -> movers.Mov
         "dark ball": (movers.ball(shape, (150 * k, 192 * k), 24 * k, light), (0, 22 * k)),
     }[who]
     at, times = movers.path(FRAMES, step), camera.times_around(E, FRAMES, stops=2)
-    return movers.shoot(E, figure, at, times, rng=RNG, **CAMERA)
+    return movers.shoot(E, figure, at, times, CAMERA, rng=RNG)
 
 
 @cache
@@ -52,7 +52,7 @@ def radiance(place: str) -> NDArray[np.float32]:
 def still(place: str, shape: tuple[int, int] = SHAPE, *, rng: int = RNG) -> Bracket:
     """Return a bracket of a place from a tripod, in which nothing moves."""
     E = resample(radiance(place), shape)
-    return camera.shoot(E, camera.times_around(E, FRAMES, stops=2), rng=rng, **CAMERA)  # type: ignore[arg-type]
+    return camera.shoot(E, camera.times_around(E, FRAMES, stops=2), CAMERA, rng=rng)
 
 
 def shaken(place: str, seed: int) -> Iterator[tuple[str, Bracket]]:
@@ -79,4 +79,4 @@ def shaken(place: str, seed: int) -> Iterator[tuple[str, Bracket]]:
 
 def photograph(E: Array, t: float, rng: int) -> Array:
     """Return one photograph of a scene."""
-    return camera.shoot(E, [t], rng=rng, **CAMERA).images[0]  # type: ignore[arg-type]
+    return camera.shoot(E, [t], CAMERA, rng=rng).images[0]

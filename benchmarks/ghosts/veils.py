@@ -66,7 +66,7 @@ def photographed(item: tuple[str, Spread]) -> Left:
 def through(F: Array) -> tuple[Array, Array]:
     """Return a scene as ten photographs show it, in its own unit, and how each pixel is known."""
     times = 0.9 / F.max() * 4.0 ** np.arange(10)
-    taken = camera.shoot(F, times, rng=1, **CAMERA)  # type: ignore[arg-type]
+    taken = camera.shoot(F, times, CAMERA, rng=1)
     found = merge_seen(taken.images, taken.times, true_g("film"), weights.gaussian())
     return found.E * np.median(F / found.E), found.seen
 

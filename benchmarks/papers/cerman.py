@@ -79,8 +79,8 @@ def figure3(E: ArrayLike | None = None, *, rng: int = 0) -> Figure3:
     the paper's does.
     """
     G = irradiance(E)
-    clean = camera.shoot(G, TIMES, response="cubic", rng=rng)
-    noisy = camera.shoot(G, TIMES, response="cubic", gray_noise=1.0, rng=rng)
+    clean = camera.shoot(G, TIMES, camera.Camera(response="cubic"), rng=rng)
+    noisy = camera.shoot(G, TIMES, camera.Camera(response="cubic", gray_noise=1.0), rng=rng)
     hat, gaussian = weights.cut(weights.hat()), weights.cut(weights.gaussian(), below=0.02)
     cut = {name: gaussian if name == "Debevec, histograms" else hat for name in METHODS}
     return Figure3(
@@ -98,7 +98,7 @@ def error(name: str, bracket: Bracket, w: Array, *, order: int = 10) -> float:
 
 def darkest_pair(E: ArrayLike, *, scheme: str, truth: float = 4.0, rng: int = 0) -> float:
     """Return the ratio found between the two darkest photographs of a linear camera [Cerman06 sec. 5.3]."""
-    taken = camera.shoot(E, [1, truth], response="linear", gray_noise=1.0, rng=rng)
+    taken = camera.shoot(E, [1, truth], camera.Camera(response="linear", gray_noise=1.0), rng=rng)
     return ratios.ratio(*taken.images, scheme=scheme)
 
 

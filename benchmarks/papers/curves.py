@@ -44,8 +44,7 @@ def photographs(exposure: Float, brightness: Float, *, off: float, k: int) -> Br
     taken = camera.shoot(
         scene(),
         camera.times_around(scene(), FRAMES, stops=STOPS),
-        response=lambda X: np.interp(X, exposure, brightness),
-        gray_noise=NOISE,
+        camera.Camera(response=lambda X: np.interp(X, exposure, brightness), gray_noise=NOISE),
         rng=k,
     )
     factors = 1 + off * np.random.default_rng([1, k]).uniform(-1, 1, FRAMES)

@@ -2,15 +2,15 @@
 
 E      radiance      (H, W[, 3]), cd/m^2
 EV     exposure value, stops, at the camera's ISO: T = F^2 / 2^EV seconds
-B      brightness    (H, W) in [0, 1]: what the sensor saw, 1 where it was full
-w      weight        (H, W), whom the metering mode asks
+B      brightness    (H, W) in [0, 1]: on the sensor, 1 where it was full
+w      weight        (H, W), of the metering mode
 B_pre  the reading, sum of w B;  B_opt  what it should be
 
 One step is the formula EV_opt = EV_pre + log2 B_pre - log2 B_opt, except that it knows of full pixels. They
-stay full until the exposure falls far enough, so the plain formula needs many shots where a window is seen.
+stay full until the exposure falls far enough, so the plain formula needs many shots where a window is bright.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -21,27 +21,36 @@ from hdrlab.capture.metering import GRAY, At, Weight, correction, reading, weigh
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
 
-NEAR = 1 / 12  # stops: the loop ends when it asks for less than this
+# stops: the loop ends when it asks for less than this
+STOP_TOLERANCE = 1 / 12
 
 
 class State(NamedTuple):
     """One shot of the loop."""
 
     EV: float  # stops, what it was taken with
-    B: NDArray[np.float32]  # (H, W), what the sensor saw
-    w: Weight  # (H, W), whom the mode asked
-    B_pre: float  # what they said
+    B: NDArray[np.float32]  # (H, W), on the sensor
+    w: Weight  # (H, W), of the mode
+    B_pre: float  # the reading
     EV_opt: float  # stops, what to take the next one with
 
 
-def see(
-    E: ArrayLike, EV: float, *, aperture: float = 8.0, iso: float = 100.0, **sensor: Any
+def measure_brightness(
+    E: ArrayLike,
+    EV: float,
+    *,
+    aperture: float = 8.0,
+    iso: float = 100.0,
+    full_well: float = np.inf,
+    read_noise: float = 0.0,
+    rng: camera.Seed = 0,
 ) -> NDArray[np.float32]:
     """Return B (H, W), the luminance of one linear photograph with T = F^2 / 2^EV, where 1 is full."""
-    fills = float(exposure.saturating_luminance(1.0, F=aperture, S=iso))
-    shot = camera.shoot(
-        luminance(E), [aperture**2 / 2.0**EV], response="linear", bits=16, sensitivity=1 / fills, **sensor
+    s = 1 / float(exposure.saturating_luminance(1.0, F=aperture, S=iso))
+    linear = camera.Camera(
+        response="linear", bits=16, sensitivity=s, full_well=full_well, read_noise=read_noise
     )
+    shot = camera.shoot(luminance(E), [aperture**2 / 2.0**EV], linear, rng=rng)
     return shot.images[0].astype(np.float32) / 65535
 
 
@@ -52,17 +61,17 @@ def expose_steps(
     at: At = (0.5, 0.5),
     start: float = 12.0,
     target: float = GRAY,
-    most: int = 8,
-    **camera: Any,
+    max_shots: int = 8,
+    photograph: Callable[[ArrayLike, float], NDArray[np.float32]] = measure_brightness,
 ) -> Iterator[State]:
     """Yield the State of each shot, until the next one would differ by less than 1/12 stop."""
     EV = start
-    for _ in range(most):
-        B = see(E, EV, **camera)
+    for _ in range(max_shots):
+        B = photograph(E, EV)
         w = weights(B, mode, at=at)
         EV_opt = EV - correction(B, w, target)
         yield State(EV, B, w, reading(B, w), EV_opt)
-        if abs(EV_opt - EV) < NEAR:
+        if abs(EV_opt - EV) < STOP_TOLERANCE:
             return
         EV = EV_opt
 
@@ -77,9 +86,8 @@ def expose(E: ArrayLike, mode: str = "centre", **knobs: Any) -> float:
     at : (down, right) of the spot or focus point, as parts of the picture
     start : EV of the first shot
     target : B_opt
-    most : shots at most
-    aperture, iso : F and S of the camera
-    full_well, read_noise, rng : of the sensor, as `camera.shoot` takes them
+    max_shots : shots at most
+    photograph : (E, EV) -> B, the camera; `measure_brightness` with another aperture, ISO speed or noise
 
     Returns
     -------

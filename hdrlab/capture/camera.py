@@ -6,7 +6,7 @@ X        exposure at the sensor, float32: 1 fills the well
 M        brightness, 0 to 1
 Z        pixel level, 0 to 2^bits - 1
 offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference;
-         or moves (P, 3, 3), see `capture.motion`
+         or homographies (P, 3, 3), see `capture.motion`
 
 The light goes through the camera in this order, one function each, those of the sensor in `capture.sensor`:
 
@@ -14,6 +14,8 @@ The light goes through the camera in this order, one function each, those of the
 
 A `Sensor` puts a converter with a black level after the readout, and a Bayer mosaic before the photons.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,7 +36,7 @@ from hdrlab.capture.sensor import (
     readout,
 )
 from hdrlab.core import mosaic
-from hdrlab.core.arrays import as_radiance, as_times, describe
+from hdrlab.core.arrays import Array, as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
 
@@ -73,32 +75,14 @@ def times_around(
     return suitable * 2.0 ** (stops * (np.arange(count) - (count - 1) / 2))
 
 
-def shoot(
-    E: ArrayLike,
-    times: ArrayLike,
-    *,
-    response: str | Curve | Response | None = "film",
-    bits: int = 8,
-    sensitivity: float = 1.0,
-    full_well: float = np.inf,
-    read_noise: float = 0.0,
-    gray_noise: float = 0.0,
-    hot: float = 0.0,
-    vignetting: float = 0.0,
-    sensor: Sensor | None = None,
-    bayer: bool = False,
-    white: ArrayLike = (1.0, 1.0, 1.0),
-    offsets: ArrayLike | None = None,
-    rng: Seed = 0,
-) -> Bracket:
-    """Photograph a scene once per exposure time.
+@dataclass(frozen=True, kw_only=True)
+class Camera:
+    """A camera: its sensor, its lens and its response.
 
-    Parameters
+    Attributes
     ----------
-    E : (H, W) or (H, W, 3), radiance, any linear unit
-    times : (P,) seconds, in any order: the photographs come sorted from short to long
     response : f, a name in `responses.RESPONSES` (None: "linear"), a Response, or a rising function on arrays
-        of [0, 1]; `responses.true_g` tells what a calibration should find
+        of [0, 1]; `responses.true_g` returns what a calibration should find
     bits : 8 or 16
     sensitivity : s, exposure per (radiance unit x second): E t = 1 / s fills the well
     full_well : electrons a pixel holds, which sets the shot noise; infinitely many have none. A phone's pixel
@@ -109,11 +93,75 @@ def shoot(
         full well, the same ones in every photograph
     vignetting : share of the light that the lens loses in the corners, 0 to 1
     sensor : Sensor with a converter, whose full_well and read_noise count then instead of those above
-    bayer : the sensor sees one colour per pixel, R G / G B, and the others are interpolated; wants a sensor
+    bayer : the sensor has one colour per pixel, R G / G B, and the others are interpolated; wants a sensor
     white : gains (3,) of the channels, as of `sensor.balance`; want a sensor
+
+    Raises
+    ------
+    ValueError
+        For numbers that mean nothing, or do not fit together.
+
+    Examples
+    --------
+    >>> Camera(response="gamma", full_well=20_000, read_noise=5).bits
+    8
+    """
+
+    response: str | Curve | Response | None = "film"
+    bits: int = 8
+    sensitivity: float = 1.0
+    full_well: float = np.inf
+    read_noise: float = 0.0
+    gray_noise: float = 0.0
+    hot: float = 0.0
+    vignetting: float = 0.0
+    sensor: Sensor | None = None
+    bayer: bool = False
+    white: ArrayLike = (1.0, 1.0, 1.0)
+
+    def __post_init__(self) -> None:
+        if self.bits not in (8, 16):
+            raise ValueError(f"expected 8 or 16 bits, got {self.bits}")
+        if not (0 < self.sensitivity < np.inf and self.full_well > 0):
+            got = f"{self.sensitivity} and {self.full_well}"
+            raise ValueError(f"expected a positive sensitivity and full well, got {got}")
+        if not (0 <= self.read_noise < np.inf and 0 <= self.gray_noise < np.inf and 0 <= self.hot <= 1):
+            got = f"read_noise {self.read_noise}, gray_noise {self.gray_noise}, hot {self.hot}"
+            raise ValueError(f"expected noise of at least 0 and a share of hot pixels from 0 to 1, got {got}")
+        if not 0 <= self.vignetting <= 1:
+            raise ValueError(f"expected a vignetting from 0 to 1, got {self.vignetting}")
+        if self.read_noise > 0 and self.full_well == np.inf:
+            raise ValueError("expected a finite full_well for read_noise, which is in electrons; got inf")
+        if self.sensor is None and self.coloured:
+            got = f"{self.bayer} and {self.white!r}"
+            raise ValueError(f"expected a sensor for a mosaic and white balance, got {got}")
+        if self.sensor is not None and self.full_well < np.inf:
+            raise ValueError("expected the well and its noise in the sensor or beside it, got both")
+
+    @property
+    def coloured(self) -> bool:
+        """Whether it has a mosaic or balances white, for which it needs three channels."""
+        return self.bayer or bool(np.any(np.asarray(self.white) != 1))
+
+
+def shoot(
+    E: ArrayLike,
+    times: ArrayLike,
+    camera: Camera = Camera(),
+    *,
+    offsets: ArrayLike | None = None,
+    rng: Seed = 0,
+) -> Bracket:
+    """Photograph a scene once per exposure time.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3), radiance, any linear unit
+    times : (P,) seconds, in any order: the photographs come sorted from short to long
+    camera : Camera
     offsets : (P, 2), (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
         relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
-        saw is `motion.views(E, offsets)[j]`. Moves (P, 3, 3), as of `motion.hand`, turn and tilt it too.
+        saw is `motion.views(E, offsets)[j]`. Homographies (P, 3, 3), as of `motion.hand`, turn and tilt too.
     rng : seed, or a generator, which is advanced
 
     Returns
@@ -124,74 +172,47 @@ def shoot(
     Raises
     ------
     ValueError
-        For radiance, times, offsets or knobs that mean nothing; it says what was expected and what came.
+        For radiance, times or offsets that mean nothing; it says what was expected and what came.
 
     Examples
     --------
-    >>> b = shoot([[0.1, 0.5, 3.0]], [2.0, 1.0], response="linear")
+    >>> b = shoot([[0.1, 0.5, 3.0]], [2.0, 1.0], Camera(response="linear"))
     >>> b.times, b.images[:, 0]
     (array([1., 2.]), array([[ 26, 128, 255],
            [ 51, 255, 255]], dtype=uint8))
     """
-    E, f = as_radiance(E), as_response(response).f
-    times = np.atleast_1d(np.asarray(times, np.float64))
+    E, times = as_radiance(E), np.atleast_1d(np.asarray(times, np.float64))
     times = as_times(times, max(times.size, 1))
     moves = np.zeros((len(times), 2), int) if offsets is None else np.asarray(offsets)
     if moves.shape[:1] != times.shape:
         raise ValueError(f"expected {len(times)} offsets, one per time, got {describe(moves)}")
-    _check(bits, sensitivity, full_well, read_noise, gray_noise, hot, vignetting)
-    if sensor is None:
-        if bayer or np.any(np.asarray(white) != 1):
-            raise ValueError(f"expected a sensor for a mosaic and white balance, got {bayer} and {white!r}")
-    elif full_well < np.inf:
-        raise ValueError("expected the well and its noise in the sensor or beside it, got both")
-    elif E.ndim == 2 and (bayer or np.any(np.asarray(white) != 1)):
+    if E.ndim == 2 and camera.coloured:
         raise ValueError(f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}")
-
-    rng = np.random.default_rng(rng)
-    order = np.argsort(times, kind="stable")
-    seen = views(E, moves[order])
-    stuck = rng.random(seen[0].shape) < hot
-    images = []
-    for view, time in zip(seen, times[order], strict=True):
-        X = exposure(_dimmed(view, vignetting), time, sensitivity=sensitivity)
-        if sensor is not None:
-            X = _through(np.where(stuck, 4, X), sensor, bayer, white, rng)
-        elif full_well < np.inf:
-            X = readout(photons(X, full_well=full_well, rng=rng), read_noise=read_noise, rng=rng) / full_well
-        M = f(np.clip(X, 0, 1) if sensor is not None else np.where(stuck, 1, np.clip(X, 0, 1)))
-        images.append(quantise(grain(M, gray_noise=gray_noise, bits=bits, rng=rng), bits=bits))
-    return bracket(np.stack(images), times[order], linear=as_response(response) is as_response("linear"))
+    rng, order = np.random.default_rng(rng), np.argsort(times, kind="stable")
+    light = views(E, moves[order])
+    stuck = rng.random(light[0].shape) < camera.hot
+    images = [
+        photograph(view, time, camera, stuck, rng) for view, time in zip(light, times[order], strict=True)
+    ]
+    linear = as_response(camera.response) is as_response("linear")
+    return bracket(np.stack(images), times[order], linear=linear)
 
 
-def _dimmed(E: Float, vignetting: float) -> Float:
-    bright = falloff(E.shape, vignetting)
-    return E * (bright if E.ndim == 2 else bright[..., None]) if vignetting else E
-
-
-def _through(X: Float, sensor: Sensor, bayer: bool, white: ArrayLike, rng: np.random.Generator) -> Float:
-    """Return X as a sensor with a converter reports it: through its filters, digitised, developed."""
-    seen = mosaic.sample(X, mosaic.tile(mosaic.BAYER, X.shape[:2])) if bayer else X
-    return develop(read(seen, sensor, rng=rng), sensor, white=white, bayer=bayer)
-
-
-def _check(
-    bits: int,
-    sensitivity: float,
-    full_well: float,
-    read_noise: float,
-    gray_noise: float,
-    hot: float,
-    vignetting: float,
-) -> None:
-    if bits not in (8, 16):
-        raise ValueError(f"expected 8 or 16 bits, got {bits}")
-    if not (0 < sensitivity < np.inf and full_well > 0):
-        raise ValueError(f"expected a positive sensitivity and full well, got {sensitivity} and {full_well}")
-    if not (0 <= read_noise < np.inf and 0 <= gray_noise < np.inf and 0 <= hot <= 1):
-        got = f"read_noise {read_noise}, gray_noise {gray_noise}, hot {hot}"
-        raise ValueError(f"expected noise of at least 0 and a share of hot pixels from 0 to 1, got {got}")
-    if not 0 <= vignetting <= 1:
-        raise ValueError(f"expected a vignetting from 0 to 1, got {vignetting}")
-    if read_noise > 0 and full_well == np.inf:
-        raise ValueError("expected a finite full_well for read_noise, which is counted in electrons; got inf")
+def photograph(
+    E: Float, time: float, camera: Camera, stuck: NDArray[np.bool_], rng: np.random.Generator
+) -> Array:
+    """Return Z of one photograph, whose hot pixels are `stuck` at a full well."""
+    bright = falloff(E.shape, camera.vignetting)
+    X = exposure(E * (bright if E.ndim == 2 else bright[..., None]), time, sensitivity=camera.sensitivity)
+    if camera.sensor is not None:
+        X = np.where(stuck, 4, X)
+        if camera.bayer:
+            X = mosaic.sample(X, mosaic.tile(mosaic.BAYER, X.shape[:2]))
+        Z = read(X, camera.sensor, rng=rng)
+        X = develop(Z, camera.sensor, white=camera.white, bayer=camera.bayer)
+    elif camera.full_well < np.inf:
+        N = photons(X, full_well=camera.full_well, rng=rng)
+        X = readout(N, read_noise=camera.read_noise, rng=rng) / camera.full_well
+    X = np.clip(X, 0, 1)
+    M = as_response(camera.response).f(X if camera.sensor is not None else np.where(stuck, 1, X))
+    return quantise(grain(M, gray_noise=camera.gray_noise, bits=camera.bits, rng=rng), bits=camera.bits)

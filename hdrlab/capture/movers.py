@@ -9,7 +9,7 @@ E_j    radiance that frame j saw         light_j + (1 - mask_j) E
 The embedded places bring a visitor: `Figure(place.mover, place.mask)` of `scenes.layers`.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -126,10 +126,10 @@ def shoot(
     figure: Figure,
     at: ArrayLike,
     times: ArrayLike,
+    model: camera.Camera = camera.Camera(),  # noqa: B008  it is frozen
     *,
     offsets: ArrayLike | None = None,
     rng: camera.Seed = 0,
-    **knobs: Any,
 ) -> Moving:
     """Photograph a scene once per exposure time, with a figure that stands elsewhere each time.
 
@@ -139,9 +139,9 @@ def shoot(
     figure : Figure of the same size
     at : (P, 2) int, where the figure stands in each photograph: `path` has straight ways
     times : (P,) seconds, in any order: photographs, moments and masks come sorted from short to long
+    model : Camera, without hot pixels: each photograph is a shot of its own
     offsets : (P, 2) int, where the camera stands: see `camera.shoot`
     rng : seed, or a generator, which is advanced
-    **knobs : of `camera.shoot`, but for `hot`: each photograph is a shot of its own
 
     Returns
     -------
@@ -172,13 +172,13 @@ def shoot(
             raise ValueError(f"expected {what} ({len(seconds)}, 2) of whole pixels, got {describe(one)}")
     if not np.any(np.all(moves == 0, axis=1)):
         raise ValueError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
-    if "hot" in knobs:
+    if model.hot:
         raise ValueError("expected no hot pixels: here each photograph would have others")
     rng, still = np.random.default_rng(rng), camera.views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
     moments, masks, shots = [], [], []
     for j in np.argsort(seconds, kind="stable"):
         seen, mask = (camera.views(one, moves)[j] for one in moment(E, figure, places[j]))
-        shots.append(camera.shoot(seen, seconds[j], rng=rng, **knobs))
+        shots.append(camera.shoot(seen, seconds[j], model, rng=rng))
         moments.append(seen)
         masks.append(mask)
     images, taken = (np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times"))

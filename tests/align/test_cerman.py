@@ -24,8 +24,8 @@ def room():
 def shoot(E, moves, *, stops=2.0, response="film", bits=8, rng=1, count=None):
     """Return photographs of a moved camera, and the moves in their own pixels."""
     times = camera.times_around(E, count or len(moves), stops=stops)
-    noise = dict(full_well=20_000, read_noise=5, rng=rng)
-    taken = camera.shoot(E, times, response=response, bits=bits, offsets=moves, **noise)
+    model = camera.Camera(response=response, bits=bits, full_well=20_000, read_noise=5)
+    taken = camera.shoot(E, times, model, offsets=moves, rng=rng)
     return taken, motion.frames(moves, E.shape)
 
 
@@ -40,7 +40,7 @@ def off(found, truth, shape=SHAPE):
 
 @pytest.mark.parametrize("response", ["film", "srgb", "linear"])
 def test_two_exposures_come_to_one_scale(room, response):
-    taken = camera.shoot(room, camera.times_around(room, 2, stops=2), response=response)
+    taken = camera.shoot(room, camera.times_around(room, 2, stops=2), camera.Camera(response=response))
     dark, bright = (image[..., 1] for image in taken.images)
     (X, *_) = light.pair(bright, dark, true_g(response), 4.0)
     kept = np.isfinite(X).all(axis=0)
@@ -51,7 +51,9 @@ def test_two_exposures_come_to_one_scale(room, response):
 @pytest.mark.parametrize("response", ["film", "srgb"])
 def test_without_times_the_ratio_comes_out_of_the_histograms(room, response):
     times = camera.times_around(room, 2, stops=1.5)
-    dark, bright = camera.shoot(room, times, response=response, offsets=[[4, -6], [0, 0]]).images[..., 1]
+    dark, bright = camera.shoot(
+        room, times, camera.Camera(response=response), offsets=[[4, -6], [0, 0]]
+    ).images[..., 1]
     assert light.ratio(dark, bright, true_g(response)) == pytest.approx(times[1] / times[0], rel=0.06)
 
 

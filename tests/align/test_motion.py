@@ -63,7 +63,7 @@ def test_shifts_written_as_moves_cut_the_same_views_as_offsets(E):
 def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_back():
     room = scenes.room((120, 170))
     moves = [warp.turn(room.shape, 2.5, (3, 5)), np.eye(3)]
-    taken = camera.shoot(room, [1e-3, 1.001e-3], response="linear", bits=16, offsets=moves)
+    taken = camera.shoot(room, [1e-3, 1.001e-3], camera.Camera(response="linear", bits=16), offsets=moves)
     own = motion.frames(moves, room.shape)
     rows, columns = warp.inside(own, taken.images.shape[1:3])
     still = taken.images[1][rows, columns].astype(float)

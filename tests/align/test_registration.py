@@ -18,7 +18,7 @@ from hdrlab.pipeline import registration
 from hdrlab.radiance.bounds import Seen
 
 SHAPE = (150, 220)
-CAMERA = dict(full_well=20_000, read_noise=5, rng=2)
+CAMERA = camera.Camera(full_well=20_000, read_noise=5)
 HAND = dict(radius=4, degrees=2, rng=6)
 
 
@@ -29,7 +29,7 @@ def room():
 
 def shoot(E, moves):
     """Return photographs two stops apart of a moved camera, and the moves in their own pixels."""
-    taken = camera.shoot(E, camera.times_around(E, len(moves), stops=2), offsets=moves, **CAMERA)
+    taken = camera.shoot(E, camera.times_around(E, len(moves), stops=2), CAMERA, offsets=moves, rng=2)
     return taken, motion.frames(moves, E.shape)
 
 

@@ -40,7 +40,9 @@ def walk():
     place = layers("street", (48, 72))
     times = camera.times_around(place.radiance, 3, stops=3)
     figure = movers.Figure(place.mover, place.mask)
-    return movers.shoot(place.radiance, figure, movers.path(3, (0, 8)), times, full_well=20000, read_noise=5)
+    return movers.shoot(
+        place.radiance, figure, movers.path(3, (0, 8)), times, camera.Camera(full_well=20000, read_noise=5)
+    )
 
 
 def test_patches_are_the_windows_of_a_picture():
@@ -143,7 +145,9 @@ def test_a_pixel_clipped_in_a_longer_exposure_cannot_be_a_source_for_a_shorter_o
 
 def test_a_still_scene_is_the_scene():
     place = layers("workshop", (48, 72)).radiance
-    shots = camera.shoot(place, camera.times_around(place, 3, stops=3), full_well=20000, read_noise=5)
+    shots = camera.shoot(
+        place, camera.times_around(place, 3, stops=3), camera.Camera(full_well=20000, read_noise=5)
+    )
     H = patches.synthesise(shots.images, shots.times, G)
     E = merge(shots.images, shots.times, G)
     assert psnr(H, place) > psnr(E, place) - 0.5

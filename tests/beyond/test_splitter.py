@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.beyond import splitter
-from hdrlab.capture import movers
+from hdrlab.capture import camera, movers
 from hdrlab.core import mosaic
 from hdrlab.core.colour import luminance
 from hdrlab.radiance.merge import merge
@@ -68,8 +68,8 @@ def test_a_moving_scene_leaves_no_ghost_where_a_bracket_does():
     """Three sensors at one moment, and three photographs one after another with the same shares of light."""
     street = layers("street", (64, 96))
     room, figure = luminance(street.radiance) / 8, movers.Figure(luminance(street.mover) / 8, street.mask)
-    linear = {"response": "linear", "bits": 16} | WELL
-    taken = movers.shoot(room, figure, [[0, -5], [0, 5], [0, 15]], E_SHARES[::-1], **linear)
+    linear = camera.Camera(response="linear", bits=16, **WELL)
+    taken = movers.shoot(room, figure, [[0, -5], [0, 5], [0, 15]], E_SHARES[::-1], linear)
     truth = taken.moments[1]
     back = splitter.merge(splitter.shoot(truth, E_SHARES, **WELL), E_SHARES)
     g = np.log(np.maximum(np.arange(65536), 0.5) / 32768)

@@ -33,7 +33,7 @@ def film():
     for j in range(count):
         seen, _ = movers.moment(place.radiance, movers.Figure(place.mover, place.mask), at[j])
         truth.append(camera.views(seen, pan)[j])
-        shot = camera.shoot(truth[-1], t[j : j + 1], full_well=20000, read_noise=5, rng=rng)
+        shot = camera.shoot(truth[-1], t[j : j + 1], camera.Camera(full_well=20000, read_noise=5), rng=rng)
         frames.append(shot.images[0])
     return np.stack(frames), t, np.stack(truth)
 
@@ -104,7 +104,10 @@ def test_a_still_film_is_as_good_as_a_bracket():
     E = layers("workshop", (48, 72)).radiance
     t = camera.times_around(E, 2, stops=4)
     rng = np.random.default_rng(0)
-    frames = [camera.shoot(E, [t[j % 2]], full_well=20000, read_noise=5, rng=rng).images[0] for j in range(3)]
+    frames = [
+        camera.shoot(E, [t[j % 2]], camera.Camera(full_well=20000, read_noise=5), rng=rng).images[0]
+        for j in range(3)
+    ]
     times = [t[j % 2] for j in range(3)]
     E_ = video.merge(frames, times, G)[1]
     assert psnr(E_, E) > psnr(merge(np.stack(frames), times, G), E) - 0.5

@@ -102,7 +102,7 @@ def test_one_photograph_of_the_grays_gives_the_response(name):
 def test_many_exposures_give_the_response_without_any_reflectance(name):
     values = chart.LUMINOUS / 100
     picture, corners = drawn(values)
-    taken = camera.shoot(picture, TIMES, response=name, full_well=50_000, read_noise=5, rng=3)
+    taken = camera.shoot(picture, TIMES, camera.Camera(response=name, full_well=50_000, read_noise=5), rng=3)
     M = chart.read_bracket(taken.images, corners)
     found = chart.ground_truth(M, taken.times)
     inverse = responses.as_response(name).inverse

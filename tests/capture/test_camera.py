@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hdrlab.capture import camera, responses
-from hdrlab.capture.camera import shoot
+from hdrlab.capture.camera import Camera, shoot
 
 CURVES = sorted(responses.RESPONSES)
 
@@ -113,7 +113,7 @@ def test_quantising_rounds_to_the_nearest_level_and_clamps(bits, dtype):
 def test_a_photograph_without_noise_inverts_to_its_exposure_within_half_a_level(response, bits):
     E = ramp(1e-4, 1)
     f, _ = responses.as_response(response)
-    Z = shoot(E, [1.0], response=response, bits=bits).images[0]
+    Z = shoot(E, [1.0], Camera(response=response, bits=bits)).images[0]
     assert np.all(np.abs(Z - f(E.astype(np.float64)) * (2**bits - 1)) <= 0.51)
 
 
@@ -129,9 +129,12 @@ def test_g_of_every_level_agrees_with_the_exposures_that_gave_it():
 @given(k=st.integers(-6, 6), seed=st.integers(0, 99))
 def test_more_light_and_more_time_make_the_same_photograph(k, seed):
     E, factor = ramp(), 2.0**k
-    knobs = dict(full_well=5000, read_noise=4, rng=seed)
-    brighter, longer = shoot(factor * E, [0.25, 1], **knobs), shoot(E, factor * np.array([0.25, 1]), **knobs)
-    faster = shoot(E, [0.25, 1], sensitivity=factor, **knobs)
+    knobs = dict(full_well=5000, read_noise=4)
+    brighter, longer = (
+        shoot(factor * E, [0.25, 1], Camera(**knobs), rng=5),
+        shoot(E, factor * np.array([0.25, 1]), Camera(**knobs), rng=5),
+    )
+    faster = shoot(E, [0.25, 1], Camera(sensitivity=factor, **knobs), rng=5)
     assert np.array_equal(brighter.images, longer.images) and np.array_equal(longer.images, faster.images)
 
 
@@ -148,9 +151,9 @@ def test_light_beyond_a_full_well_is_white_and_none_is_black():
 def test_any_order_of_times_gives_the_same_photographs_sorted():
     E = ramp(shape=(40, 50))
     times, offsets = np.array([4.0, 0.25, 1.0]), np.array([[0, 3], [2, -1], [0, 0]])
-    knobs = dict(full_well=9000, read_noise=3, hot=0.01, rng=5)
-    a = shoot(E, times, offsets=offsets, **knobs)
-    b = shoot(E, times[[1, 2, 0]], offsets=offsets[[1, 2, 0]], **knobs)
+    knobs = dict(full_well=9000, read_noise=3, hot=0.01)
+    a = shoot(E, times, Camera(**knobs), offsets=offsets, rng=5)
+    b = shoot(E, times[[1, 2, 0]], Camera(**knobs), offsets=offsets[[1, 2, 0]], rng=5)
     assert a.times.tolist() == [0.25, 1.0, 4.0] == b.times.tolist()
     assert np.array_equal(a.images, b.images)
 
@@ -158,41 +161,45 @@ def test_any_order_of_times_gives_the_same_photographs_sorted():
 @pytest.mark.parametrize("shape", [(12, 17), (12, 17, 3)])
 @pytest.mark.parametrize(("bits", "dtype"), [(8, np.uint8), (16, np.uint16)])
 def test_frames_are_of_the_scenes_shape_and_of_the_bits_asked_for(shape, bits, dtype):
-    taken = shoot(np.ones(shape), [0.1, 0.2], bits=bits)
+    taken = shoot(np.ones(shape), [0.1, 0.2], Camera(bits=bits))
     assert taken.images.shape == (2, *shape) and taken.images.dtype == dtype
     assert taken.valid is None and not taken.linear
 
 
 def test_a_linear_camera_says_so():
-    assert shoot(ramp(), [1.0], response="linear").linear
-    assert shoot(ramp(), [1.0], response=None).linear
+    assert shoot(ramp(), [1.0], Camera(response="linear")).linear
+    assert shoot(ramp(), [1.0], Camera(response=None)).linear
 
 
 def test_a_seed_decides_the_noise_and_a_generator_moves_on():
     knobs = dict(full_well=3000, read_noise=5, gray_noise=0.5)
     assert np.array_equal(
-        shoot(ramp(), [1.0], rng=3, **knobs).images, shoot(ramp(), [1.0], rng=3, **knobs).images
+        shoot(ramp(), [1.0], Camera(**knobs), rng=3).images,
+        shoot(ramp(), [1.0], Camera(**knobs), rng=3).images,
     )
-    assert np.any(shoot(ramp(), [1.0], rng=3, **knobs).images != shoot(ramp(), [1.0], rng=4, **knobs).images)
+    assert np.any(
+        shoot(ramp(), [1.0], Camera(**knobs), rng=3).images
+        != shoot(ramp(), [1.0], Camera(**knobs), rng=4).images
+    )
     rng = np.random.default_rng(3)
-    first, second = (shoot(ramp(), [1.0], rng=rng, **knobs).images for _ in range(2))
+    first, second = (shoot(ramp(), [1.0], Camera(**knobs), rng=rng).images for _ in range(2))
     assert np.any(first != second)
 
 
 def test_frames_of_one_exposure_differ_in_their_noise():
-    a, b = shoot(ramp(), [1.0, 1.0], full_well=3000).images
+    a, b = shoot(ramp(), [1.0, 1.0], Camera(full_well=3000)).images
     assert np.any(a != b)
 
 
 def test_gray_noise_has_its_deviation_in_levels():
-    Z = shoot(np.full((300, 300), 0.3), [1.0], gray_noise=3.0).images
+    Z = shoot(np.full((300, 300), 0.3), [1.0], Camera(gray_noise=3.0)).images
     assert np.isclose(Z.std(), 3.0, rtol=0.02)
 
 
 def test_the_noisy_experiment_of_cerman_and_hlavac_can_be_set_up():
     E = ramp(1 / 1024, 1, (200, 300))
-    taken = shoot(E, 4.0 ** np.arange(6), response="cubic", gray_noise=1.0, sensitivity=1.0, rng=0)
-    clean = shoot(E, 4.0 ** np.arange(6), response="cubic")
+    taken = shoot(E, 4.0 ** np.arange(6), Camera(response="cubic", gray_noise=1.0, sensitivity=1.0), rng=0)
+    clean = shoot(E, 4.0 ** np.arange(6), Camera(response="cubic"))
     middle = (clean.images > 5) & (clean.images < 250)
     error = taken.images[middle].astype(float) - clean.images[middle]
     assert np.isclose(error.mean(), 0, atol=0.02) and np.isclose(error.std(), np.sqrt(1 + 1 / 6), rtol=0.03)
@@ -200,7 +207,7 @@ def test_the_noisy_experiment_of_cerman_and_hlavac_can_be_set_up():
 
 def test_hot_pixels_stay_white_in_every_frame_and_the_hand_does_not_move_them():
     E, offsets = np.full((60, 70, 3), 0.01), camera.shake(3, radius=4)
-    images = shoot(E, [0.1, 0.2, 0.4], hot=0.02, offsets=offsets).images
+    images = shoot(E, [0.1, 0.2, 0.4], Camera(hot=0.02), offsets=offsets).images
     white = images == 255
     assert np.array_equal(white[0], white[1]) and np.array_equal(white[1], white[2])
     assert np.isclose(white[0].mean(), 0.02, atol=0.006)
@@ -291,7 +298,8 @@ def test_black_pixels_do_not_lengthen_the_exposure():
 )
 def test_what_means_nothing_is_refused_with_what_came(knobs, said):
     with pytest.raises(ValueError, match=said):
-        shoot(**{"E": ramp(), "times": [1.0], **knobs})
+        taken = {name: knobs.pop(name) for name in ("E", "times", "offsets") if name in knobs}
+        shoot(**{"E": ramp(), "times": [1.0], **taken}, camera=Camera(**knobs))
 
 
 def test_a_hand_without_frames_and_a_scene_without_light_are_refused():

@@ -1,5 +1,7 @@
 """Metering: whom each mode asks, and the exposure that follows."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -93,10 +95,10 @@ def test_without_full_pixels_the_correction_is_the_formula():
 @pytest.mark.parametrize("name", SCENES)
 def test_automatic_exposure_is_within_a_sixth_of_a_stop_after_at_most_four_shots(name, mode, start):
     """Where it ends, the reading of a photograph without noise is 0.18, to a sixth of a stop."""
-    sensor = dict(full_well=20_000, read_noise=5, rng=3)
-    states = list(autoexposure.expose_steps(SCENES[name].E, mode, start=start, **sensor))
+    photograph = partial(autoexposure.measure_brightness, full_well=20_000, read_noise=5, rng=3)
+    states = list(autoexposure.expose_steps(SCENES[name].E, mode, start=start, photograph=photograph))
     assert len(states) <= 4
-    B = autoexposure.see(SCENES[name].E, states[-1].EV_opt)
+    B = autoexposure.measure_brightness(SCENES[name].E, states[-1].EV_opt)
     read = metering.reading(B, metering.weights(B, mode))
     assert abs(np.log2(read / metering.GRAY)) < 1 / 6
 
@@ -127,7 +129,7 @@ def test_twice_the_light_gives_one_ev_more():
 
 def test_a_black_and_a_burnt_out_first_shot_are_both_survived():
     for start in (-10, 40):
-        states = list(autoexposure.expose_steps(SCENES["snow"].E, "average", start=start, most=20))
+        states = list(autoexposure.expose_steps(SCENES["snow"].E, "average", start=start, max_shots=20))
         assert abs(np.log2(states[-1].B_pre / metering.GRAY)) < 1 / 6
 
 

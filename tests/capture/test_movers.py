@@ -38,10 +38,10 @@ def test_a_figure_that_walks_out_of_the_frame_is_gone_and_does_not_come_back():
 
 
 def test_each_photograph_is_that_of_its_moment_and_the_truth_is_sorted_with_it():
-    taken = movers.shoot(WALL, BALL, movers.path(3, (0, 12)), TIMES[::-1], response="linear")
+    taken = movers.shoot(WALL, BALL, movers.path(3, (0, 12)), TIMES[::-1], camera.Camera(response="linear"))
     assert taken.bracket.times.tolist() == TIMES and taken.bracket.linear
     for image, seen, t in zip(taken.bracket.images, taken.moments, TIMES, strict=True):
-        assert np.array_equal(image, camera.shoot(seen, t, response="linear").images[0])
+        assert np.array_equal(image, camera.shoot(seen, t, camera.Camera(response="linear")).images[0])
     left = [np.flatnonzero(one.any(axis=0))[0] for one in taken.hidden]
     assert np.diff(left).tolist() == [-12, -12]  # the longest exposure was given first
 
@@ -54,9 +54,9 @@ def test_outside_the_region_every_moment_is_the_still_scene():
 
 
 def test_photographs_of_one_time_keep_their_own_truth():
-    taken = movers.shoot(WALL, BALL, movers.path(4, (0, 9)), [1.0] * 4, response="linear")
+    taken = movers.shoot(WALL, BALL, movers.path(4, (0, 9)), [1.0] * 4, camera.Camera(response="linear"))
     for image, seen in zip(taken.bracket.images, taken.moments, strict=True):
-        assert np.array_equal(image, camera.shoot(seen, 1.0, response="linear").images[0])
+        assert np.array_equal(image, camera.shoot(seen, 1.0, camera.Camera(response="linear")).images[0])
 
 
 def test_a_hand_that_shakes_moves_scene_and_figure_alike():
@@ -89,7 +89,7 @@ def test_a_path_is_straight_even_and_at_its_own_place_in_the_middle():
         ({"at": np.zeros((3, 2))}, "whole pixels"),
         ({"offsets": [[1, 1], [2, 2], [3, 3]]}, r"at \(0, 0\)"),
         ({"times": [0, 1, 2]}, "positive exposure times"),
-        ({"hot": 0.01}, "hot"),
+        ({"model": camera.Camera(hot=0.01)}, "hot"),
     ],
 )
 def test_what_is_no_bracket_with_a_figure_is_refused(wrong, said):

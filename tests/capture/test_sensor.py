@@ -126,7 +126,9 @@ def test_the_signal_over_noise_is_that_of_many_photographs():
 def test_vignetting_takes_its_share_in_the_corners_and_nothing_in_the_middle():
     bright = sensor.falloff((101, 151), 0.4)
     assert bright[50, 75] == 1 and np.allclose(bright[[0, 0, -1, -1], [0, -1, 0, -1]], 0.6)
-    b = camera.shoot(np.full((101, 151), 0.5), [1.0], response="linear", vignetting=0.4, bits=16)
+    b = camera.shoot(
+        np.full((101, 151), 0.5), [1.0], camera.Camera(response="linear", vignetting=0.4, bits=16)
+    )
     assert np.allclose(b.images[0] / 65535, 0.5 * bright, atol=1e-4)
 
 
@@ -140,7 +142,9 @@ def test_white_balance_makes_a_gray_card_gray_and_leaves_what_is_full_white():
 
 def test_a_bayer_camera_shows_an_even_wall_as_one_that_reads_all_colours_does():
     E = np.ones((20, 30, 3)) * [0.2, 0.4, 0.1]
-    whole, mosaicked = (camera.shoot(E, [1.0], sensor=QUIET, bayer=bayer) for bayer in (False, True))
+    whole, mosaicked = (
+        camera.shoot(E, [1.0], camera.Camera(sensor=QUIET, bayer=bayer)) for bayer in (False, True)
+    )
     assert np.abs(whole.images.astype(int) - mosaicked.images).max() <= 1
 
 
@@ -148,13 +152,15 @@ def test_a_camera_with_a_fine_converter_photographs_as_one_without():
     E = scenes.room((48, 72))
     times = camera.times_around(E, 3)
     fine = Sensor(full_well=50_000, read_noise=0, gain=1.0, bits=16, black=100)
-    with_one = camera.shoot(E, times, sensor=fine, rng=1).images.astype(float)
-    without = camera.shoot(E, times, full_well=50_000, rng=1).images
+    with_one = camera.shoot(E, times, camera.Camera(sensor=fine), rng=1).images.astype(float)
+    without = camera.shoot(E, times, camera.Camera(full_well=50_000), rng=1).images
     assert np.abs(with_one - without).mean() < 0.3
 
 
 def test_hot_pixels_burn_through_a_mosaic_too():
-    taken = camera.shoot(np.full((60, 60, 3), 0.01), [1.0], sensor=Sensor(), bayer=True, hot=0.01)
+    taken = camera.shoot(
+        np.full((60, 60, 3), 0.01), [1.0], camera.Camera(sensor=Sensor(), bayer=True, hot=0.01)
+    )
     burnt = (taken.images > 250).mean()  # a third of the channels of a hot pixel are its own
     assert burnt == pytest.approx(0.01 / 3, rel=0.5)
 
@@ -233,8 +239,9 @@ def test_photographs_that_tell_nothing_are_refused(Z):
     ],
 )
 def test_a_sensor_that_means_nothing_is_refused_with_what_came(knobs, said):
+    E = knobs.pop("E", np.ones((4, 4, 3)))
     with pytest.raises(ValueError, match=said):
-        camera.shoot(**{"E": np.ones((4, 4, 3)), "times": [1.0], **knobs})
+        camera.shoot(E, [1.0], camera.Camera(**knobs))
 
 
 def test_figures_that_mean_nothing_are_refused():

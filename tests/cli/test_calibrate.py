@@ -23,7 +23,9 @@ TIMES = [0.01, 0.04, 0.16, 0.64]
 def photographs(tmp_path_factory):
     """A folder of four photographs, the list of their times, and the camera's response."""
     home = tmp_path_factory.mktemp("calibrate")
-    taken = camera.shoot(scenes.room((144, 216)), TIMES, sensitivity=0.05, response="srgb", rng=1)
+    taken = camera.shoot(
+        scenes.room((144, 216)), TIMES, camera.Camera(sensitivity=0.05, response="srgb"), rng=1
+    )
     (home / "photographs").mkdir()
     lines = ["file,exposure_time_s"]
     for j, (image, seconds) in enumerate(zip(taken.images, taken.times, strict=True)):

@@ -24,7 +24,9 @@ def hdrlab(*arguments, capsys=None):
 @pytest.fixture
 def photographs(tmp_path):
     """A folder of four photographs and the list of their times."""
-    bracket = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], sensitivity=0.05, rng=1)
+    bracket = camera.shoot(
+        scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], camera.Camera(sensitivity=0.05), rng=1
+    )
     folder = tmp_path / "photographs"
     folder.mkdir()
     lines = ["file,exposure_time_s"]

@@ -15,7 +15,7 @@ G = responses.true_g("film")
 def bracket(decades):
     """Five clean frames two stops apart, 16 bits, gray."""
     E = decades((300, 300))
-    return E, camera.shoot(E, camera.times_around(E, 5, stops=2), bits=16)
+    return E, camera.shoot(E, camera.times_around(E, 5, stops=2), camera.Camera(bits=16))
 
 
 def medians(taken, times, g=G):

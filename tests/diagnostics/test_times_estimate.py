@@ -26,7 +26,9 @@ def taken():
     @cache
     def shoot(count, response="film", seed=1):
         times = camera.times_around(room, count, stops=1.5)
-        return camera.shoot(room, times, response=response, full_well=50_000, read_noise=5, rng=seed)
+        return camera.shoot(
+            room, times, camera.Camera(response=response, full_well=50_000, read_noise=5), rng=seed
+        )
 
     return shoot
 

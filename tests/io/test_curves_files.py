@@ -26,7 +26,9 @@ EXACT = {".csv": 0, ".npz": 0, ".m": 1e-8, ".luminance.csv": 1e-3}
 def bracket(tmp_path_factory):
     """Return a folder of four photographs, frame0.jpg to frame3.jpg, and their list for pfsinhdrgen."""
     folder = tmp_path_factory.mktemp("bracket")
-    taken = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], sensitivity=0.05, rng=1)
+    taken = camera.shoot(
+        scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], camera.Camera(sensitivity=0.05), rng=1
+    )
     lines = []
     for j, (image, seconds) in enumerate(zip(taken.images, taken.times, strict=True)):
         write_picture(folder / f"frame{j}.jpg", image)

@@ -20,7 +20,9 @@ def moving():
     room = scenes.room(SHAPE)
     ball = movers.ball(SHAPE, (60, 72), 10, np.array([6, 2, 1]) * np.median(room))
     at = movers.path(5, (0, 16))
-    return movers.shoot(room, ball, at, camera.times_around(room, 5), full_well=50_000, rng=1).bracket
+    return movers.shoot(
+        room, ball, at, camera.times_around(room, 5), camera.Camera(full_well=50_000), rng=1
+    ).bracket
 
 
 @pytest.fixture(scope="module")
@@ -48,7 +50,7 @@ def test_flare_is_the_last_stage_before_they_are_compared():
     room = scenes.room(SHAPE)
     veiled = flare.veil(room, Spread(0.1, 2.5))
     times = 0.9 / veiled.max() * 4.0 ** np.arange(9)
-    taken = camera.shoot(veiled, times, full_well=50_000, rng=1)
+    taken = camera.shoot(veiled, times, camera.Camera(full_well=50_000), rng=1)
     states = list(pipeline.assemble_steps(taken, align="none", flare="veil"))
     assert [state.stage for state in states][-2:] == ["flare", "compare"]
     found = states[-1]

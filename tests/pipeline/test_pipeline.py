@@ -29,7 +29,9 @@ def room():
 def hand_held(room):
     """Seven photographs of the room, noisy and shaken, and how the hand shook."""
     times, offsets = camera.times_around(room, 7, stops=2), camera.shake(7, radius=5, rng=3)
-    return camera.shoot(room, times, full_well=50_000, read_noise=5, offsets=offsets, rng=3), offsets
+    return camera.shoot(
+        room, times, camera.Camera(full_well=50_000, read_noise=5), offsets=offsets, rng=3
+    ), offsets
 
 
 # Stages
@@ -77,7 +79,7 @@ def test_any_order_of_photographs_gives_the_same_map_bit_for_bit(hand_held, orde
 @pytest.mark.parametrize("response", ["linear", "film"])
 def test_gray_and_rgb_8_and_16_bits_linear_or_not(room, bits, colours, response):
     E = room if colours == 3 else luminance(room)
-    taken = camera.shoot(E, camera.times_around(E, 5), response=response, bits=bits)
+    taken = camera.shoot(E, camera.times_around(E, 5), camera.Camera(response=response, bits=bits))
     found = assemble(taken)
     assert found.E.shape == E.shape and found.E.dtype == np.float32 and found.seen.shape == E.shape[:2]
     well = found.seen == Seen.MEASURED
@@ -88,7 +90,7 @@ def test_gray_and_rgb_8_and_16_bits_linear_or_not(room, bits, colours, response)
 
 
 def test_a_linear_bracket_has_no_response_to_recover(room):
-    taken = camera.shoot(room, camera.times_around(room, 3), response="linear", bits=16)
+    taken = camera.shoot(room, camera.times_around(room, 3), camera.Camera(response="linear", bits=16))
     assert taken.linear and assemble(taken).g.shape == (65536,)
     assert assemble(taken, response="debevec").g.shape == (256, 3)
 

@@ -29,7 +29,9 @@ def wall():
 def moving(wall):
     ball = movers.ball(SHAPE, (45, 60), 9, [3.0, 1.0, 0.4])
     at = movers.path(5, (4, 14))
-    return movers.shoot(wall, ball, at, camera.times_around(wall, 5), full_well=50_000, read_noise=5, rng=2)
+    return movers.shoot(
+        wall, ball, at, camera.times_around(wall, 5), camera.Camera(full_well=50_000, read_noise=5), rng=2
+    )
 
 
 def found_in(taken, **knobs):
@@ -103,7 +105,7 @@ def test_the_best_exposure_of_a_region_is_the_longest_that_measures_it():
 
 
 def test_a_time_that_is_a_little_off_is_no_motion(moving, wall):
-    still = camera.shoot(wall, moving.bracket.times, full_well=50_000, rng=3)
+    still = camera.shoot(wall, moving.bracket.times, camera.Camera(full_well=50_000), rng=3)
     wrong = still.times * [1, 1.15, 1, 0.87, 1]
     assert not ghosts.remove(still.images, wrong, FILM, W).labels.any()
 
@@ -205,7 +207,9 @@ def test_what_was_given_stays_as_it_is(moving):
 
 def test_a_still_scene_has_no_region_and_its_map_bit_for_bit(wall):
     for bits, seed in ((8, 1), (16, 2)):
-        still = camera.shoot(wall, camera.times_around(wall, 5), bits=bits, full_well=20_000, rng=seed)
+        still = camera.shoot(
+            wall, camera.times_around(wall, 5), camera.Camera(bits=bits, full_well=20_000), rng=seed
+        )
         g, w = true_g("film", 2**bits), weights.gaussian(2**bits)
         found = ghosts.remove(still.images, still.times, g, w)
         assert not found.labels.any() and len(found.frames) == 0

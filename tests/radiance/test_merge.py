@@ -52,7 +52,7 @@ def test_each_method_is_its_formula():
 @pytest.mark.parametrize("name", CURVES)
 def test_on_clean_photographs_the_methods_agree(name, decades):
     E = decades((40, 60))
-    taken = camera.shoot(E, camera.times_around(E, 7, stops=2), response=name, bits=16)
+    taken = camera.shoot(E, camera.times_around(E, 7, stops=2), camera.Camera(response=name, bits=16))
     g = responses.true_g(name, 65536)
     maps = [merge_seen(taken.images, taken.times, g, weights.gaussian(65536), method=m) for m in METHODS]
     measured = maps[0].seen == Seen.MEASURED
@@ -213,7 +213,9 @@ def test_a_black_or_white_stack_is_finite_and_says_that_nothing_was_measured(lev
 def test_a_sun_in_a_photographed_scene_is_no_darker_than_its_sky():
     y, x = np.mgrid[-40:40, -60:60]
     E = (2 + 60 * np.exp(-np.hypot(y, x) / 12) + 1e5 * (np.hypot(y, x) < 6)).astype(np.float32)
-    taken = camera.shoot(E, [1 / 256, 1 / 64, 1 / 16, 1 / 4], full_well=20_000, read_noise=5, rng=1)
+    taken = camera.shoot(
+        E, [1 / 256, 1 / 64, 1 / 16, 1 / 4], camera.Camera(full_well=20_000, read_noise=5), rng=1
+    )
     found = merge_seen(taken.images, taken.times, FILM)
     sun = np.hypot(y, x) < 5
     assert np.all(found.seen[sun] == Seen.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
@@ -242,7 +244,9 @@ LINEAR_AT_TOP = TOP / 128
 
 def test_highlights_keep_the_colour_of_their_light():
     E = (np.geomspace(0.5, 50, 400)[None, :, None] * np.array([1.0, 0.7, 0.5])).astype(np.float32)
-    taken = camera.shoot(np.repeat(E, 9, axis=0), 4.0 ** np.arange(-4, 1), full_well=50_000, rng=2)
+    taken = camera.shoot(
+        np.repeat(E, 9, axis=0), 4.0 ** np.arange(-4, 1), camera.Camera(full_well=50_000), rng=2
+    )
     found = merge_seen(taken.images, taken.times, FILM)
     tint = np.median(found.E, axis=0)[np.median(found.seen, axis=0) == Seen.MEASURED]
     assert np.allclose(tint[:, 1:] / tint[:, :1], [0.7, 0.5], rtol=0.06)
@@ -277,7 +281,7 @@ def test_a_stuck_pixel_takes_its_neighbours_median_and_says_so(level, where):
 
 def test_the_hot_pixels_of_a_camera_do_not_reach_the_map():
     light = np.linspace(0.2, 0.8, 60 * 80, dtype=np.float32).reshape(60, 80)
-    taken = camera.shoot(light, 4.0 ** np.arange(-3, 1), hot=0.002, full_well=50_000, rng=3)
+    taken = camera.shoot(light, 4.0 ** np.arange(-3, 1), camera.Camera(hot=0.002, full_well=50_000), rng=3)
     found = merge_seen(taken.images, taken.times, FILM)
     hot = taken.images[0] == 255
     assert 3 < hot.sum() < 30 and np.array_equal(found.seen == Seen.STUCK, hot)

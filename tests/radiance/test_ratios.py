@@ -20,7 +20,9 @@ def log_normal(seed=0, shape=(512, 512), spread=1.5):
 
 def pair(E, truth, seed=0, **knobs):
     """Return two photographs of a linear camera with noise of one level."""
-    return camera.shoot(E, [1, truth], response="linear", rng=seed, **{"gray_noise": 1.0} | knobs).images
+    return camera.shoot(
+        E, [1, truth], camera.Camera(response="linear", **{"gray_noise": 1.0} | knobs), rng=seed
+    ).images
 
 
 # The equations
@@ -94,7 +96,7 @@ def test_other_ratios_are_found_to_a_quarter_of_a_percent(truth):
 
 def test_a_bracket_gives_its_times_however_it_was_held():
     E = log_normal(3)
-    taken = camera.shoot(E, [1, 2, 5, 15], response="linear", gray_noise=1.0, rng=3)
+    taken = camera.shoot(E, [1, 2, 5, 15], camera.Camera(response="linear", gray_noise=1.0), rng=3)
     images = np.stack([np.rot90(image, 2 * (j % 2)) for j, image in enumerate(taken.images)])
     assert np.allclose(ratios.times(ratios.ratios(images)), [1, 2, 5, 15], rtol=0.01)
 

@@ -178,14 +178,16 @@ def test_seven_noisy_frames_give_the_response_to_one_percent(name, choose, seven
 @pytest.mark.parametrize("name", CURVES)
 def test_the_noise_of_a_phone_leaves_the_response_within_one_percent(name, seed, decades):
     E = decades(seed=seed)
-    knobs = dict(full_well=5000, read_noise=5, gray_noise=1.0, rng=seed)
-    taken = camera.shoot(E, camera.times_around(E, 7, stops=2), response=name, **knobs)
+    knobs = dict(full_well=5000, read_noise=5, gray_noise=1.0)
+    taken = camera.shoot(
+        E, camera.times_around(E, 7, stops=2), camera.Camera(response=name, **knobs), rng=seed
+    )
     assert rmse(debevec.recover(taken.images, taken.times), name) < 0.01
 
 
 def test_the_cut_is_what_makes_the_noisy_experiment_of_cerman_and_hlavac_come_out():
     E = np.geomspace(1 / 4096, 1, 40_000, dtype=np.float32).reshape(200, 200)
-    taken = camera.shoot(E, 4.0 ** np.arange(6), response="cubic", gray_noise=1.0, rng=0)
+    taken = camera.shoot(E, 4.0 ** np.arange(6), camera.Camera(response="cubic", gray_noise=1.0), rng=0)
     knobs = dict(smoothness=20, samples=200, choose=sampling.by_grid)
     hat = debevec.recover(taken.images, taken.times, w=weights.hat(), **knobs)
     cut = debevec.recover(taken.images, taken.times, **knobs)
@@ -197,7 +199,9 @@ def test_the_cut_is_what_makes_the_noisy_experiment_of_cerman_and_hlavac_come_ou
 def test_each_channel_has_the_curve_of_its_own_photographs(decades):
     E = decades((60, 80))
     times = camera.times_around(E, 5, stops=2)
-    gray = [camera.shoot(E, times, response=name).images for name in ("film", "gamma", "linear")]
+    gray = [
+        camera.shoot(E, times, camera.Camera(response=name)).images for name in ("film", "gamma", "linear")
+    ]
     g = debevec.recover(np.stack(gray, axis=-1), times)
     assert g.shape == (256, 3)
     for c, images in enumerate(gray):
@@ -206,7 +210,7 @@ def test_each_channel_has_the_curve_of_its_own_photographs(decades):
 
 def test_the_curve_rises_even_where_noise_would_make_it_fall(decades):
     E = decades((40, 50))
-    taken = camera.shoot(E, camera.times_around(E, 3, stops=4), gray_noise=8.0, rng=2)
+    taken = camera.shoot(E, camera.times_around(E, 3, stops=4), camera.Camera(gray_noise=8.0), rng=2)
     knobs = dict(samples=30, smoothness=0.5, choose=sampling.by_grid)
     g = debevec.recover(taken.images, taken.times, **knobs)
     assert np.all(np.diff(g) >= 0) and g[128] == 0

@@ -35,8 +35,8 @@ def test_a_ladder_ends_where_the_transfer_knows_no_more():
 @pytest.mark.parametrize("seed", range(3))
 def test_a_power_law_is_found_to_a_tenth_of_a_percent_through_noise(gamma, seed, decades):
     E = decades(seed=seed)
-    knobs = dict(response=lambda X: X**gamma, full_well=50_000, read_noise=5, rng=seed)
-    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), **knobs)
+    knobs = dict(response=lambda X: X**gamma, full_well=50_000, read_noise=5)
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), camera.Camera(**knobs), rng=seed)
     g = mann.recover(taken.images, taken.times)
     assert laws.curve_error(g, mann.curve(gamma)) < 0.001
 
@@ -44,7 +44,7 @@ def test_a_power_law_is_found_to_a_tenth_of_a_percent_through_noise(gamma, seed,
 def test_the_level_of_the_covered_lens_must_be_told(decades):
     E, alpha, gamma = decades(), 20, 0.6
     response = lambda X: alpha / 255 + (1 - alpha / 255) * X**gamma  # noqa: E731
-    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), response=response)
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), camera.Camera(response=response))
     told, untold = (mann.recover(taken.images, taken.times, alpha=a) for a in (alpha, 0))
     truth = mann.curve(gamma, alpha=alpha)
     assert np.abs(told - truth)[40:].max() < 0.01 and np.abs(untold - truth)[40:].max() > 0.1
@@ -60,7 +60,9 @@ def test_on_a_camera_that_is_no_power_law_it_is_a_compromise(name, low, high, se
 
 def test_photographs_that_no_light_fills_serve_too(decades):
     E = np.minimum(decades(), 1)
-    taken = camera.shoot(E, [0.1, 0.2, 0.4], response="gamma", full_well=50_000, read_noise=5, rng=0)
+    taken = camera.shoot(
+        E, [0.1, 0.2, 0.4], camera.Camera(response="gamma", full_well=50_000, read_noise=5), rng=0
+    )
     assert taken.images.max() < 200
     g = mann.recover(taken.images, taken.times)
     assert laws.curve_error(g, responses.true_g("gamma")) < 0.005

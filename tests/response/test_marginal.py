@@ -145,7 +145,7 @@ def test_the_ratios_of_the_canon_camera(seed):
 
 def test_a_simulated_camera_is_recovered():
     E = 10 ** np.random.default_rng(6).uniform(-1.5, 1.5, (50, 60))
-    taken = camera.shoot(E, camera.times_around(E, 3), response="cubic", gray_noise=0.7)
+    taken = camera.shoot(E, camera.times_around(E, 3), camera.Camera(response="cubic", gray_noise=0.7))
     (state,) = marginal.calibrate(taken.images, taken.times, order=5)
     f, truth = np.exp(polynomial.curve(state.c)), np.exp(true_g("cubic"))
     assert np.sqrt(np.mean((f / f[-1] - truth / truth[-1]) ** 2)) < 0.005

@@ -241,7 +241,9 @@ def test_the_ratios_of_the_canon_camera_come_out_up_to_one_exponent(seed):
 def bracket(response="gamma", **knobs):
     """Return five photographs of four decades of light."""
     E = 10 ** np.random.default_rng(6).uniform(-2, 2, (80, 100))
-    return camera.shoot(E, camera.times_around(E, 5), response=response, **{"gray_noise": 0.7} | knobs)
+    return camera.shoot(
+        E, camera.times_around(E, 5), camera.Camera(response=response, **{"gray_noise": 0.7} | knobs)
+    )
 
 
 def test_a_simulated_camera_is_recovered_to_a_thousandth():

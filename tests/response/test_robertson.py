@@ -104,7 +104,7 @@ def test_without_smoothness_frames_2_stops_apart_leave_the_start_in_the_curve(de
     E, found = decades(seed=3), []
     for stops in (np.arange(7) * 2.0, np.arange(7) * 1.0, np.cumsum([0, 1, 2.3, 1.4, 0.7, 2.6, 1.2])):
         times = camera.times_around(E, 1)[0] * 2.0 ** (stops - stops.mean())
-        taken = camera.shoot(E, times, response="gamma", full_well=50_000, read_noise=5, rng=3)
+        taken = camera.shoot(E, times, camera.Camera(response="gamma", full_well=50_000, read_noise=5), rng=3)
         g = robertson.recover(taken.images, taken.times, smoothness=0, turns=50)
         found.append(laws.curve_error(g, responses.true_g("gamma")))
     assert 0.02 < found[0] < 0.045 and found[1] < 0.006 and found[2] < 0.6 * found[0]
@@ -121,8 +121,10 @@ def test_some_pixels_serve_as_well_as_all(name, seven_frames):
 
 def test_the_usual_weights_let_noise_bend_the_curve_and_the_cut_heals_it(decades):
     E = decades(seed=1)
-    knobs = dict(full_well=5000, read_noise=5, gray_noise=1.0, rng=1)
-    taken = camera.shoot(E, camera.times_around(E, 7, stops=2), response="linear", **knobs)
+    knobs = dict(full_well=5000, read_noise=5, gray_noise=1.0)
+    taken = camera.shoot(
+        E, camera.times_around(E, 7, stops=2), camera.Camera(response="linear", **knobs), rng=1
+    )
     usual, cut = (
         laws.curve_error(robertson.recover(taken.images, taken.times, w=w), responses.true_g("linear"))
         for w in (weights.gaussian(), WEIGHTS)
@@ -144,7 +146,9 @@ def test_what_the_mask_hides_does_not_bend_the_curve(decades):
 def test_all_pixels_of_colour_are_those_of_its_channels(decades):
     E = decades((40, 50))
     times = camera.times_around(E, 5, stops=1.5)
-    gray = [camera.shoot(E, times, response=name).images for name in ("film", "gamma", "linear")]
+    gray = [
+        camera.shoot(E, times, camera.Camera(response=name)).images for name in ("film", "gamma", "linear")
+    ]
     g = robertson.recover(np.stack(gray, axis=-1), times, samples=None)
     for c, images in enumerate(gray):
         assert np.allclose(g[:, c], robertson.recover(images, times, samples=None), atol=1e-9)

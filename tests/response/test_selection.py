@@ -85,7 +85,7 @@ def patches(shape=(12, 16), size=12, seed=0):
 
 def test_samples_come_from_within_the_squares_and_serve_any_method():
     E = patches()
-    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), gray_noise=2.0, rng=0)
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=2), camera.Camera(gray_noise=2.0), rng=0)
     Z = selection.by_flatness(taken.images, 400)
     assert Z.shape == (400, 5) and Z.dtype == np.intp and Z.min() >= 0 and Z.max() <= 255
     g = debevec.recover(taken.images, taken.times, choose=selection.by_flatness)

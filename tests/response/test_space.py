@@ -91,7 +91,7 @@ def test_a_basis_of_ones_own_answers_in_its_span():
         families.ln_exposures(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2
     )
     E = np.geomspace(0.01, 1, 2400).reshape(40, 60)
-    taken = camera.shoot(E, [0.25, 0.5, 1.0], response="gamma")
+    taken = camera.shoot(E, [0.25, 0.5, 1.0], camera.Camera(response="gamma"))
     g = space.recover(taken.images, taken.times, basis=basis)
     assert abs(g[200] - 2.2 * np.log(200 / 128)) < 0.03
 

@@ -57,7 +57,9 @@ def room():
         camera.times_around(E, 6, stops=2.5),
         np.array([[0, 0], [2, -1], [-3, 2], [0, 0], [1, 4], [0, -2]]),
     )
-    photographs = camera.shoot(E, times, offsets=moves, full_well=60_000, read_noise=6, hot=1e-4, rng=4)
+    photographs = camera.shoot(
+        E, times, camera.Camera(full_well=60_000, read_noise=6, hot=1e-4), offsets=moves, rng=4
+    )
     found = pipeline.assemble(photographs)
     seen = camera.views(E, moves)[3][crop(found.offsets, photographs.images.shape[1:3])]
     return found, Truth(seen, responses.true_g("film"), moves)

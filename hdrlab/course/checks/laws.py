@@ -136,7 +136,9 @@ def photographs(response, *, shape=(60, 80), frames=7, bits=8, rng=11):
     """Return a Bracket of five decades of light, 2 stops apart, under the noise of a large sensor."""
     E = (10.0 ** np.random.default_rng(rng).uniform(-2.5, 2.5, shape)).astype(np.float32)
     times = camera.times_around(E, frames, stops=2)
-    return camera.shoot(E, times, response=response, bits=bits, full_well=50_000, read_noise=5, rng=rng)
+    return camera.shoot(
+        E, times, camera.Camera(response=response, bits=bits, full_well=50_000, read_noise=5), rng=rng
+    )
 
 
 def curve_error(g, truth):
@@ -196,7 +198,7 @@ def recovers_gray_like_each_of_three_equal_channels(recover, response):
 
 def makes_do_with_two_frames(recover, response):
     E = np.geomspace(0.02, 1, 4800, dtype=np.float32).reshape(60, 80)
-    taken = camera.shoot(E, [0.5, 1.0], response=response)
+    taken = camera.shoot(E, [0.5, 1.0], camera.Camera(response=response))
     g = recover(taken.images, taken.times)
     assert curve_error(g, responses.true_g(response, len(g))) < 0.05
 

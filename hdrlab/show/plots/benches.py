@@ -9,6 +9,7 @@ at   (down, right), parts of the picture, 0 to 1
 EV   exposure value, stops;  off  by how many stops the subject is too bright
 """
 
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -51,14 +52,17 @@ def metered(
 ) -> Shot:
     """Return the photograph that automatic exposure takes of a scene, in a mode, the spot at a place."""
     coarse = fit(scene.E, COARSE)
-    EV = autoexposure.expose(coarse, mode, at=at, aperture=F)
+    photograph = partial(autoexposure.measure_brightness, aperture=F)
+    EV = autoexposure.expose(coarse, mode, at=at, photograph=photograph)
     fills = float(exposure.saturating_luminance(1.0, F=F))
     time, s = F**2 / 2.0**EV, 1 / fills
-    taken = camera.shoot(scene.E, [time], response="srgb", sensitivity=s, sensor=sensor, rng=rng)
+    taken = camera.shoot(
+        scene.E, [time], camera.Camera(response="srgb", sensitivity=s, sensor=sensor), rng=rng
+    )
     L = luminance(scene.E)
     noise = ranges.held(L, time, sensor, sensitivity=s).noise
     off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
-    asked = metering.weights(autoexposure.see(coarse, EV, aperture=F), mode, at=at)
+    asked = metering.weights(photograph(coarse, EV), mode, at=at)
     picture = taken.images[0]
     return Shot(picture, np.any(picture == 255, axis=-1), noise, _enlarged(asked, L.shape), EV, off)
 
@@ -113,7 +117,7 @@ def calibrated(
     L = luminance(E)
     offsets = camera.shake(count, radius=radius, rng=rng)
     times = camera.times_around(L, count, stops=stops)
-    taken = camera.shoot(L, times, offsets=offsets, full_well=full_well, read_noise=5, rng=rng)
+    taken = camera.shoot(L, times, camera.Camera(full_well=full_well, read_noise=5), offsets=offsets, rng=rng)
     found = pipeline.aligned(taken, "mtb")
     wrong = int(np.any(found.offsets - found.offsets[count // 2] != offsets, axis=1).sum())
     both = [debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)]

@@ -66,7 +66,7 @@ def test_it_is_the_weighted_mean_of_the_logarithms(subject, rng):
 def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
     E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
     times = camera.times_around(E, 7, stops=1)
-    taken = camera.shoot(E, times, response="gamma")
+    taken = camera.shoot(E, times, camera.Camera(response="gamma"))
     came = np.log(finite(subject.merge(taken.images, taken.times, G), E.shape, what="E").astype(float))
     ratio = came - np.log(E)
     same(ratio - np.median(ratio), np.zeros(E.shape), 0.06, what="ln E less that of the scene", picture=True)

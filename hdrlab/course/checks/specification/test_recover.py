@@ -19,7 +19,7 @@ def asked(subject, images, times, channels=(), **knobs):
 def photographs(rng, response, frames=5, shape=(60, 80)):
     """Return a Bracket a stop apart, hardly any noise."""
     E = (10.0 ** rng.uniform(-1.5, 1.5, shape)).astype(np.float32)
-    return camera.shoot(E, camera.times_around(E, frames, stops=1), response=response, rng=rng)
+    return camera.shoot(E, camera.times_around(E, frames, stops=1), camera.Camera(response=response), rng=rng)
 
 
 def same_curve(g, response, tolerance):
