@@ -13,8 +13,10 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, close, faster
 from benchmarks.speed import luminance as lhdr
 from benchmarks.speed.tonemapping import pfstools
-from hdrlab.core import bilateral, blur, poisson
+from hdrlab.core import poisson
+from hdrlab.core.bilateral import bilateral as by_definition
 from hdrlab.core.colour import luminance
+from hdrlab.fast import bilateral, blur
 from hdrlab.tonemap import brush, chiu, durand, fattal, reinhard, ward
 
 REINHARD = "own Reinhard"
@@ -39,7 +41,7 @@ def bilateral_case(folder: Path, one: bool) -> Case:
             return None
         lL = durand.logarithm(L)[::6, ::6]  # the definition takes minutes on all of it
         sigmas = {"sigma_s": durand.WIDTH * max(lL.shape), "sigma_r": 0.4}
-        exact, fast = bilateral.brute(lL, **sigmas).mean, bilateral.fast(lL, **sigmas).mean
+        exact, fast = by_definition(lL, **sigmas).mean, bilateral.bilateral(lL, **sigmas).mean
         return float(np.sqrt(np.mean((fast - exact) ** 2)))
 
     return Case({OURS: lambda: durand.tonemap(L)} | theirs, missing, error)

@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.beyond.neighbours import windows
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.colour import encode_srgb, luminance
-from hdrlab.core.extremes import brightest
+from hdrlab.core.extremes import robust_maximum
 
 Float = NDArray[np.float32]
 TINY = float(np.finfo(np.float32).tiny)
@@ -61,8 +61,8 @@ def measured(E: ArrayLike, *, delta: float = 1e-6) -> Measured:
     """Return mean(ln(delta + L)), delta in medians of L as in `tonemap.reinhard`, and the brightest L."""
     E = as_radiance(E)
     L = luminance(E)
-    floor = max(delta * brightest(L, cut=0.5), TINY)
-    return Measured(E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), brightest(L))
+    floor = max(delta * robust_maximum(L, cut=0.5), TINY)
+    return Measured(E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), robust_maximum(L))
 
 
 def adapted(around: Sequence[Measured], *, key: float) -> tuple[float, float]:

@@ -1,32 +1,19 @@
-"""Gaussian blurs as matrix products: exact where they are narrow, on a coarse grid where they are wide.
+"""The Gaussian blur, by its definition.
 
-image  (H, W) float32, continued beyond its edges by reflection
+image  (H, W), continued beyond its edges by reflection: d c b a | a b c d | d c b a
 sigma  standard deviation, pixels
-k      taps (2r + 1,) of the kernel, sum 1; r = 4 sigma, on the coarse grid 5
-K      band matrix (n, (n - 1) step + 2r + 1), K[i, i step + j] = k[j]: row i holds the kernel of output i
-h      spacing of the coarse grid, pixels
-
-A blur of rows is a product with a band matrix, the same at every height. Cut into tiles of a few rows it is
-small and dense, which is what a processor's matrix product does at full speed; a loop over the taps does not.
+g      kernel, exp(-(x^2 + y^2) / (2 sigma^2)), sum 1, cut off at 4 sigma
 """
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.arrays import describe
-
-Float = NDArray[np.float32]
-
-TILE = 16  # rows of a product: more would multiply more of the band's zeros, fewer idle the processor
-NODES = 8  # rows of a product on the coarse grid
+from hdrlab.core.types import F32
 
 
-def gaussian(image: ArrayLike, sigma: float) -> Float:
-    """Return `image` blurred by a Gaussian of `sigma` pixels, reflected at the edges.
-
-    Below sigma = 4 it is the plain sum to the accuracy of float32. Wider ones go over a coarse grid, and
-    their kernel differs from the Gaussian by less than 0.2 % of its peak.
+def gaussian(image: ArrayLike, sigma: float) -> F32:
+    """Return sum_q g(p - q) image(q) at every pixel p.
 
     Parameters
     ----------
@@ -48,106 +35,6 @@ def gaussian(image: ArrayLike, sigma: float) -> Float:
     True
     """
     image = np.asarray(image, np.float32)
-    if image.ndim != 2 or 0 in image.shape:
-        raise ValueError(f"expected an image (H, W), got {describe(image)}")
-    if not 0 < sigma < np.inf:
-        raise ValueError(f"expected a positive sigma in pixels, got {sigma}")
-    h = spacing(sigma)
-    return direct(image, sigma) if h == 1 else coarse(image, sigma, h)
-
-
-def spacing(sigma: float) -> int:
-    """Return h, the largest power of two that is at most sigma / 2; 1 below sigma = 4."""
-    return 2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1
-
-
-def taps(sigma: float, *, reach: float = 4) -> Float:
-    """Return k[j] = exp(-(j - r)^2 / (2 sigma^2)), brought to the sum 1, to `reach` sigma on either side."""
-    r = int(reach * sigma + 0.5)
-    k = np.exp(-0.5 * (np.arange(-r, r + 1) / sigma) ** 2)
-    return (k / k.sum()).astype(np.float32)
-
-
-def band(k: ArrayLike, n: int, step: int = 1) -> Float:
-    """Return the band matrix K of n rows, each holding the taps k `step` columns further right."""
-    k = np.asarray(k, np.float32)
-    K = np.zeros((n, (n - 1) * step + len(k)), np.float32)
-    for i in range(n):
-        K[i, i * step : i * step + len(k)] = k
-    return K
-
-
-def spline(h: int, n: int) -> Float:
-    """Return the matrix (n h, n + 3) that puts h rows between each two nodes by cubic B-splines."""
-    t = np.arange(h) / h
-    weights = (
-        np.stack([(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3], axis=-1) / 6
-    )
-    U = np.zeros((n * h, n + 3), np.float32)
-    for i in range(n):
-        U[i * h : (i + 1) * h, i : i + 4] = weights
-    return U
-
-
-def product(K: Float, step: int, image: Float) -> Float:
-    """Return K times each window of rows of `image`, a window every `step` rows, one below the other."""
-    windows = sliding_window_view(image, K.shape[1], axis=0)[::step].swapaxes(1, 2)  # (windows, rows, W)
-    return np.matmul(K, windows).reshape(-1, image.shape[1])
-
-
-def pad(image: Float, margin: int) -> Float:
-    """Return `image` continued by reflection, `margin` all round, and at the far ends up to whole tiles."""
-    return np.pad(image, [(margin, margin + -n % TILE) for n in image.shape], mode="symmetric")
-
-
-def inside(padded: Float, k: Float, margin: int) -> Float:
-    """Return the blur by taps k of what lies `margin` inside `padded`, as far as it fills whole tiles."""
-    K, cut = band(k, TILE), margin - len(k) // 2
-    core = padded[cut : len(padded) - cut, cut : padded.shape[1] - cut]
-    return product(K, TILE, np.ascontiguousarray(product(K, TILE, core).T)).T
-
-
-def direct(image: Float, sigma: float) -> Float:
-    """Return the plain blur."""
-    k = taps(sigma)
-    margin = len(k) // 2
-    blurred = inside(
-        pad(image, margin).T, k, margin
-    ).T  # lying on its side, to come out with its rows in one piece
-    return np.ascontiguousarray(blurred[: image.shape[0], : image.shape[1]])
-
-
-def coarse(image: Float, sigma: float, h: int) -> Float:
-    """Return the blur through a grid of spacing h: blurred at its nodes alone, then B-splines between them.
-
-    A cubic B-spline is itself nearly a Gaussian, of variance h^2 / 3. Variances add: the nodes take what is
-    left, to five sigma, as beside a lamp a million times as bright the tail is most of the light.
-    """
-    k = taps((sigma**2 - h**2 / 3) ** 0.5, reach=5)
-    few = sampled(np.ascontiguousarray(sampled(image, k, h).T), k, h)  # (nodes across, nodes down)
-    U, W = spline(h, NODES), image.shape[1]
-    across = np.ascontiguousarray(product(U, NODES, few)[:W].T)  # (nodes down, W)
-    blurred = np.empty_like(image)
-    for first in range(0, -(-len(image) // h), NODES):
-        rows = blurred[first * h : (first + NODES) * h]
-        np.matmul(U[: len(rows)], across[first : first + NODES + 3], out=rows)
-    return blurred
-
-
-def sampled(image: Float, k: Float, h: int) -> Float:
-    """Return the blur by taps k down the columns, at one node before the first row and at every h-th from it.
-
-    Reflection folds the ends of the band matrix inward, so the picture is read where it stands.
-    """
-    K, n = band(k, NODES, h), len(image)
-    few = np.empty((NODES * (-(-n // (NODES * h)) + 1), image.shape[1]), np.float32)
-    for first in range(0, len(few), NODES):
-        place = (np.arange(K.shape[1]) + (first - 1) * h - len(k) // 2) % (2 * n)
-        rows = np.minimum(place, 2 * n - 1 - place)
-        low, high = rows.min(), rows.max() + 1
-        folded = K
-        if not np.array_equal(rows, np.arange(low, high)):
-            folded = np.zeros((NODES, high - low), np.float32)
-            np.add.at(folded.T, rows - low, K.T)
-        np.matmul(folded, image[low:high], out=few[first : first + NODES])
-    return few
+    if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
+        raise ValueError(f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}")
+    return gaussian_filter(image, sigma)

@@ -1,40 +1,45 @@
-"""The darkest and the brightest luminance of a picture, but for a few pixels: a hot one must not set a scale.
+"""Robust extremes of a picture: a hot pixel must not set a scale, and neither must black.
 
 L    luminance            (H, W) float32, >= 0
-cut  fraction left out    of the lit pixels (L > 0), and at least one pixel
+cut  fraction left out    of the positive pixels, and at least one pixel
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32
 
-ENOUGH = 1 << 18  # pixels: a larger picture is ranked by every second, third, ... of its pixels
+# pixels: a larger picture is ranked by every second, third, ... of its pixels
+ENOUGH = 1 << 18
 
 
-def lit(L: Float) -> Float:
+def positive(L: F32) -> F32:
     """Return the luminances above 0, as a list: log L exists there."""
     return L.ravel() if L.min() > 0 else L[L > 0]
 
 
-def darkest(L: Float, *, cut: float = 1e-4) -> float:
-    """Return the luminance that a fraction `cut` of the lit pixels lies below; 0 without light."""
-    return _ranked(lit(L), cut, from_top=False)
+def robust_minimum(L: F32, *, cut: float = 1e-4) -> float:
+    """Return the luminance that a fraction `cut` of the positive pixels lies below; 0 without light."""
+    return _ranked(positive(L), cut, from_top=False)
 
 
-def brightest(L: Float, *, cut: float = 1e-4) -> float:
-    """Return the luminance that a fraction `cut` of the lit pixels lies above; 0 without light.
+def robust_maximum(L: F32, *, cut: float = 1e-4) -> float:
+    """Return the luminance that a fraction `cut` of the positive pixels lies above; 0 without light.
 
     Examples
     --------
     >>> L = np.append(np.linspace(1, 2, 999), 1e6).astype(np.float32)  # one hot pixel
-    >>> round(brightest(L), 2)
+    >>> round(robust_maximum(L), 2)
     2.0
     """
-    return _ranked(lit(L), cut, from_top=True)
+    return _ranked(positive(L), cut, from_top=True)
 
 
-def _ranked(values: Float, cut: float, *, from_top: bool) -> float:
+def positive_median(L: F32) -> float:
+    """Return the median of the positive luminances; 0 without light."""
+    return robust_maximum(L, cut=0.5)
+
+
+def _ranked(values: F32, cut: float, *, from_top: bool) -> float:
     if not values.size:
         return 0.0
     values = values[:: -(-values.size // ENOUGH)]

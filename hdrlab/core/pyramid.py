@@ -17,7 +17,6 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import blur
 from hdrlab.core.arrays import describe
 
 Float = NDArray[np.float32]
@@ -36,7 +35,9 @@ def reduced(image: ArrayLike) -> Float:
     Sides are halved, and rounded up where they are odd.
     """
     image = _as_image(image)
-    K = blur.band(np.array([1, 4, 6, 4, 1]) / 16, TILE, 2)
+    K = np.zeros((TILE, 2 * TILE + 3), np.float32)
+    for i in range(TILE):
+        K[i, 2 * i : 2 * i + 5] = np.array([1, 4, 6, 4, 1]) / 16
     rows, columns = (np.pad(np.arange(n), (2, -n % (2 * TILE) + 1), "reflect") for n in image.shape[-2:])
     g = np.empty((*image.shape[:-2], *half(image.shape)), np.float32)
     for band, found in _bands(K, 2 * TILE, image, rows, columns, g.shape):

@@ -19,7 +19,7 @@ from hdrlab.core import lookup
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.bands import banded
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.extremes import robust_maximum, robust_minimum
 
 Float = NDArray[np.float32]
 Histogram = NDArray[np.float64]
@@ -32,7 +32,7 @@ TINY = np.float32(np.finfo(np.float32).tiny)
 
 def span(L: Float) -> tuple[float, float]:
     """Return the darkest and the brightest of the window but for 0.01 %, at least a stop apart."""
-    low, high = darkest(L) or 1.0, brightest(L) or 1.0
+    low, high = robust_minimum(L) or 1.0, robust_maximum(L) or 1.0
     widen = max(1.0, LEAST * low / high) ** 0.5
     return low / widen, high * widen
 

@@ -22,9 +22,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.bands import banded
-from hdrlab.core.bilateral import fast
+from hdrlab.core.bilateral import bilateral
 from hdrlab.core.blur import gaussian
-from hdrlab.core.extremes import brightest
+from hdrlab.core.extremes import robust_maximum
 from hdrlab.core.steps import last
 
 Float = NDArray[np.float32]
@@ -54,7 +54,7 @@ def width(L: Float, sigma: float | None = None) -> float:
 
 def relative(L: Float) -> Float:
     """Return L in medians of L, and what is beyond all measure like any other: so sums stay finite."""
-    median = np.float32(max(brightest(L, cut=0.5), TINY))
+    median = np.float32(max(robust_maximum(L, cut=0.5), TINY))
     with np.errstate(over="ignore"):
         return banded(lambda L: np.minimum(L / median, LIMIT), L)
 
@@ -64,7 +64,7 @@ def scale(L: Float, *, headroom: float = 8.0, sigma: float | None = None) -> Flo
 
     The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur reaches.
     """
-    Lblur = gaussian(np.minimum(L, np.float32(brightest(L))), width(L, sigma))
+    Lblur = gaussian(np.minimum(L, np.float32(robust_maximum(L))), width(L, sigma))
     return 1 / np.maximum(np.float32(headroom) * Lblur, TINY)
 
 
@@ -104,8 +104,8 @@ def halo(
     Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the blur, of
     neighbours that differ by about `contrast` decades.
     """
-    lL = np.log10(np.maximum(L, 1e-6 * max(brightest(L, cut=0.5), TINY)))
-    base = fast(lL, sigma_s=width(L, sigma), sigma_r=contrast).mean
+    lL = np.log10(np.maximum(L, 1e-6 * max(robust_maximum(L, cut=0.5), TINY)))
+    base = bilateral(lL, sigma_s=width(L, sigma), sigma_r=contrast).mean
     return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))
 
 

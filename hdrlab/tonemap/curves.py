@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.bands import banded
-from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.extremes import robust_maximum, robust_minimum
 
 Float = NDArray[np.float32]
 
@@ -119,8 +119,8 @@ def tonemap(
     if not (0 < gamma < np.inf and 0 <= cut < 0.5):
         raise ValueError(f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}")
     low, high = (
-        darkest(L, cut=cut),
-        brightest(L, cut=cut) or 1.0,
+        robust_minimum(L, cut=cut),
+        robust_maximum(L, cut=cut) or 1.0,
     )  # a scene without light is black under any curve
     own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low or 1.0}}
     return banded(partial(CURVES[curve], high=high, **own[curve]), L)

@@ -19,10 +19,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import bilateral, blur
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.bands import banded
-from hdrlab.core.extremes import brightest
+from hdrlab.core.bilateral import Filtered, bilateral
+from hdrlab.core.blur import gaussian
+from hdrlab.core.extremes import robust_maximum
 
 Float = NDArray[np.float32]
 
@@ -43,11 +44,11 @@ class Layers(NamedTuple):
 
 def logarithm(L: Float) -> Float:
     """Return lL = log10 L, and for black the level of a millionth of the median."""
-    floor = np.float32(max(DARK * brightest(L, cut=0.5), TINY))
+    floor = np.float32(max(DARK * robust_maximum(L, cut=0.5), TINY))
     return banded(lambda L: np.log(np.maximum(L, floor)) * np.float32(1 / np.log(10)), L)
 
 
-def certain(found: bilateral.Filtered, *, sigma_s: float) -> Float:
+def certain(found: Filtered, *, sigma_s: float) -> Float:
     """Return the base, and where it rests on few pixels its neighbourhood's instead [Durand02].
 
     A pixel unlike all around it is its own base: without detail, and compressed like light. The weight of the
@@ -63,7 +64,7 @@ def certain(found: bilateral.Filtered, *, sigma_s: float) -> Float:
         if not doubtful.any():
             return mean
         u = np.log(np.maximum(k[doubtful], 1)) / np.log(enough)
-        near, mean = blur.gaussian(mean, NEAR)[doubtful], mean.copy()
+        near, mean = gaussian(mean, NEAR)[doubtful], mean.copy()
         mean[doubtful] += (1 - u) * (near - mean[doubtful])
         return mean
 
@@ -72,7 +73,7 @@ def certain(found: bilateral.Filtered, *, sigma_s: float) -> Float:
 
 def layers(lL: Float, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:
     """Return base = bil(lL) and detail = lL - base."""
-    base = certain(bilateral.fast(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
+    base = certain(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
     return Layers(base, lL - base)
 
 

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import poisson, pyramid
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.bands import banded
-from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.steps import last
 
 Float = NDArray[np.float32]
@@ -62,8 +62,8 @@ def log_luminance(L: Float) -> Float:
 
     Pixels above it are cut, as the display would cut them; so are the darkest, and with them the zeros.
     """
-    white = brightest(L)
-    black = min(darkest(L), DARK * white)
+    white = robust_maximum(L)
+    black = min(robust_minimum(L), DARK * white)
     white = max(white, TINY)
     floor, scale = np.float32(max(black / white, TINY)), np.float32(1 / white)
     return banded(lambda L: np.log(np.maximum(np.minimum(L, np.float32(white)) * scale, floor)), L)
@@ -135,8 +135,8 @@ def display(lLd: Float, *, black: float = 0.001, white: float = 0.005) -> Float:
     these are less than a factor of two apart, is not stretched over the whole display.
     """
     bright = np.exp(lLd - lLd.max())
-    top = brightest(bright, cut=white)
-    low = min(darkest(bright, cut=black), top / 2)
+    top = robust_maximum(bright, cut=white)
+    low = min(robust_minimum(bright, cut=black), top / 2)
     scale = np.float32(1 / (top - low))
     return banded(lambda bright: np.clip((bright - np.float32(low)) * scale, 0, 1), bright)
 

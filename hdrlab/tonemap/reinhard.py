@@ -19,9 +19,9 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import blur
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.blur import gaussian
+from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.steps import last
 
 Float = NDArray[np.float32]
@@ -31,8 +31,6 @@ WIDTHS = tuple(1.6**i for i in range(9))  # eight centres, and the surround of t
 LIMIT = np.float32(1e30)  # scaled luminance beyond this is white like any other, and its sums stay finite
 TINY = float(np.finfo(np.float32).tiny)
 BAND = 64  # rows at a time, which stay in the processor's cache
-KERNELS = tuple(blur.taps(s / 4) for s in WIDTHS)
-REACH = len(KERNELS[-1]) // 2
 
 
 class Scale(NamedTuple):
@@ -59,7 +57,7 @@ def log_average(L: Float, *, delta: float = 1e-6) -> float:
 
     So that the unit of L cancels, delta is measured in medians of L; it stands for what is black.
     """
-    floor = max(delta * brightest(L, cut=0.5), TINY)
+    floor = max(delta * robust_maximum(L, cut=0.5), TINY)
     return float(np.exp(np.log(L + np.float32(floor)).mean(dtype=np.float64)))
 
 
@@ -68,7 +66,7 @@ def automatic_key(L: Float) -> float:
 
     A scene that is mostly bright for its range gets a high key. Lmin and Lmax leave out 1 % of the pixels.
     """
-    low, high = darkest(L, cut=0.01), brightest(L, cut=0.01)
+    low, high = robust_minimum(L, cut=0.01), robust_maximum(L, cut=0.01)
     if not 0 < low < high:
         return 0.18
     low, middle, high = np.log2([low, np.clip(log_average(L), low, high), high])
@@ -83,7 +81,7 @@ def scaled(L: Float, *, key: float = 0.18) -> Float:
 
 def white_point(Lm: Float) -> float:
     """Return the brightest Lm but for 0.01 % of the pixels, and at least 1: dim scenes are not stretched."""
-    return max(1.0, brightest(Lm))
+    return max(1.0, robust_maximum(Lm))
 
 
 def display(Lm: Float, adaptation: Float, white: float = np.inf) -> Float:
@@ -99,7 +97,7 @@ def display(Lm: Float, adaptation: Float, white: float = np.inf) -> Float:
 
 def blurs(Lm: Float) -> Iterator[Float]:
     """Yield V1(s) for s = 1, 1.6, ..., 43 [Battiato08 eq. 1.34]."""
-    return (blur.direct(Lm, s / 4) for s in WIDTHS)
+    return (gaussian(Lm, s / 4) for s in WIDTHS)
 
 
 def response(V1: Float, V2: Float, *, width: float, key: float = 0.18, phi: float = 8.0) -> Float:
@@ -130,13 +128,7 @@ def chosen(scales: Iterable[Scale]) -> NDArray[np.uint8]:
 
 def adaptation(Lm: Float, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> Float:
     """Return V1 of each pixel at its own width: the last of scale_steps(blurs(Lm))."""
-    padded, V1 = blur.pad(Lm, REACH), np.empty_like(Lm)
-    for rows in bands(Lm):
-        near = padded[rows.start : rows.stop + 2 * REACH]
-        blurred = (blur.inside(near, k, REACH) for k in KERNELS)
-        found = last(scale_steps(blurred, key=key, phi=phi, threshold=threshold)).adaptation
-        V1[rows] = found[: len(V1[rows]), : V1.shape[1]]
-    return V1
+    return last(scale_steps(blurs(Lm), key=key, phi=phi, threshold=threshold)).adaptation
 
 
 def bands(Lm: Float) -> Iterator[slice]:

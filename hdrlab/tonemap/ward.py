@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import lookup
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.bands import banded
-from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.steps import last
 
 Float = NDArray[np.float32]
@@ -158,7 +158,7 @@ def curve(
     Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else `filled`.
     """
     Lf = foveal(L, field=field)
-    low, high = darkest(Lf), brightest(Lf)
+    low, high = robust_minimum(Lf), robust_maximum(Lf)
     if not low < high:
         low, high = (high or 1.0) / np.e, high or 1.0
     f, db = histogram(Lf, low=low, high=high, bins=bins)

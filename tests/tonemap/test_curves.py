@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.core.extremes import brightest, darkest
+from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.course.checks import laws
 from hdrlab.tonemap import curves, reinhard
 
@@ -97,13 +97,13 @@ def test_knobs_that_make_no_sense_are_refused(knobs):
 def test_extremes_leave_out_a_hot_and_a_dead_pixel_and_the_dark():
     L = np.float32(np.arange(2, 102)).reshape(10, 10)
     L[0, 0], L[9, 9] = 1e-9, 1e9
-    assert (darkest(L), brightest(L)) == (3, 100)
-    assert darkest(np.where(L < 50, 0, L)) == 51
-    assert darkest(L, cut=0.1) == 12 and brightest(L, cut=0.1) == 91
+    assert (robust_minimum(L), robust_maximum(L)) == (3, 100)
+    assert robust_minimum(np.where(L < 50, 0, L)) == 51
+    assert robust_minimum(L, cut=0.1) == 12 and robust_maximum(L, cut=0.1) == 91
 
 
 def test_extremes_of_next_to_nothing():
-    for extreme in (darkest, brightest):
+    for extreme in (robust_minimum, robust_maximum):
         assert extreme(np.zeros((3, 4), np.float32)) == 0
         assert extreme(np.full((1, 1), 5, np.float32)) == 5
         assert extreme(np.float32([[0, 7]])) == 7
@@ -111,5 +111,5 @@ def test_extremes_of_next_to_nothing():
 
 def test_extremes_of_a_large_picture_are_those_of_all_its_pixels_nearly():
     L = np.exp(np.random.default_rng(3).standard_normal((1200, 1100))).astype(np.float32)
-    assert np.log(brightest(L, cut=0.01)) == pytest.approx(np.log(np.quantile(L, 0.99)), abs=0.03)
-    assert np.log(darkest(L, cut=0.01)) == pytest.approx(np.log(np.quantile(L, 0.01)), abs=0.03)
+    assert np.log(robust_maximum(L, cut=0.01)) == pytest.approx(np.log(np.quantile(L, 0.99)), abs=0.03)
+    assert np.log(robust_minimum(L, cut=0.01)) == pytest.approx(np.log(np.quantile(L, 0.01)), abs=0.03)

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.core import bilateral
+from hdrlab.core.bilateral import Filtered, bilateral
 from hdrlab.core.colour import luminance
 from hdrlab.course.checks import laws
 from hdrlab.io import rgbe
@@ -77,14 +77,14 @@ def test_there_is_no_halo_where_chius_blur_has_one():
 def test_a_lonely_pixel_takes_the_base_of_its_neighbourhood():
     lL = np.zeros((60, 80), np.float32)
     lL[30, 40] = 3
-    found = bilateral.fast(lL, sigma_s=8, sigma_r=0.4)
+    found = bilateral(lL, sigma_s=8, sigma_r=0.4)
     base = durand.certain(found, sigma_s=8)
     assert found.mean[30, 40] > 2.9 and base[30, 40] < 0.3
     assert np.abs(np.delete(base.ravel(), 30 * 80 + 40)).max() < 0.01, "the others have enough of their kind"
 
 
 def test_where_all_is_certain_the_base_is_the_bilateral_mean_itself():
-    found = bilateral.fast(np.zeros((60, 80), np.float32), sigma_s=8, sigma_r=0.4)
+    found = bilateral(np.zeros((60, 80), np.float32), sigma_s=8, sigma_r=0.4)
     assert durand.certain(found, sigma_s=8) is found.mean
 
 
@@ -96,7 +96,7 @@ def test_the_weight_of_the_mean_rises_with_the_logarithm_of_k():
     for k in (1, enough**0.5, enough):
         weight = np.full((40, 40), 1000, np.float32)
         weight[20, 20] = k
-        bases.append(durand.certain(bilateral.Filtered(mean, weight), sigma_s=4.0)[20, 20])
+        bases.append(durand.certain(Filtered(mean, weight), sigma_s=4.0)[20, 20])
     assert bases[0] < 0.05 and bases[2] == 1 and bases[1] == pytest.approx((bases[0] + 1) / 2, abs=1e-4)
 
 

@@ -3,7 +3,7 @@
 Each file has PAIRS, {"function": (make, tolerance)}. make(kind, rng) returns (arguments, named arguments)
 for a kind of input, or None where such input has no meaning for this function. The tolerance is the largest
 allowed difference, absolute, or relative to the largest finite value of the lesson's answer, whichever is
-larger; exact is 0.
+larger; exact is 0. A tuple of tolerances is one for each part of the answer.
 """
 
 import pkgutil
@@ -61,8 +61,9 @@ def _same(came, expected, tolerance):
         came, expected = list(came.values()), list(expected.values())
     if isinstance(expected, tuple | list):
         assert isinstance(came, tuple | list) and len(came) == len(expected), (came, expected)
-        for one, other in zip(came, expected, strict=True):
-            _same(one, other, tolerance)
+        each = tolerance if isinstance(tolerance, tuple) else [tolerance] * len(expected)
+        for one, other, allowed in zip(came, expected, each, strict=True):
+            _same(one, other, allowed)
         return
     if expected is None or callable(expected) or isinstance(expected, str):
         assert came is expected or came == expected or callable(expected)

@@ -1,6 +1,6 @@
 """A wrong layers: sigma not squared."""
 
-from hdrlab.core import bilateral
+from hdrlab.core.bilateral import bilateral
 
 TASK = "layers"
 MISCONCEPTION = (
@@ -10,5 +10,5 @@ MISCONCEPTION = (
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):
-    base = bilateral.brute(lL, sigma_s=sigma_s**0.5, sigma_r=sigma_r**0.5).mean
+    base = bilateral(lL, sigma_s=sigma_s**0.5, sigma_r=sigma_r**0.5).mean
     return base, lL - base

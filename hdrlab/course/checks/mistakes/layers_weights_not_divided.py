@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.core import bilateral
+from hdrlab.core.bilateral import bilateral
 
 TASK = "layers"
 MISCONCEPTION = (
@@ -11,6 +11,6 @@ MISCONCEPTION = (
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):
-    mean, k = bilateral.brute(lL, sigma_s=sigma_s, sigma_r=sigma_r)
+    mean, k = bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r)
     base = mean * k / (2 * np.pi * sigma_s**2)
     return base, lL - base

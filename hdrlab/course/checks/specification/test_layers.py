@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.core import bilateral
+from hdrlab.core.bilateral import bilateral
 from hdrlab.course.checks.compare import finite, parts, same
 
 SIGMA = {"sigma_s": 4.0, "sigma_r": 0.4}
@@ -42,7 +42,7 @@ def test_the_layers_add_up_to_the_picture(subject, rng):
 )
 def test_the_base_is_the_bilateral_filter(subject, rng):
     lL = drawn(rng)
-    found = bilateral.brute(lL, **SIGMA)
+    found = bilateral(lL, **SIGMA)
     base, _ = asked(subject, lL)
     same(base, found.mean, 0.02, what="the base", picture=True, where=found.k > 20)
 

@@ -1,0 +1,148 @@
+"""The bilateral filter, fast on a coarse grid over place and level.
+
+v        signal                (H, W), and g, w, k as in `core.bilateral`
+h        node spacing          pixels, odd, at most sigma_s / 2
+z        level of a node       low, low + step, ...: Z of them, step at most sigma_r / 2
+
+Take the level as a third axis, and what differs much is far away: the filter is a Gaussian blur of that space
+(Paris and Durand, ECCV 2006), and what is blurred is known from few nodes.
+"""
+
+from collections.abc import Iterator
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.arrays import describe
+from hdrlab.core.bilateral import Filtered, as_signal
+from hdrlab.core.types import F32
+from hdrlab.fast import blur
+
+# levels in all
+MIN_LEVELS, MAX_LEVELS = 8, 1000
+# levels per sigma_r, at least, and bins of a histogram per level
+LEVELS, BINS = 2, 4
+# a closeness below 1e-15 is none: the least numbers of float32 are slow
+NOTHING, TINY = 1e-15, 1e-30
+
+
+class Axes(NamedTuple):
+    """The grid: spacing h, Y rows of X nodes, and Z levels, the lowest and their step."""
+
+    h: int
+    X: int
+    Y: int
+    low: float
+    step: float
+    Z: int
+    sigma_s: float
+    sigma_r: float
+
+
+def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
+    """Return the grid that holds v: node (j, i) lies on pixel (j h, i h), the last ones beyond the edge."""
+    h = max(1, 2 * int((sigma_s / 2 + 1) / 2) - 1)
+    low, extent = float(v.min()), float(np.ptp(v))
+    step = min(sigma_r / LEVELS, max(extent / MIN_LEVELS, TINY))
+    if extent > MAX_LEVELS * step:
+        raise ValueError(
+            f"expected a range of at most {MAX_LEVELS * step:g} for {sigma_r=}, got {describe(v)}"
+        )
+    Y, X = ((n - 1) // h + 2 for n in v.shape)
+    return Axes(h, X, Y, low, step, int(extent / step) + 2, sigma_s, sigma_r)
+
+
+def _histograms(v: F32, a: Axes) -> Iterator[F32]:
+    """Yield for each row of nodes the histograms (X, bins) of the h x h pixels around them, bins shared."""
+    bins = a.Z * BINS
+    start = (np.arange(v.shape[1]) + a.h // 2) // a.h * bins
+    for j in range(a.Y):
+        rows = v[max(0, j * a.h - a.h // 2) : j * a.h + a.h // 2 + 1]
+        t = (rows - np.float32(a.low)) * np.float32(BINS / a.step)
+        left = np.floor(
+            t
+        )  # a pixel is shared between the two bins beside it, and jumps from none to the next
+        index = (left.astype(np.intp) + start).ravel()
+        right = np.bincount(index, (t - left).ravel(), a.X * bins)
+        counts = np.bincount(index, minlength=a.X * bins) - right
+        counts[1:] += right[:-1]
+        yield counts.astype(np.float32).reshape(a.X, bins)
+
+
+def _closeness(a: Axes) -> F32:
+    """Return the matrix (bins, 2 Z) that takes a histogram to (sum of w, sum of w (v_q - z)) for each z."""
+    v, z = np.arange(a.Z * BINS) * (a.step / BINS), np.arange(a.Z) * a.step
+    d = v[:, None] - z
+    w = np.exp(-(d**2) / (2 * a.sigma_r**2))
+    w[w < NOTHING] = 0
+    return np.concatenate([w, w * d], axis=1).astype(np.float32)
+
+
+class Row(NamedTuple):
+    """A row of nodes: k (X, Z), and mean - z (X, Z) with its rise to the next z as imaginary part."""
+
+    k: F32
+    away: NDArray[np.complex64]
+
+
+def _nodes(v: F32, a: Axes) -> Iterator[Row]:
+    """Yield the rows of nodes, from top to bottom: the histograms' sums, blurred along the picture.
+
+    Cells of h pixels, and lines between nodes, are blurs themselves, of variance (h^2 - 1) / 12 and
+    (h^2 - 1) / 6. Variances add: the Gaussian along the nodes takes what is left.
+    """
+    g = blur._taps((a.sigma_s**2 - (a.h**2 - 1) / 4) ** 0.5 / a.h)
+    r, w, K = len(g) // 2, _closeness(a), blur._band(g, blur.NODES)
+    recent = np.zeros((len(g), a.X * 2 * a.Z), np.float32)  # the rows in reach; row j stands at j mod len(g)
+    row = np.zeros((a.X + -a.X % blur.NODES + 2 * r, 2 * a.Z), np.float32)
+    counted, area = _histograms(v, a), np.float32(2 * np.pi * (a.sigma_s / a.h) ** 2)
+    for j in range(a.Y + r):
+        recent[j % len(g)] = 0
+        if j < a.Y:
+            row[r : r + a.X] = next(counted) @ w
+            recent[j % len(g)] = blur._product(K, blur.NODES, row)[: a.X].ravel()
+        if j >= r:
+            near = (np.roll(g, j + 1) @ recent).reshape(a.X, 2, a.Z)
+            away = near[:, 1] / np.maximum(near[:, 0], TINY)  # 0 where nothing is near
+            rise = np.diff(away, append=away[:, -1:])
+            yield Row(near[:, 0] * area, away + np.complex64(1j) * rise)
+
+
+def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
+    """Return mean and k of the h rows v between two rows of nodes, each pixel at its place and level.
+
+    The mean is read along lines between the nodes, k at a node nearby: it is right to about a tenth.
+    """
+    y, x = np.ogrid[: len(v), : v.shape[1]]
+    z = (v - np.float32(a.low)) * np.float32(1 / a.step)
+    level = np.floor(z)
+    first, last = (row.away.view(np.float32).ravel() for row in (above, below))
+    away = (first + (y / a.h).astype(np.float32) * (last - first)).view(np.complex64)
+    place = level.astype(np.intp) + x // a.h * a.Z
+    at = place + y * (a.X * a.Z)
+    left, right = (away.take(i, mode="clip").view(np.float32) for i in (at, at + a.Z))
+    left += np.repeat(x % a.h / a.h, 2, axis=1).astype(np.float32) * (right - left)
+    place += (x % a.h > a.h // 2) * a.Z
+    near = a.h // 2 + 1
+    k = np.concatenate([above.k.take(place[:near]), below.k.take(place[near:])])
+    return Filtered(v + (left[:, ::2] + (z - level) * left[:, 1::2]), k)
+
+
+def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
+    """Return the lesson's filter by way of the grid, its mean right to 0.01 sigma_r (root mean square).
+
+    The wider sigma_s, the fewer nodes and the faster. A signal of over 500 sigma_r is a ValueError.
+
+    References
+    ----------
+    Paris and Durand, A fast approximation of the bilateral filter, ECCV 2006.
+    """
+    v = as_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
+    a = _axes(v, sigma_s=sigma_s, sigma_r=sigma_r)
+    mean, k = np.empty_like(v), np.empty_like(v)
+    for j, (above, below) in enumerate(pairwise(_nodes(v, a))):
+        rows = slice(j * a.h, (j + 1) * a.h)
+        mean[rows], k[rows] = _read(v[rows], a, above, below)
+    return Filtered(mean, k)

@@ -1,0 +1,69 @@
+"""hdrlab.fast.blur: Gaussians as matrix products, against the plain sum."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.ndimage import gaussian_filter
+
+from hdrlab.fast import blur
+
+
+def radiance(shape, seed=0):
+    rng = np.random.default_rng(seed)
+    light = gaussian_filter(rng.standard_normal(shape), 6)
+    return np.exp(2 * light / light.std() + 0.3 * rng.standard_normal(shape)).astype(np.float32)
+
+
+@settings(max_examples=40, deadline=None)
+@given(height=st.integers(1, 70), width=st.integers(1, 70), sigma=st.floats(0.05, 3.99))
+def test_a_narrow_blur_is_the_plain_sum_to_float32(height, width, sigma):
+    image = (
+        radiance((height, width))
+        if min(height, width) > 3
+        else np.random.default_rng(1).random((height, width))
+    )
+    plain = gaussian_filter(image.astype(np.float64), sigma)
+    assert np.allclose(blur.gaussian(image, sigma), plain, rtol=2e-6)
+
+
+@pytest.mark.parametrize("sigma", [4, 5.5, 7.99, 8, 12, 16, 33, 50])
+def test_a_wide_kernel_is_a_gaussian_to_a_five_hundredth_of_its_peak(sigma):
+    point = np.zeros((420, 421), np.float32)
+    point[203, 210] = 1
+    plain = gaussian_filter(point.astype(np.float64), sigma)
+    assert np.abs(blur.gaussian(point, sigma) - plain).max() < 0.002 * plain.max()
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (2, 3), (1, 90), (37, 64), (130, 257)])
+@pytest.mark.parametrize("sigma", [4, 9, 40])
+def test_a_wide_blur_reflects_at_the_edges_like_the_plain_one(shape, sigma):
+    image = 1 + np.random.default_rng(2).random(shape)
+    assert np.allclose(blur.gaussian(image, sigma), gaussian_filter(image, sigma), rtol=3e-3)
+
+
+def test_splines_between_nodes_reproduce_a_straight_line():
+    U = blur._spline(4, 8)
+    assert np.allclose(U.sum(axis=1), 1)
+    assert np.allclose(U @ np.arange(11), 1 + np.arange(32) / 4, atol=1e-5)
+
+
+@pytest.mark.parametrize("sigma", [4, 5.9, 11.3, 32.6])
+def test_six_decades_below_a_lamp_a_wide_blur_is_still_the_gaussian_to_a_seventh(sigma):
+    """Relative to the light that arrives there, of which a sum cut at four sigma misses three quarters."""
+    image = np.full((200, 260), 1e-3, np.float32)
+    image[80:90, 100:120] = 1e3
+    exact = gaussian_filter(image.astype(np.float64), sigma, mode="reflect", truncate=7)
+    assert np.abs(blur.gaussian(image, sigma) / exact - 1).max() < 0.15
+    assert np.abs(blur._direct(image, sigma) / exact - 1).max() > 0.75
+
+
+@pytest.mark.parametrize(("sigma", "h", "shape"), [(9, 4, (70, 90)), (40, 16, (50, 33)), (200, 64, (7, 1))])
+def test_folding_the_band_matrix_is_reflecting_the_picture(sigma, h, shape):
+    """The picture is read where it stands; the plain form continues it first, as often as need be."""
+    image = np.random.default_rng(3).random(shape, dtype=np.float32)
+    k = blur._taps(sigma)
+    few, r = blur._sampled(image, k, h), len(k) // 2
+    K = blur._band(k, len(few), h)
+    around = np.pad(image, [(r + h, K.shape[1] - r - h - len(image)), (0, 0)], mode="symmetric")
+    assert np.allclose(few, K @ around, atol=1e-5)
