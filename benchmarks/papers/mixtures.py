@@ -22,8 +22,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.calibration import joining, motion_blur, schedules, wilburn
-from hdrlab.calibration.blends import HIGH, LOW, POINTS, Blend, Joined, difference, unit
+from hdrlab.calibration import display, joining, motion_blur, wilburn
+from hdrlab.calibration.blends import (
+    MAX_BRIGHTNESS,
+    MIN_BRIGHTNESS,
+    TABLE_SIZE,
+    Blend,
+    InverseResponse,
+    difference,
+    normalize,
+)
 from hdrlab.capture.responses import RESPONSES, as_response
 from hdrlab.response import mitsunaga
 
@@ -48,12 +56,14 @@ def measured(exposure: Float, brightness: Float) -> Curve:
     return lambda X: np.interp(X, exposure, brightness)
 
 
-def truth(f: Curve, found: Joined) -> Joined:
+def truth(f: Curve, found: InverseResponse) -> InverseResponse:
     """Return f^-1 over the brightnesses of `found`; in the middle of the exposures where f is flat."""
     X = np.linspace(0, 1, 1 << 16)
     M, first, counts = np.unique(f(X), return_index=True, return_counts=True)
-    at = np.linspace(found.M[0], found.M[-1], POINTS)
-    return Joined(at, np.interp(at, M, (X[first] + X[first + counts - 1]) / 2), np.ones(0), np.ones(0))
+    at = np.linspace(found.M[0], found.M[-1], TABLE_SIZE)
+    return InverseResponse(
+        at, np.interp(at, M, (X[first] + X[first + counts - 1]) / 2), np.ones(0), np.ones(0)
+    )
 
 
 def photograph(f: Curve, X: Float, rng: np.random.Generator, *, sigma: float = SIGMA) -> NDArray[np.uint8]:
@@ -65,14 +75,14 @@ def photograph(f: Curve, X: Float, rng: np.random.Generator, *, sigma: float = S
 @cache
 def screen() -> tuple[Float, Float]:
     """Return the screen's light during one exposure (H, W), 1 for `BRIGHTEST`, and the grid's corners."""
-    shown = schedules.pictures((BRIGHTEST, 100), shape=(360, 300))
-    return np.mean((shown / BRIGHTEST) ** GAMMA, axis=0), schedules.outline(shown[0])
+    shown = display.draw_schedule(display.Schedule((BRIGHTEST, 100)), shape=(360, 300))
+    return np.mean((shown / BRIGHTEST) ** GAMMA, axis=0), display.find_corners(shown[0])
 
 
 def display_blends(f: Curve, rng: np.random.Generator) -> list[Blend]:
     """Return the two blends of one photograph of the screen."""
     light, corners = screen()
-    return schedules.read_blends(photograph(f, light, rng), corners, core=0.9)[0]
+    return display.read_blends(photograph(f, light, rng), corners, core=0.9)[0]
 
 
 def passing(x: Float, acceleration: float) -> Float:
@@ -91,7 +101,7 @@ def blurred(
     return photograph(f, np.tile(BLACK + (WHITE - BLACK) * share, (lines, 1)), rng)
 
 
-def errors(cameras: Sequence[Curve], found: Sequence[Joined]) -> Errors:
+def errors(cameras: Sequence[Curve], found: Sequence[InverseResponse]) -> Errors:
     """Return the Errors of the curves found for the cameras."""
     apart = np.stack([difference(one, truth(f, one)) for f, one in zip(cameras, found, strict=True)])
     return Errors(np.sqrt(np.mean(apart**2, axis=1)), np.abs(apart).max(axis=1), apart)
@@ -102,14 +112,20 @@ def variance(sets: Errors) -> float:
     return float(np.mean(np.var(100 * sets.apart, axis=0, ddof=1)))
 
 
-def display(cameras: Sequence[Curve], *, join: Callable[..., Joined] = joining.join, seed: int = 0) -> Errors:
+def by_display(
+    cameras: Sequence[Curve], *, join: Callable[..., InverseResponse] = joining.join, seed: int = 0
+) -> Errors:
     """Return the Errors of the display's method, one photograph per camera."""
     found = [join(display_blends(f, np.random.default_rng([seed, k]))) for k, f in enumerate(cameras)]
     return errors(cameras, found)
 
 
-def blur(
-    cameras: Sequence[Curve], *, join: Callable[..., Joined] | None = None, seed: int = 0, lines: int = LINES
+def by_motion_blur(
+    cameras: Sequence[Curve],
+    *,
+    join: Callable[..., InverseResponse] | None = None,
+    seed: int = 0,
+    lines: int = LINES,
 ) -> Errors:
     """Return the Errors of the method by motion blur, one photograph per camera, all its ramps together."""
     found = []
@@ -118,7 +134,7 @@ def blur(
         found.append(
             motion_blur.join(image)
             if join is None
-            else join(motion_blur.blends(image, motion_blur.ramps(image)))
+            else join(motion_blur.read_blends(image, motion_blur.find_ramps(image)))
         )
     return errors(cameras, found)
 
@@ -137,8 +153,8 @@ def self_calibrated(cameras: Sequence[Curve], *, off: float, seed: int = 0) -> E
         E, R = 10 ** rng.uniform(-2, 0, (100, 100)), 0.5 * (1 + off * rng.uniform(-1, 1, FRAMES - 1))
         exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
         g = mitsunaga.recover(np.stack([photograph(f, E * e, rng) for e in exposures]), stated)
-        at = np.linspace(LOW, HIGH, POINTS)
-        found.append(unit(at, np.interp(at, np.arange(256) / 255, np.exp(g)), np.ones(1), np.zeros(1)))
+        at = np.linspace(MIN_BRIGHTNESS, MAX_BRIGHTNESS, TABLE_SIZE)
+        found.append(normalize(at, np.interp(at, np.arange(256) / 255, np.exp(g)), np.ones(1), np.zeros(1)))
     return errors(cameras, found)
 
 
@@ -156,10 +172,10 @@ def table1(name: str, *, sets: int = 10, lines: int = LINES, seed: int = 0) -> d
         for off in OFF
     }
     return {
-        "display, polynomial": display(cameras, join=wilburn.join, seed=seed),
-        "display, spline": display(cameras, seed=seed),
-        "blur, polynomial": blur(cameras, join=wilburn.join, seed=seed, lines=lines),
-        "blur, spline": blur(cameras, seed=seed, lines=lines),
+        "display, polynomial": by_display(cameras, join=wilburn.join, seed=seed),
+        "display, spline": by_display(cameras, seed=seed),
+        "blur, polynomial": by_motion_blur(cameras, join=wilburn.join, seed=seed, lines=lines),
+        "blur, spline": by_motion_blur(cameras, seed=seed, lines=lines),
         **compared,
     }
 
@@ -169,12 +185,12 @@ def figure7(
 ) -> tuple[Float, Float]:
     """Return the RMSE between left and right edges (trials,), of linear and of accelerated motion.
 
-    Published: below 0.01 in the good example, 0.028 in the bad one; the limit is `motion.AGREE`.
+    Published: below 0.01 in the good example, 0.028 in the bad one; the limit is `motion_blur.MAX_RMSE`.
     """
     f, rng = as_response(name).f, np.random.default_rng(seed)
     pairs = [
         [
-            motion_blur.left_right(blurred(f, rng, acceleration=a, lines=lines)).rmse
+            motion_blur.compare_edges(blurred(f, rng, acceleration=a, lines=lines)).rmse
             for a in (0.0, acceleration)
         ]
         for _ in range(trials)
@@ -189,13 +205,12 @@ def screens_own(name: str = "film", *, seed: int = 0) -> tuple[Float, Float, Flo
     The paper's closing remark: several blends calibrate the monitor, too.
     """
     high = (220, 200, 180, 160, 140, 120, 100, 80)
-    shown = schedules.pictures(high, rows=1, columns=15, shape=(460, 880))
+    schedule = display.Schedule(high, rows=1, columns=15)
+    shown = display.draw_schedule(schedule, shape=(460, 880))
     light = np.mean((shown / BRIGHTEST) ** GAMMA, axis=0)
     image = photograph(as_response(name).f, light, np.random.default_rng(seed))
-    read = schedules.read_blends(
-        image, schedules.outline(shown[0]), grids=len(high), rows=1, columns=15, core=0.9
-    )
-    P, light = wilburn.display(high, joining.join(read[0]))
+    read = display.read_blends(image, display.find_corners(shown[0]), schedule, core=0.9)
+    P, light = display.recover_display(high, joining.join(read[0]))
     return P, light, (P / BRIGHTEST) ** GAMMA
 
 

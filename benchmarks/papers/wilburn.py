@@ -17,7 +17,7 @@ from hdrlab.calibration import motion_blur
 from hdrlab.io.emor import read_curves
 
 Float = NDArray[np.float64]
-WAYS = {"display": setup.display, "blur": setup.blur}
+WAYS = {"display": setup.by_display, "blur": setup.by_motion_blur}
 PUBLISHED = {"display": (0.012, 0.017, 0.050), "blur": (0.012, 0.029, 0.052)}  # RMSE, disparity, variance
 LIMITS = {"display": (0.001, 0.003, 0.008), "blur": (0.0005, 0.002, 0.006)}
 RMSE, DISPARITY = "RMSE: median, 95 %, worst", "disparity, mean"
@@ -67,8 +67,8 @@ def figure7(_: Path, *, trials: int = TRIALS) -> Mapping[str, ArrayLike]:
     """Return how often left and right edges tell linear motion from accelerated."""
     linear, accelerated = np.transpose(along(trial, range(trials), "motions"))
     return {
-        ACCEPTED: np.sum(linear < motion_blur.AGREE),
-        REJECTED: np.sum(accelerated > motion_blur.AGREE),
+        ACCEPTED: np.sum(linear < motion_blur.MAX_RMSE),
+        REJECTED: np.sum(accelerated > motion_blur.MAX_RMSE),
         "largest RMSE of linear, smallest of accelerated": [linear.max(), accelerated.min()],
     }
 

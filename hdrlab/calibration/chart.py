@@ -1,14 +1,18 @@
 """Calibration with a chart of 24 patches (Mitsunaga and Nayar, 1999, fig. 6; Wilburn et al., 2008, sec. 5).
 
-R  reflectance      (6,) of the bottom row, white to black: the share of the light that a patch gives back
-M  brightness       (4, 6[, 3]) of the patches, 0 to 1
-t  exposure times   (P,) seconds
-X  exposure         R times the light; of one patch in many photographs, t times what it gives back
+corners  (4, 2) pixels (x, y)   of the corner patches, outside: top left, top right, bottom right, bottom left
+u, v     grid coordinates       a patch is 1 wide: column k begins at u = k (1 + gap), and so for rows and v
+H        homography (3, 3)      (u, v, 1) -> (x, y, 1) times a factor
+R        reflectance (6,)       of the bottom row, white to black: the share of light that a patch reflects
+M        brightness             (4, 6[, 3]) of the patches, 0 to 1
+t        exposure times         (P,) seconds
+X        exposure               R times the light; of one patch in many photographs, t times what it reflects
 
-One photograph gives six points of the inverse response, by the reflectances that are known. Several with
-different times need none: along one patch exposure is proportional to time, which is a blend of its own with
-a scale, the patch's brightness in that place under that light, and no offset. `joining` finds the scales and
-one curve: Wilburn's ground truth.
+A plane seen by a camera without distortion is a homography away from the photograph; four corners fix its
+eight numbers. One photograph gives six points of the inverse response, by the reflectances that are known.
+Several with different times need none: along one patch exposure is proportional to time, which is a blend of
+its own with a scale, the patch's brightness in that place under that light, and no offset. `joining` finds
+the scales and one curve: Wilburn's ground truth.
 
 The reflectances are the specification of the chart, McCamy, Marcus and Davidson, A color-rendition chart,
 1976, as the package colour-science lists it ("ColorChecker 1976"). Printed charts differ: BabelColor's mean
@@ -16,21 +20,21 @@ of 30 is 1.4 % above it for white, 3.3 % below for neutral 5, and 2.2 % above fo
 a chart passes its own R.
 """
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
+from skimage.draw import polygon
 
 from hdrlab.calibration import joining
-from hdrlab.calibration.blends import HIGH, LOW, POINTS, Joined, blend, unit
-from hdrlab.calibration.patch_grid import read
-from hdrlab.core.arrays import as_stack, as_times, describe
+from hdrlab.calibration.blends import TABLE_SIZE, InverseResponse, make_blend, normalize
+from hdrlab.core.arrays import as_stack, as_times, describe, levels
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
 ROWS, COLUMNS = 4, 6
-GAP = 0.15  # about what the classic chart has between its patches, over a patch's width
-LUMINOUS = np.array(  # Y of the patches in %, row by row, under illuminant C
+# Space between the patches of the classic chart, over a patch's width.
+GAP = 0.15
+# Y of the patches in %, row by row, under illuminant C.
+LUMINANCE = np.array(
     [
         [10.05, 35.82, 19.33, 13.29, 24.27, 43.06],
         [30.05, 12.00, 19.77, 6.56, 44.29, 43.06],
@@ -38,11 +42,105 @@ LUMINOUS = np.array(  # Y of the patches in %, row by row, under illuminant C
         [90.01, 59.10, 36.20, 19.77, 9.00, 3.13],
     ]
 )
-LUMINOUS.setflags(write=False)
-NEUTRAL = LUMINOUS[3] / 100  # gray reflects all wavelengths alike: R in every channel
+LUMINANCE.setflags(write=False)
+# R of the gray patches: gray reflects all wavelengths alike, so it is one number for every channel.
+NEUTRAL = LUMINANCE[3] / 100
+UNIT_SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
 
 
-def read_chart(image: ArrayLike, corners: ArrayLike, *, gap: float = GAP, core: float = 0.6) -> Float:
+def homography(source: ArrayLike, target: ArrayLike) -> F64:
+    """Return H (3, 3), H[2, 2] = 1, that takes the four points `source` (4, 2) to `target` (4, 2).
+
+    x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear in H.
+
+    Raises
+    ------
+    ValueError
+        For points that are not the corners of a convex quadrilateral.
+
+    Examples
+    --------
+    >>> homography(UNIT_SQUARE, [[5, 5], [7, 5], [7, 7], [5, 7]]).round(9) + 0.0
+    array([[2., 0., 5.],
+           [0., 2., 5.],
+           [0., 0., 1.]])
+    """
+    (u, v), (x, y) = _as_corners(source).T, _as_corners(target).T
+    zero, one = np.zeros(4), np.ones(4)
+    rows_x = np.column_stack([u, v, one, zero, zero, zero, -x * u, -x * v])
+    rows_y = np.column_stack([zero, zero, zero, u, v, one, -y * u, -y * v])
+    return np.append(np.linalg.solve(np.vstack([rows_x, rows_y]), np.r_[x, y]), 1.0).reshape(3, 3)
+
+
+def _as_corners(points: ArrayLike) -> F64:
+    """Return points (4, 2) that turn one way at each of four corners, or raise a ValueError."""
+    corners = np.asarray(points, np.float64)
+    if corners.shape != (4, 2) or not np.all(np.isfinite(corners)):
+        raise ValueError(f"expected four corners (4, 2), (x, y) in pixels, got {describe(corners)}")
+    edges = np.roll(corners, -1, axis=0) - corners
+    turns = np.linalg.det(np.stack([edges, np.roll(edges, -1, axis=0)], axis=1))
+    if not abs(np.sign(turns).sum()) == 4 or np.abs(turns).min() < 1e-6 * np.ptp(corners) ** 2:
+        raise ValueError(f"expected the corners of a convex quadrilateral, got {corners.tolist()}")
+    return corners
+
+
+def read_patches(
+    image: ArrayLike, corners: ArrayLike, rows: int, columns: int, *, gap: float = 0.0, core: float = 0.6
+) -> F64:
+    """Return the mean brightness of each patch's core, 0 to 1, in any grid of patches.
+
+    Parameters
+    ----------
+    image : (H, W) or (H, W, 3) uint8 or uint16
+        A photograph of the grid.
+    corners : (4, 2)
+        Pixels (x, y), outer corners of the corner patches: top left, top right, bottom right, bottom left as
+        the grid counts them, however the photograph is turned.
+    rows, columns : int
+        Of the grid.
+    gap : float
+        Space between two patches, over a patch's width.
+    core : float
+        The fraction of a patch's width and height that is read; the rest is mixed by edges and the lens.
+
+    Returns
+    -------
+    (rows, columns) or (rows, columns, 3) float64
+
+    Raises
+    ------
+    ValueError
+        For arrays that are no image or no corners, corners outside of the image, or patches too small to hold
+        a pixel.
+
+    Examples
+    --------
+    >>> image = np.kron([[0, 51], [102, 255]], np.ones((9, 9))).astype(np.uint8)
+    >>> read_patches(image, [[-0.5, -0.5], [17.5, -0.5], [17.5, 17.5], [-0.5, 17.5]], 2, 2)
+    array([[0. , 0.2],
+           [0.4, 1. ]])
+    """
+    stack = as_stack(np.asarray(image)[None])
+    if rows < 1 or columns < 1 or not gap >= 0 or not 0 < core <= 1:
+        raise ValueError(
+            f"expected rows, columns > 0, gap >= 0 and 0 < core <= 1, got {rows, columns, gap, core}"
+        )
+    H = homography(UNIT_SQUARE * [columns + gap * (columns - 1), rows + gap * (rows - 1)], corners)
+    shape = np.array(stack.shape[1:3])
+    if np.any(np.asarray(corners) < -0.5) or np.any(np.asarray(corners) > shape[::-1] - 0.5):
+        raise ValueError(f"expected corners within a picture of {shape} pixels, got {corners}")
+    M = np.empty((rows, columns, *stack.shape[3:]))
+    for row, column in np.ndindex(rows, columns):
+        core_corners = np.array([column, row]) * (1 + gap) + 0.5 + core * (UNIT_SQUARE - 0.5)
+        x, y, w = H @ np.vstack([core_corners.T, np.ones(4)])
+        pixels = stack[0][polygon(y / w, x / w, shape)]
+        if len(pixels) == 0:
+            raise ValueError("expected patches of a few pixels at least, one holds none: check the corners")
+        M[row, column] = pixels.mean(axis=0) / (levels(stack) - 1)
+    return M
+
+
+def read_chart(image: ArrayLike, corners: ArrayLike, *, gap: float = GAP, core: float = 0.6) -> F64:
     """Return M (4, 6[, 3]), the mean brightness of the chart's patches, dark skin first and black last.
 
     Parameters
@@ -60,19 +158,19 @@ def read_chart(image: ArrayLike, corners: ArrayLike, *, gap: float = GAP, core: 
     Raises
     ------
     ValueError
-        For an image or corners that are none.
+        As `read_patches`.
 
     Examples
     --------
-    >>> chart = np.kron(LUMINOUS * 2.5, np.ones((20, 20))).astype(np.uint8)
+    >>> chart = np.kron(LUMINANCE * 2.5, np.ones((20, 20))).astype(np.uint8)
     >>> M = read_chart(chart, [[-0.5, -0.5], [119.5, -0.5], [119.5, 79.5], [-0.5, 79.5]], gap=0)
     >>> bool(np.allclose(M[3], np.floor(NEUTRAL * 250) / 255))
     True
     """
-    return read(image, corners, ROWS, COLUMNS, gap=gap, core=core)
+    return read_patches(image, corners, ROWS, COLUMNS, gap=gap, core=core)
 
 
-def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL, *, low: float = LOW, high: float = HIGH) -> Joined:
+def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> InverseResponse:
     """Return the inverse response through the gray patches, interpolated so that it rises (PCHIP).
 
     Parameters
@@ -81,14 +179,12 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL, *, low: float = LOW, high
         Brightness of the patches in one channel, 0 to 1.
     R : (K,) float
         Their reflectances: those of the specification, or better the chart's own.
-    low, high : float
-        The brightnesses that are measurements.
 
     Returns
     -------
-    Joined
+    InverseResponse
         From the darkest patch measured to the brightest; s is what reflectance 1 has, r what none has, so
-        that `blends.ln_exposure(joined, black=joined.r[0])` is the chapter's g.
+        that `blends.ln_exposure(joined, black=joined.r[0])` is g for every merge.
 
     Raises
     ------
@@ -103,24 +199,20 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL, *, low: float = LOW, high
     True
     """
     M, R = np.asarray(M, np.float64), np.asarray(R, np.float64)
-    samples = blend(R, M, low=low, high=high)
+    samples = make_blend(R, M)
     order = np.argsort(samples.I)
     x, m = samples.I[order], samples.M[order]
     if len(x) < 3:
-        raise ValueError(
-            f"expected three gray patches within {low:.3g} to {high:.3g}, got {len(x)} of {describe(M)}"
-        )
+        raise ValueError(f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}")
     if np.any(np.diff(x) <= 0) or np.any(np.diff(m) <= 0):
         raise ValueError(
             f"expected patches that are brighter the more they reflect, got {m.round(4).tolist()}"
         )
-    at = np.linspace(m[0], m[-1], POINTS)
-    return unit(at, np.asarray(PchipInterpolator(m, x)(at)), np.ones(1), np.zeros(1))
+    brightness = np.linspace(m[0], m[-1], TABLE_SIZE)
+    return normalize(brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1))
 
 
-def ground_truth(
-    M: ArrayLike, times: ArrayLike, *, low: float = LOW, high: float = HIGH, **knobs: Any
-) -> Joined:
+def recover_bracket(M: ArrayLike, times: ArrayLike) -> InverseResponse:
     """Return the inverse response that patches photographed with several times join in [Wilburn08 sec. 5].
 
     Parameters
@@ -129,14 +221,10 @@ def ground_truth(
         Brightness of K patches in P photographs, one channel, 0 to 1. Any patches will do, coloured ones too.
     times : (P,) float
         Seconds.
-    low, high : float
-        The brightnesses that are measurements.
-    **knobs
-        Of `joining.join`.
 
     Returns
     -------
-    Joined
+    InverseResponse
         s is each patch's exposure per second; r is what no light has.
 
     Raises
@@ -148,7 +236,7 @@ def ground_truth(
     --------
     >>> times = 2.0 ** np.arange(-6, 1, 0.5)
     >>> M = np.minimum(np.outer(times, NEUTRAL), 1) ** (1 / 2.2)
-    >>> joined = ground_truth(M, times)
+    >>> joined = recover_bracket(M, times)
     >>> bool(np.allclose(joined.s / joined.s[0], NEUTRAL / NEUTRAL[0], rtol=0.01))
     True
     """
@@ -156,11 +244,10 @@ def ground_truth(
     if M.ndim != 2:
         raise ValueError(f"expected brightness (P, K) of K patches in P photographs, got {describe(M)}")
     times = as_times(times, len(M))
-    patches = [blend(times, one, low=low, high=high) for one in M.T]
-    return joining.join(patches, offset=False, **knobs)
+    return joining.join([make_blend(times, patch) for patch in M.T], offset=False)
 
 
-def read_bracket(images: ArrayLike, corners: ArrayLike, **knobs: float) -> Float:
+def read_bracket(images: ArrayLike, corners: ArrayLike, **knobs: float) -> F64:
     """Return M (P, 24[, 3]) of photographs (P, H, W[, 3]) from one place; knobs of `read_chart`."""
     stack = as_stack(images)
     return np.stack(

@@ -1,126 +1,145 @@
-"""Joining blends by a spline that can only rise (Wilburn et al., CVPR 2008, eq. 5, better posed).
+"""Joining blends by a monotone spline (Wilburn et al., CVPR 2008, eq. 5, better posed; Ramsay, 1988).
 
 I_ij  relative irradiance   of sample i in blend j
 m_ij  brightness            0 to 1, from the lowest measured to the highest
 s, r  scales and offsets    (n,); s of the widest blend is 1, which fixes the unit
-S_k   steps                 sums B_k + B_k+1 + ... of K cubic B-splines, knots evenly over the range
-c     increments            (K,) >= 0: g = sum_k c_k S_k never falls
-v     slope                 g' of the round before; at B-spline k it is v_k, and h_k apart they stand
+B_k   B-splines             K cubic ones, knots evenly over 0 to 1; B_k lies h_k to the right of B_k-1
+S_k   I-splines             B_k + B_k+1 + ... + B_K-1: rises from 0 to 1 [Ramsay88]
+c     increments            (K,) >= 0: g = sum_k c_k S_k never falls, and c_k / h_k is a slope
+p     predicted brightness  g^-1(s_j I_ij + r_j), g of the iteration before
+v     slope                 g' of the iteration before, v_k at B-spline k
 lambda  `smoothness`
 
 A polynomial of degree 6 is stiff where a response bends and swings where it is straight, and a simplex may
-stop on its way. Here every round is least squares in c, s and r with c >= 0,
+stop on its way. Here every iteration is least squares in c, s and r with c >= 0,
 
     sum_ij ((g(p) - s_j I_ij - r_j) / v(p) + m_ij - p)^2 + lambda sum_k ((c / h)''_k / v_k)^2,
 
-Gauss and Newton's form of sum_ij (m_ij - f(s_j I_ij + r_j))^2. The noise is in m; put into g, as in eq. 5, it
-would be on both sides of the fit and flatten the curve. So g is taken at p, the brightness that the round
-before predicts for s_j I_ij + r_j. The third differences of the spline's coefficients, second ones of its
-slopes, are taken relative to the slope: a toe a hundred times flatter than the shoulder is smoothed a hundred
-times less.
+the Gauss-Newton form of sum_ij (m_ij - f(s_j I_ij + r_j))^2. The noise is in m; put into g, as in eq. 5, it
+would be on both sides of the fit and flatten the curve. So g is taken at the predicted brightness p. The
+third differences of the spline's coefficients, second ones of its slopes, are taken relative to the slope: a
+toe a hundred times flatter than the shoulder is smoothed a hundred times less.
 """
 
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from scipy.interpolate import BSpline
 from scipy.optimize import nnls
 
-from hdrlab.calibration.blends import POINTS, Blend, Joined, as_blends, domain, unit, within
-from hdrlab.calibration.splines import bends, steps
+from hdrlab.calibration.blends import (
+    TABLE_SIZE,
+    Blend,
+    InverseResponse,
+    build_response,
+    rescale,
+    select_blends,
+)
 from hdrlab.core.steps import last
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
-Rows = tuple[Float, Float, Float]
-GRID = np.linspace(0, 1, POINTS)
-FLAT = 1e-3  # of the mean slope: what is flatter is hardly told from a step
+GRID = np.linspace(0, 1, TABLE_SIZE)
+# Of the mean slope: what is flatter can hardly be distinguished from a step.
+MIN_SLOPE = 1e-3
 
 
 class State(NamedTuple):
-    """After a round: the curve g and its slope v (1024,), scales s and offsets r (n,), and the cost."""
+    """After an iteration: the curve g and its slope v (1024,), scales s and offsets r (n,), and the cost."""
 
-    g: Float
-    v: Float
-    s: Float
-    r: Float
+    g: F64
+    v: F64
+    s: F64
+    r: F64
     cost: float
 
 
-def slope(g: Float) -> Float:
-    """Return v = g' on the grid, nowhere below FLAT of its mean."""
-    return np.maximum(np.gradient(g, GRID), FLAT * (g[-1] - g[0]))
+def knots(count: int) -> F64:
+    """Return the knots of `count` cubic B-splines on 0 to 1."""
+    return np.r_[[0.0] * 3, np.linspace(0, 1, count - 2), [1.0] * 3]
 
 
-@lru_cache(maxsize=8)
-def on_grid(count: int) -> Float:
-    """Return S_k on the grid, which every round looks up."""
-    S = steps(GRID, count)
-    S.flags.writeable = False
-    return S
+def i_splines(m: F64, count: int) -> F64:
+    """Return S_k(m), (l, K): each rises from 0 to 1.
+
+    Examples
+    --------
+    >>> i_splines(np.array([0.0, 1.0]), 5).round(3).tolist()
+    [[1.0, 0.0, 0.0, 0.0, 0.0], [1.0, 1.0, 1.0, 1.0, 1.0]]
+    """
+    B = BSpline.design_matrix(np.clip(m, 0, 1), knots(count), 3).toarray()
+    return B[:, ::-1].cumsum(axis=1)[:, ::-1]
 
 
-def equations(
-    blends: Sequence[Blend], p: Float, v: Float, count: int, widest: int, offset: bool
-) -> list[Rows]:
-    """Return A, F, b of each blend: its rows say A c - F (s, r) = b; the widest one's scale is 1, no unknown.
+def slope_curvature(v: F64, count: int) -> F64:
+    """Return the rows (K - 3, K) of (c / h)''_k / v_k; c_0 is g(0), no slope.
+
+    A B-spline's place is the mean of its three inner knots (Greville's abscissa).
+    """
+    t = knots(count)
+    places = (t[1:-3] + t[2:-2] + t[3:-1]) / 3
+    h, middle = np.diff(places), (places[1:] + places[:-1]) / 2
+    rows = np.diff(np.diag(1 / h), 2, axis=0) / np.interp(middle[1:-1], GRID, v)[:, None]
+    return np.pad(rows, ((0, 0), (1, 0)))
+
+
+def build_equations(
+    blends: Sequence[Blend], p: F64, v: F64, count: int, offset: bool
+) -> list[tuple[F64, F64, F64]]:
+    """Return A, F, b of each blend: A c - F (s, r) = b; the widest one's scale is 1, no unknown.
 
     p holds the blends' predicted brightnesses one after the other.
     """
+    widest = int(np.argmax([np.ptp(blend.M) for blend in blends]))
     weight = 1 / np.interp(p, GRID, v)
-    left = steps(p, count) * weight[:, None]
-    right = p - np.concatenate([one.M for one in blends])
+    A = i_splines(p, count) * weight[:, None]
     systems, start = [], 0
-    for j, one in enumerate(blends):
-        own = slice(start, start + len(one.M))
-        known = float(j == widest)
-        unknown = np.column_stack([one.I, np.ones(len(one.I))])[:, int(known) : 2 if offset else 1]
-        w = weight[own]
-        systems.append((left[own], unknown * w[:, None], right[own] + known * one.I * w))
+    for j, (I, M) in enumerate(blends):  # noqa: E741, the paper's letter
+        own = slice(start, start + len(M))
+        F = np.column_stack([I, np.ones(len(I))])[:, int(j == widest) : 2 if offset else 1]
+        b = p[own] - M + (j == widest) * I * weight[own]
+        systems.append((A[own], F * weight[own, None], b))
         start = own.stop
     return systems
 
 
-def eliminate(A: Float, F: Float, b: Float) -> tuple[Float, Float]:
-    """Return A and b less what the blend's own unknowns take up, (1 - Q Q^T) of them with F = Q R."""
-    Q = np.linalg.qr(F)[0]
-    return A - Q @ (Q.T @ A), b - Q @ (Q.T @ b)
+def eliminate(A: F64, F: F64, b: F64) -> F64:
+    """Return [A b] without the part that the blend's own unknowns take up: (1 - Q Q^T) [A b], F = Q R."""
+    Q, rows = np.linalg.qr(F)[0], np.column_stack([A, b])
+    return rows - Q @ (Q.T @ rows)
 
 
-def increments(systems: Sequence[Rows], penalty: Float, offset: bool) -> tuple[Float, float]:
+def solve_increments(
+    systems: Sequence[tuple[F64, F64, F64]], penalty: F64, offset: bool
+) -> tuple[F64, float]:
     """Return c >= 0 and the cost of all blends' equations together; with offsets free, c_0 is 0."""
-    rows = [np.column_stack(eliminate(*one)) for one in systems]
+    rows = [eliminate(*system) for system in systems]
     rows.append(np.pad(penalty, ((0, 0), (0, 1))))
-    R = np.asarray(np.linalg.qr(np.vstack(rows), mode="r"))  # K + 1 rows that say the same
-    A, b = R[:, :-1].copy(), R[:, -1]
-    A[:, 0] *= not offset
-    c, norm = nnls(A, b)
+    R = np.linalg.qr(np.vstack(rows), mode="r")  # K + 1 rows with the same least squares
+    R[:, 0] *= not offset
+    c, norm = nnls(R[:, :-1], R[:, -1])
     return c, float(norm**2)
 
 
-def turn(
-    blends: Sequence[Blend], p: Float, v: Float, *, count: int, smoothness: float, offset: bool
-) -> State:
-    """Return the State after a round, given the predicted brightnesses p and the slope v."""
-    widest = int(np.argmax([np.ptp(one.M) for one in blends]))
-    systems = equations(blends, p, v, count, widest, offset)
-    c, cost = increments(systems, np.sqrt(smoothness) * bends(v, GRID, count), offset)
-    g = on_grid(count) @ c
+def update(blends: Sequence[Blend], p: F64, v: F64, *, count: int, smoothness: float, offset: bool) -> State:
+    """Return the State after an iteration, given the predicted brightnesses p and the slope v."""
+    systems = build_equations(blends, p, v, count, offset)
+    c, cost = solve_increments(systems, np.sqrt(smoothness) * slope_curvature(v, count), offset)
+    g = i_splines(GRID, count) @ c
     if not g[-1] > g[0]:
         raise ValueError(
             "expected brightness that rises with irradiance, but the blends fit a flat curve best"
         )
     x = [np.linalg.lstsq(F, A @ c - b, rcond=None)[0] for A, F, b in systems]
-    s = np.array([1.0 if j == widest else one[0] for j, one in enumerate(x)])
+    s = np.array([one[0] if len(one) == 1 + offset else 1.0 for one in x])
     r = np.array([one[-1] if offset else 0.0 for one in x])
-    return State(g, slope(g), s, r, cost)
+    return State(g, np.maximum(np.gradient(g, GRID), MIN_SLOPE * (g[-1] - g[0])), s, r, cost)
 
 
-def predict(blends: Sequence[Blend], state: State) -> Float:
+def predict_brightness(blends: Sequence[Blend], state: State) -> F64:
     """Return p = g^-1(s_j I_ij + r_j), of one blend after the other."""
     rising = state.g + 1e-12 * state.g[-1] * GRID  # so that a flat stretch has one answer
-    X = [s * one.I + r for one, s, r in zip(blends, state.s, state.r, strict=True)]
+    X = [s * blend.I + r for blend, s, r in zip(blends, state.s, state.r, strict=True)]
     return np.interp(np.concatenate(X), rising, GRID)
 
 
@@ -130,48 +149,53 @@ def join_steps(
     count: int = 24,
     smoothness: float = 1e-5,
     offset: bool = True,
-    rounds: int = 30,
-    enough: float = 2e-5,
+    max_iterations: int = 30,
+    tolerance: float = 2e-5,
 ) -> Iterator[State]:
-    """Yield the State after each round, until the curve moves by less than `enough` of its range."""
-    blends = as_blends(blends)
-    if count < 6 or not smoothness >= 0 or rounds < 1:
+    """Yield the State after each iteration, until the curve moves by less than `tolerance` of its range."""
+    blends = rescale(select_blends(blends))
+    if count < 6 or not smoothness >= 0 or max_iterations < 1:
         raise ValueError(
-            f"expected count >= 6, smoothness >= 0 and rounds >= 1, got {count}, {smoothness}, {rounds}"
+            "expected count >= 6, smoothness >= 0 and max_iterations >= 1, "
+            f"got {count}, {smoothness}, {max_iterations}"
         )
-    low, high = domain(blends)
-    placed = [Blend(one.I, (one.M - low) / (high - low)) for one in blends]
-    p, v, before = np.concatenate([one.M for one in placed]), np.ones(POINTS), GRID
-    for _ in range(rounds):
-        state = turn(placed, p, v, count=count, smoothness=smoothness, offset=offset)
+    p, v, before = np.concatenate([blend.M for blend in blends]), np.ones(TABLE_SIZE), GRID
+    for _ in range(max_iterations):
+        state = update(blends, p, v, count=count, smoothness=smoothness, offset=offset)
         yield state
         now = state.g / state.g[-1]
-        if np.abs(now - before).max() < enough:
+        if np.abs(now - before).max() < tolerance:
             return
-        p, v, before = predict(placed, state), state.v, now
+        p, v, before = predict_brightness(blends, state), state.v, now
 
 
-def join(blends: Sequence[Blend], *, ends: float = 0.005, **knobs: Any) -> Joined:
-    """Return the inverse response that joins the blends, a rising spline.
+def join(
+    blends: Sequence[Blend],
+    *,
+    count: int = 24,
+    smoothness: float = 1e-5,
+    offset: bool = True,
+    ends: float = 0.005,
+) -> InverseResponse:
+    """Return the inverse response that joins the blends, a monotone spline.
 
     Parameters
     ----------
     blends : sequence of Blend
-        Samples of a few mixtures, within the measured range: see `blends.blend`.
-    ends : float
-        The part of the samples at either end that lies outside of the curve returned: see `blends.within`.
+        Samples of a few mixtures, within the measured range: see `blends.make_blend`.
     count : int
-        K, 24 B-splines.
+        K, the number of B-splines.
     smoothness : float
         lambda, 1e-5 for means over many pixels; it goes with the variance of m: 1e-3 for single pixels.
     offset : bool
         Whether blends have offsets of their own (True). Not where I is an exposure time: no time, no light.
-    rounds, enough : int, float
-        At most 30 rounds, fewer when the curve moves by less than 2e-5.
+    ends : float
+        The part of the samples at either end that lies outside of the curve returned: see
+        `blends.build_response`.
 
     Returns
     -------
-    Joined
+    InverseResponse
         X over M, from 0 to 1 over the measured range, with scales s and offsets r in that unit.
 
     Raises
@@ -191,6 +215,5 @@ def join(blends: Sequence[Blend], *, ends: float = 0.005, **knobs: Any) -> Joine
     >>> round(float(np.interp(0.5, joined.M, joined.X)), 2), round(float(joined.s[1] / joined.s[0]), 3)
     (0.25, 0.2)
     """
-    told, state = as_blends(blends), last(join_steps(blends, **knobs))
-    low, high = domain(told)
-    return within(unit(low + GRID * (high - low), state.g, state.s, state.r), told, ends)
+    state = last(join_steps(blends, count=count, smoothness=smoothness, offset=offset))
+    return build_response(select_blends(blends), state.g, state.s, state.r, ends=ends)

@@ -11,7 +11,7 @@ curves part.
 
 from collections import Counter, defaultdict
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -19,11 +19,12 @@ from scipy.ndimage import median_filter
 from scipy.stats import theilslopes
 
 from hdrlab.calibration import joining
-from hdrlab.calibration.blends import HIGH, LOW, Blend, Joined, blend, rmse
+from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend, rmse
 from hdrlab.core.arrays import as_stack, levels
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
-AGREE = 0.01  # RMSE: the paper's good example stays below, its bad one has 0.028; see `left_right`
+# Fraction of the range: the paper's good example stays below, its bad one has 0.028.
+MAX_RMSE = 0.01
 
 
 class Ramp(NamedTuple):
@@ -35,16 +36,16 @@ class Ramp(NamedTuple):
     rises: bool
 
 
-class Verdict(NamedTuple):
+class Comparison(NamedTuple):
     """Whether left and right edges agree: the RMSE between their curves, and the curves."""
 
     linear: bool
     rmse: float
-    left: Joined
-    right: Joined
+    left: InverseResponse
+    right: InverseResponse
 
 
-def sides(row: Float, *, low: float, high: float, width: int) -> NDArray[np.int8]:
+def classify(row: F64, *, low: float, high: float, width: int) -> NDArray[np.int8]:
     """Return -1 where the row is dark, 1 where it is bright, 0 between, by the median of `width` pixels.
 
     Unlike a mean, it leaves a steep end of a ramp where it is.
@@ -53,39 +54,44 @@ def sides(row: Float, *, low: float, high: float, width: int) -> NDArray[np.int8
     return (middle >= high).astype(np.int8) - (middle <= low).astype(np.int8)
 
 
-def straighten(found: Sequence[Ramp]) -> list[Ramp]:
+def straighten_edges(found: Sequence[Ramp]) -> list[Ramp]:
     """Return the ramps with ends that lie on straight lines over the rows, as the target's edges do.
 
     Where a ramp ends by its own noise, noise has chosen its last samples: just before it is bright enough
     there are those that are too dark. A line through the ends of all rows (Theil and Sen's, the median of all
-    slopes) knows hardly anything of a single one's noise. Ramps far off it belong to something else.
+    slopes) hardly depends on the noise of a single one. Ramps far off it belong to something else.
     """
     edges, count = defaultdict(list), Counter[int]()
     for one in found:
         edges[count[one.row], one.rises].append(one)
         count[one.row] += 1
-    return sorted(ramp for edge in edges.values() for ramp in _straight(edge))
+    return sorted(ramp for edge in edges.values() for ramp in _straighten(edge))
 
 
-def _straight(edge: Sequence[Ramp]) -> list[Ramp]:
+def _straighten(edge: Sequence[Ramp]) -> list[Ramp]:
     """Return the ramps of one edge with their ends on two lines, without those off by a tenth of a ramp."""
     row, start, stop, _ = np.array(edge).T
     if len(np.unique(row)) < 3:
         return list(edge)
-    first, last = np.maximum([_line(row, start), _line(row, stop)], 0)
+    first, last = np.maximum([_fit_line(row, start), _fit_line(row, stop)], 0)
     near = np.maximum(np.abs(first - start), np.abs(last - stop)) <= (last - first) / 10
     return [edge[k]._replace(start=int(first[k]), stop=int(last[k])) for k in np.flatnonzero(near).tolist()]
 
 
-def _line(x: NDArray[np.intp], y: NDArray[np.intp]) -> Float:
+def _fit_line(x: NDArray[np.intp], y: NDArray[np.intp]) -> F64:
     """Return the whole numbers nearest to a straight line through y (x), by the slopes of all pairs."""
     some = slice(None, None, len(x) // 500 + 1)  # for pairs are many
     found = theilslopes(y[some], x[some])
     return np.rint(found.intercept + found.slope * x)
 
 
-def ramps(
-    image: ArrayLike, *, low: float = LOW, high: float = HIGH, width: int = 5, shortest: int = 8
+def find_ramps(
+    image: ArrayLike,
+    *,
+    low: float = MIN_BRIGHTNESS,
+    high: float = MAX_BRIGHTNESS,
+    width: int = 5,
+    shortest: int = 8,
 ) -> list[Ramp]:
     """Return the ramps of each scan line: where it goes from dark to bright, or back.
 
@@ -108,7 +114,7 @@ def ramps(
     Examples
     --------
     >>> row = np.r_[np.full(20, 255), np.arange(252, 0, -7), np.zeros(20)].astype(np.uint8)
-    >>> ramps(np.stack([row, row[::-1]]))
+    >>> find_ramps(np.stack([row, row[::-1]]))
     [Ramp(row=0, start=22, stop=54, rises=False), Ramp(row=1, start=22, stop=54, rises=True)]
     """
     stack = as_stack(np.asarray(image)[None])
@@ -120,62 +126,58 @@ def ramps(
         )
     found = []
     for number, row in enumerate(stack[0] / (levels(stack) - 1)):
-        side = sides(row, low=low, high=high, width=width)
+        side = classify(row, low=low, high=high, width=width)
         ends = np.flatnonzero(side)
         for before, after in zip(ends[:-1], ends[1:], strict=True):
             if side[before] != side[after] and after - before > shortest:
                 found.append(Ramp(number, int(before) + 1, int(after), bool(side[after] > 0)))
-    return straighten(found)
+    return straighten_edges(found)
 
 
-def as_blend(row: Float, ramp: Ramp) -> Blend:
-    """Return the ramp as a Blend: I = 0, 1, 2 ... from its dark end on [Wilburn08 sec. 2.2]."""
-    M = row[ramp.start : ramp.stop]
-    return blend(np.arange(len(M)), M if ramp.rises else M[::-1], low=0, high=1)
-
-
-def blends(image: ArrayLike, found: Sequence[Ramp]) -> list[Blend]:
-    """Return the Blends of ramps found in an image (R, W)."""
+def read_blends(image: ArrayLike, ramps: Sequence[Ramp]) -> list[Blend]:
+    """Return the Blends of ramps in an image (R, W), I = 0, 1, 2 ... from the dark end [sec. 2.2]."""
     stack = as_stack(np.asarray(image)[None])
-    return [as_blend(stack[0, one.row] / (levels(stack) - 1), one) for one in found]
+    M = [stack[0, row, start:stop][:: 1 if rises else -1] for row, start, stop, rises in ramps]
+    return [make_blend(np.arange(len(m)), m / (levels(stack) - 1), low=0, high=1) for m in M]
 
 
 def join(
     image: ArrayLike,
-    found: Sequence[Ramp] | None = None,
+    ramps: Sequence[Ramp] | None = None,
     *,
     smoothness: float = 1e-3,
     ends: float = 0.025,
-    **knobs: Any,
-) -> Joined:
-    """Return the inverse response that all ramps of an image (R, W) join in; knobs of `joining.join`.
+) -> InverseResponse:
+    """Return the inverse response that all ramps of an image (R, W) join in; see `joining.join`.
 
     Single pixels are noisier than means over a display's patches, so the spline is stiffer; and each ramp's
-    place is known by its own noise alone, so its first and last two samples or so are left to themselves.
+    place is known by its own noise alone, so its first and last two samples or so are left out.
     """
-    told = blends(image, ramps(image) if found is None else found)
-    return joining.join(told, smoothness=smoothness, ends=ends, **knobs)
+    blends = read_blends(image, find_ramps(image) if ramps is None else ramps)
+    return joining.join(blends, smoothness=smoothness, ends=ends)
 
 
-def left_right(image: ArrayLike, *, limit: float = AGREE, **knobs: Any) -> Verdict:
+def compare_edges(
+    image: ArrayLike, ramps: Sequence[Ramp] | None = None, *, limit: float = MAX_RMSE
+) -> Comparison:
     """Return whether the curves of falling and of rising ramps agree: the paper's check of the motion.
 
     Parameters
     ----------
     image : (R, W) uint8 or uint16
         Scan lines across a dark region on a bright ground, blurred along the lines; one channel.
+    ramps : sequence of Ramp, optional
+        By default those of `find_ramps`.
     limit : float
         The largest RMSE between the two that passes, 0.01 of the range as in the paper. With 60 noisy lines,
         linear motion stays below 0.004 and a speed that grows by 15 % above 0.0105, for the response that
         tells them apart worst.
-    **knobs
-        low, high, width and shortest of `ramps`.
 
     Returns
     -------
-    Verdict
-        `linear` is True where they agree. Agreement is necessary, not sufficient: a response may hide in it
-        no motion that is symmetric about the exposure's middle.
+    Comparison
+        `linear` is True where they agree. Agreement is necessary, not sufficient: an error that is symmetric
+        about the middle of the exposure bends both curves alike.
 
     Raises
     ------
@@ -192,15 +194,15 @@ def left_right(image: ArrayLike, *, limit: float = AGREE, **knobs: Any) -> Verdi
     >>> dark = np.repeat([1.0, 0.0, 1.0], [110, 60, 110])
     >>> blurred = np.convolve(dark, np.full(40, 1 / 40), "valid")[None].repeat(8, 0)
     >>> image = camera.shoot(blurred, [1.0], full_well=20_000).images[0]
-    >>> left_right(image).linear
+    >>> compare_edges(image).linear
     True
     """
-    found = ramps(image, **knobs)
-    left, right = [one for one in found if not one.rises], [one for one in found if one.rises]
+    ramps = find_ramps(image) if ramps is None else ramps
+    left, right = ([one for one in ramps if one.rises == rises] for rises in (False, True))
     if not left or not right:
         raise ValueError(
             f"expected ramps on both sides of a dark region, got {len(left)} down and {len(right)} up"
         )
     curves = join(image, left), join(image, right)
     apart = rmse(*curves)
-    return Verdict(apart <= limit, apart, *curves)
+    return Comparison(apart <= limit, apart, *curves)

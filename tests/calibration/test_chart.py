@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from skimage.transform import ProjectiveTransform, warp
 
-from hdrlab.calibration import chart, patch_grid
-from hdrlab.calibration.blends import Joined, ln_exposure, rmse
+from hdrlab.calibration import chart
+from hdrlab.calibration.blends import InverseResponse, ln_exposure, rmse
 from hdrlab.capture import camera, responses
 
 SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
@@ -28,7 +28,7 @@ def test_a_homography_takes_the_corners_where_they_shall_go_as_the_librarys_does
     rng = np.random.default_rng(0)
     for _ in range(20):
         source, target = (10 * SQUARE + rng.uniform(-2, 2, (4, 2)) for _ in range(2))
-        H = patch_grid.homography(source, target)
+        H = chart.homography(source, target)
         oracle = ProjectiveTransform(H)
         assert np.allclose(oracle(source), target, atol=1e-9)
         assert np.allclose(np.linalg.inv(H) @ H, np.eye(3), atol=1e-9)
@@ -57,7 +57,7 @@ def test_a_chart_in_perspective_is_read_to_a_tenth_of_a_level():
     values = np.random.default_rng(1).integers(20, 240, (4, 6))
     picture, corners = drawn(values)
     seen = np.array([[40, 60], [260, 30], [250, 210], [60, 190.0]])
-    H = patch_grid.homography(seen, corners)
+    H = chart.homography(seen, corners)
     image = warp(picture / 255, ProjectiveTransform(H), output_shape=(240, 300), order=1)
     M = chart.read_chart(np.round(image * 255).astype(np.uint8), seen)
     assert np.abs(M * 255 - values).max() < 0.1
@@ -81,8 +81,8 @@ def test_the_grays_reflect_what_their_munsell_values_and_their_densities_say():
 def test_the_reflectances_are_those_of_the_specification_and_near_to_those_of_measured_charts():
     listed = pytest.importorskip("colour.characterisation").CCS_COLOURCHECKERS
     Y = {name: [100 * one[2] for one in listed[name].data.values()] for name in listed}
-    assert np.allclose(chart.LUMINOUS.ravel(), Y["ColorChecker 1976"], atol=1e-9)
-    assert np.allclose(chart.LUMINOUS[3], Y["BabelColor Average"][18:], rtol=0.035)
+    assert np.allclose(chart.LUMINANCE.ravel(), Y["ColorChecker 1976"], atol=1e-9)
+    assert np.allclose(chart.LUMINANCE[3], Y["BabelColor Average"][18:], rtol=0.035)
 
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
@@ -100,13 +100,13 @@ def test_one_photograph_of_the_grays_gives_the_response(name):
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
 def test_many_exposures_give_the_response_without_any_reflectance(name):
-    values = chart.LUMINOUS / 100
+    values = chart.LUMINANCE / 100
     picture, corners = drawn(values)
     taken = camera.shoot(picture, TIMES, camera.Camera(response=name, full_well=50_000, read_noise=5), rng=3)
     M = chart.read_bracket(taken.images, corners)
-    found = chart.ground_truth(M, taken.times)
+    found = chart.recover_bracket(M, taken.times)
     inverse = responses.as_response(name).inverse
-    assert rmse(found, Joined(found.M, inverse(found.M), np.ones(0), np.ones(0))) < 0.003
+    assert rmse(found, InverseResponse(found.M, inverse(found.M), np.ones(0), np.ones(0))) < 0.003
     g, true = ln_exposure(found, black=found.r[0]), responses.true_g(name)
     assert np.abs(g[30:230] - true[30:230]).max() < 0.05
 
@@ -114,7 +114,7 @@ def test_many_exposures_give_the_response_without_any_reflectance(name):
 def test_the_scales_of_the_patches_are_their_reflectances():
     response = responses.as_response("srgb")
     M = response.f(np.minimum(np.outer(TIMES, chart.NEUTRAL), 1))
-    s = chart.ground_truth(M, TIMES).s
+    s = chart.recover_bracket(M, TIMES).s
     assert np.allclose(s / s[0], chart.NEUTRAL / chart.NEUTRAL[0], rtol=0.005)
 
 
@@ -130,9 +130,9 @@ def test_what_is_no_chart_is_refused():
         lambda: chart.recover_gray(chart.NEUTRAL[::-1]),
         lambda: chart.recover_gray(np.full(6, 0.5)),
         lambda: chart.recover_gray(np.ones(6)),
-        lambda: chart.ground_truth(np.ones((3, 24)), [1, 2, 3]),
-        lambda: chart.ground_truth(np.ones((3, 24)), [1, 2]),
-        lambda: chart.ground_truth(np.ones(3), [1, 2, 3]),
+        lambda: chart.recover_bracket(np.ones((3, 24)), [1, 2, 3]),
+        lambda: chart.recover_bracket(np.ones((3, 24)), [1, 2]),
+        lambda: chart.recover_bracket(np.ones(3), [1, 2, 3]),
     ):
         with pytest.raises(ValueError, match="expected"):
             call()

@@ -7,10 +7,20 @@ import re
 
 import numpy as np
 import pytest
+from numpy.polynomial.polynomial import polyval
 from PIL import Image
 
-from hdrlab.calibration import joining, motion_blur, schedules, wilburn
-from hdrlab.calibration.blends import Blend, Joined, as_blends, blend, difference, ln_exposure, rmse
+from hdrlab.calibration import display, joining, motion_blur, wilburn
+from hdrlab.calibration.blends import (
+    Blend,
+    InverseResponse,
+    difference,
+    ln_exposure,
+    make_blend,
+    rmse,
+    select_blends,
+)
+from hdrlab.calibration.display import Schedule
 from hdrlab.capture.responses import RESPONSES, as_response, true_g
 from hdrlab.io.emor import read_curves
 from hdrlab.show.pages.display import write_display
@@ -40,7 +50,7 @@ def two_blends(f, dim=0.2, start=0.0):
 
 
 def test_every_patch_switches_once_and_stays_on_for_its_share():
-    shown = schedules.pictures((200,), low=7, patch=1, border=0, shape=(3, 5)).reshape(15, 15)
+    shown = display.draw_schedule(Schedule((200,), low=7, patch=1, border=0), shape=(3, 5)).reshape(15, 15)
     assert np.array_equal((shown == 200).mean(axis=0), np.arange(1, 16) / 15)
     assert np.all(np.sum(np.diff(shown.astype(int), axis=0) != 0, axis=0) <= 1) and set(np.unique(shown)) == {
         7,
@@ -49,7 +59,7 @@ def test_every_patch_switches_once_and_stays_on_for_its_share():
 
 
 def test_patches_stand_in_black_and_in_the_middle():
-    shown = schedules.pictures(shape=(400, 500))
+    shown = display.draw_schedule(shape=(400, 500))
     assert shown.shape == (15, 400, 500) and not shown[:, 0].any()
     lit = np.argwhere(shown[0])
     assert np.all(lit.min(axis=0) + lit.max(axis=0) == [399, 499])
@@ -57,21 +67,22 @@ def test_patches_stand_in_black_and_in_the_middle():
 
 
 def test_a_picture_stands_for_an_even_number_of_frames():
-    assert schedules.frames_per_step(60, 1, 15) == 4
+    assert display.frames_per_step(60, 1, 15) == 4
     with pytest.raises(ValueError, match=r"expose for 1 s, which makes it 4"):
-        schedules.frames_per_step(60, 0.75, 15)
+        display.frames_per_step(60, 0.75, 15)
 
 
 def test_the_grid_is_read_back_from_a_photograph_of_it():
-    shown = schedules.pictures((250, 100), shape=(380, 320))
-    light = shown.mean(axis=0)
-    read = schedules.read_blends(np.round(light).astype(np.uint8), schedules.outline(shown[0]), low=0, high=1)
+    schedule = Schedule((250, 100))
+    shown = display.draw_schedule(schedule, shape=(380, 320))
+    image, corners = np.round(shown.mean(axis=0)).astype(np.uint8), display.find_corners(shown[0])
+    read = display.read_blends(image, corners, schedule, low=0, high=1)
     for one, high in zip(read[0], (250, 100), strict=True):
         assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(one.I, ALPHA)
 
 
 def test_the_page_holds_every_picture_and_fetches_nothing(tmp_path):
-    shown = schedules.pictures(patch=4, border=4, shape=(48, 40))
+    shown = display.draw_schedule(Schedule(patch=4, border=4), shape=(48, 40))
     page = write_display(tmp_path, shown, frames=4)
     text = page.read_text(encoding="utf8")
     assert text.count("data:image/webp;base64,") == 15 and not re.search(r"https?://|src=\"", text)
@@ -87,7 +98,7 @@ def test_the_page_holds_every_picture_and_fetches_nothing(tmp_path):
 @pytest.mark.parametrize("name", ["linear", "srgb", "cubic"])
 def test_blends_without_noise_give_the_response(solver, name):
     found = SOLVERS[solver](two_blends(as_response(name).f))
-    true = Joined(found.M, as_response(name).inverse(found.M), np.ones(0), np.ones(0))
+    true = InverseResponse(found.M, as_response(name).inverse(found.M), np.ones(0), np.ones(0))
     assert rmse(found, true) < 0.002
 
 
@@ -110,7 +121,7 @@ def test_the_simplex_ends_where_the_quadratic_has_its_least_value():
     blends = two_blends(f, dim=0.6)
     low = min(one.M.min() for one in blends)
     high = max(one.M.max() for one in blends)
-    Q = wilburn.quadratic([Blend(one.I, (one.M - low) / (high - low)) for one in blends], 3)
+    Q = wilburn.quadratic_form([Blend(one.I, (one.M - low) / (high - low)) for one in blends], 3)
     fixed, D = np.array([0.0, 1, 0, 0]), np.vstack([np.zeros(2), -np.ones(2), np.eye(2)])
     free = np.linalg.solve(D.T @ Q @ D, -D.T @ Q @ fixed)
     state = list(wilburn.join_steps(blends, degree=3))[-1]
@@ -127,9 +138,9 @@ def test_the_error_is_the_papers_sum():
     a = np.array([0, 0.5, 0.3, 0.2])
     by_hand = 0.0
     for one in blends:
-        s, r = wilburn.line(one.I, wilburn.value(one.M, a))
-        by_hand += sum((s * x + r - wilburn.value(m, a)) ** 2 for x, m in zip(one.I, one.M, strict=True))
-    assert wilburn.error(a, wilburn.quadratic(blends, 3)) == pytest.approx(by_hand)
+        s, r = wilburn.fit_line(one.I, polyval(one.M, a))
+        by_hand += sum((s * x + r - polyval(m, a)) ** 2 for x, m in zip(one.I, one.M, strict=True))
+    assert wilburn.error(a, wilburn.quadratic_form(blends, 3)) == pytest.approx(by_hand)
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
@@ -159,7 +170,7 @@ def test_several_blends_calibrate_the_screen_too(papers):
 
 def test_ramps_are_found_where_they_are(papers):
     image = papers.blurred(as_response("linear").f, np.random.default_rng(0), lines=20)
-    found = motion_blur.ramps(image)
+    found = motion_blur.find_ramps(image)
     assert [one.rises for one in found] == [False, True] * 20
     for one in found:
         inside = (40, 140) if not one.rises else (180, 280)
@@ -174,28 +185,30 @@ def test_a_ramp_does_not_end_by_its_own_noise(papers):
     first, second = (papers.blurred(as_response("film").f, np.random.default_rng(seed)) for seed in (0, 1))
     other = first.copy()
     other[150] = second[150]
-    assert motion_blur.ramps(first)[300:302] == motion_blur.ramps(other)[300:302]
+    assert motion_blur.find_ramps(first)[300:302] == motion_blur.find_ramps(other)[300:302]
 
     def first_sample(found):
         away = first - first.mean(axis=0)
         return np.mean([away[one.row, one.start] for one in found if not one.rises])
 
-    alone = [one._replace(row=k) for k, line in enumerate(first) for one in motion_blur.ramps(line[None])]
+    alone = [
+        one._replace(row=k) for k, line in enumerate(first) for one in motion_blur.find_ramps(line[None])
+    ]
     tolerance = 3 * 255 * papers.SIGMA / np.sqrt(300)
-    assert abs(first_sample(motion_blur.ramps(first))) < tolerance < -first_sample(alone)
+    assert abs(first_sample(motion_blur.find_ramps(first))) < tolerance < -first_sample(alone)
 
 
 def test_a_slanting_edge_is_followed_and_what_lies_elsewhere_is_left_out(papers):
     image = papers.blurred(as_response("srgb").f, np.random.default_rng(2), lines=40)
     wide = np.pad(image, ((0, 0), (120, 120)), mode="edge")
     slanting = np.stack([np.roll(row, 3 * (k - 20)) for k, row in enumerate(wide)])
-    straight, found = motion_blur.ramps(wide), motion_blur.ramps(slanting)
+    straight, found = motion_blur.find_ramps(wide), motion_blur.find_ramps(slanting)
     assert len(found) == len(straight) == 80
     for one, other in zip(found, straight, strict=True):
         assert abs(one.start - 3 * (one.row - 20) - other.start) <= 1  # pixel
     slanting[7] = wide[7, 0]
     slanting[7, 150:190] = np.r_[np.arange(240, 40, -10), np.zeros(20)]  # another, steeper edge
-    assert {one.row for one in found} - {one.row for one in motion_blur.ramps(slanting)} == {7}
+    assert {one.row for one in found} - {one.row for one in motion_blur.find_ramps(slanting)} == {7}
 
 
 def test_a_line_without_an_edge_has_no_ramp():
@@ -203,13 +216,13 @@ def test_a_line_without_an_edge_has_no_ramp():
     dip = np.r_[np.full(20, 255), np.full(9, 100), np.full(20, 255)].astype(
         np.uint8
     )  # dark, but not dark enough
-    assert motion_blur.ramps(flat) == [] and motion_blur.ramps(dip[None]) == []
+    assert motion_blur.find_ramps(flat) == [] and motion_blur.find_ramps(dip[None]) == []
 
 
 @pytest.mark.parametrize("name", sorted(RESPONSES))
 def test_linear_motion_passes_and_one_that_gathers_15_percent_does_not(papers, name):
     linear, accelerated = papers.figure7(name, trials=3)
-    assert np.all(linear < motion_blur.AGREE / 3) and np.all(accelerated > motion_blur.AGREE)
+    assert np.all(linear < motion_blur.MAX_RMSE / 3) and np.all(accelerated > motion_blur.MAX_RMSE)
 
 
 # The paper's table
@@ -236,43 +249,43 @@ def test_the_variance_is_that_of_the_sets_in_square_percent(papers):
 
 
 def test_the_spline_reads_real_responses_from_a_display(papers, cameras):
-    rmse = papers.display(cameras[::3]).rmse  # 67 of the 201
+    rmse = papers.by_display(cameras[::3]).rmse  # 67 of the 201
     assert np.median(rmse) <= 0.001 and np.quantile(rmse, 0.95) <= 0.003 and rmse.max() <= 0.008
 
 
 def test_the_spline_reads_real_responses_from_motion_blur(papers, cameras):
-    rmse = papers.blur(cameras[::67]).rmse  # 3 of the 201
+    rmse = papers.by_motion_blur(cameras[::67]).rmse  # 3 of the 201
     assert np.median(rmse) <= 0.0005 and rmse.max() <= 0.006
 
 
 def test_what_is_no_blend_is_refused(tmp_path):
-    line = Joined(np.linspace(0.1, 0.5, 9), np.linspace(0, 1, 9), np.ones(2), np.zeros(2))
+    line = InverseResponse(np.linspace(0.1, 0.5, 9), np.linspace(0, 1, 9), np.ones(2), np.zeros(2))
     image = np.zeros((4, 60), np.uint8)
     for call in (
-        lambda: blend([1, 2, 3], [0.1, 0.2]),
-        lambda: blend([1, 2, np.nan], [0.1, 0.2, 0.3]),
-        lambda: blend([1], [0.5], low=0.9, high=0.1),
-        lambda: as_blends([]),
-        lambda: wilburn.join([blend(ALPHA, 0.5 * np.ones(15))]),
-        lambda: joining.join([blend(ALPHA[:2], ALPHA[:2])]),
-        lambda: joining.join([blend(ALPHA, 1 - ALPHA)]),
+        lambda: make_blend([1, 2, 3], [0.1, 0.2]),
+        lambda: make_blend([1, 2, np.nan], [0.1, 0.2, 0.3]),
+        lambda: make_blend([1], [0.5], low=0.9, high=0.1),
+        lambda: select_blends([]),
+        lambda: wilburn.join([make_blend(ALPHA, 0.5 * np.ones(15))]),
+        lambda: joining.join([make_blend(ALPHA[:2], ALPHA[:2])]),
+        lambda: joining.join([make_blend(ALPHA, 1 - ALPHA)]),
         lambda: joining.join(two_blends(np.sqrt), count=2),
         lambda: joining.join(two_blends(np.sqrt), ends=0.5),
         lambda: wilburn.join(two_blends(np.sqrt), degree=1),
         lambda: wilburn.join(two_blends(np.sqrt), ends=-0.1),
-        lambda: wilburn.display([1, 2, 3], line),
+        lambda: display.recover_display([1, 2, 3], line),
         lambda: difference(line, line._replace(M=np.linspace(0.6, 0.9, 9))),
         lambda: ln_exposure(line, black=0.1),
-        lambda: motion_blur.ramps(image.astype(float)),
-        lambda: motion_blur.ramps(np.zeros((4, 60, 3), np.uint8)),
-        lambda: motion_blur.ramps(image, low=0.5, high=0.4),
-        lambda: motion_blur.left_right(image),
-        lambda: schedules.shares(3, 5, 14),
-        lambda: schedules.frames_per_step(0),
-        lambda: schedules.pictures((300,)),
-        lambda: schedules.pictures((100,), low=100),
-        lambda: schedules.pictures(shape=(100, 100)),
-        lambda: schedules.outline(np.zeros((5, 5))),
+        lambda: motion_blur.find_ramps(image.astype(float)),
+        lambda: motion_blur.find_ramps(np.zeros((4, 60, 3), np.uint8)),
+        lambda: motion_blur.find_ramps(image, low=0.5, high=0.4),
+        lambda: motion_blur.compare_edges(image),
+        lambda: display.mixing_ratios(3, 5, 14),
+        lambda: display.frames_per_step(0),
+        lambda: display.draw_schedule(Schedule((300,))),
+        lambda: display.draw_schedule(Schedule((100,), low=100)),
+        lambda: display.draw_schedule(shape=(100, 100)),
+        lambda: display.find_corners(np.zeros((5, 5))),
         lambda: write_display(tmp_path, image),
         lambda: write_display(tmp_path, image[None], frames=3),
     ):

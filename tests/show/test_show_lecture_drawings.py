@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from hdrlab.calibration.blends import Blend, Joined
+from hdrlab.calibration.blends import Blend, InverseResponse
 from hdrlab.show.plots import geometry, mixtures
 from hdrlab.show.widgets import pictures
 
 ALPHA = np.linspace(0, 1, 6)
 TWO = [Blend(ALPHA, ALPHA**0.5), Blend(ALPHA, (0.2 * ALPHA) ** 0.5)]
 M = np.linspace(0, 1, 1024)
-ROOT = Joined(M, M**2, np.array([1.0, 0.2]), np.zeros(2))
+ROOT = InverseResponse(M, M**2, np.array([1.0, 0.2]), np.zeros(2))
 
 
 def points_of(line):

@@ -1,7 +1,7 @@
 """A display's part in a calibration: the pictures of one exposure, as files and as a page that plays them.
 
-pictures  (T, H, W) uint8   of `calibration.schedules.pictures`
-frames    of the display    that each picture stands, see `schedules.frames_per_step`
+pictures  (T, H, W) uint8   of `calibration.display.draw_schedule`
+frames    of the display    that each picture stands, see `calibration.display.frames_per_step`
 
 The page fills the screen, draws a picture's pixel on a pixel of the display, changes only where a new frame
 begins, and counts the frames that the browser missed: a calibration with a missed one is not to be trusted.

@@ -2,7 +2,7 @@
 
 I, M  samples of a blend  (l,): relative irradiance, in a unit and from a zero of its own; brightness, 0 to 1
 s, r  scale and offset    of each blend: s I + r is the exposure of its samples
-M, X  inverse response    a `Joined`: exposure X, 0 to 1 over the brightnesses that were measured
+M, X  inverse response    a `InverseResponse`: exposure X, 0 to 1 over the brightnesses that were measured
 
 Brightness is drawn as a pixel level, 255 M, up; exposure is drawn across, as in the plots of responses.
 """
@@ -11,13 +11,12 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.calibration.blends import Blend, Joined, difference
+from hdrlab.calibration.blends import Blend, InverseResponse, difference
+from hdrlab.core.types import F64
 from hdrlab.show.plots import SAMPLES, axes
 from hdrlab.show.plots.curves import LINES
-
-Float = NDArray[np.float64]
 
 
 def samples(
@@ -26,7 +25,7 @@ def samples(
     r: ArrayLike = 0.0,
     *,
     names: Sequence[str] = (),
-    joined: Joined | None = None,
+    joined: InverseResponse | None = None,
     across: str = "relative irradiance, s I + r",
     span: tuple[float, float] | None = None,
     scale: str = "linear",
@@ -56,8 +55,8 @@ def samples(
 
 
 def deviations(
-    found: Mapping[str, Joined],
-    inverse: Callable[[Float], Float],
+    found: Mapping[str, InverseResponse],
+    inverse: Callable[[F64], F64],
     *,
     limit: float = 4.0,
     ax: Axes | None = None,

@@ -1,4 +1,4 @@
-"""What a display shows during one exposure, to make blends of two lights (Wilburn et al., CVPR 2008, sec. 3).
+"""Mixtures of two lights on a display (Wilburn, Xu and Matsushita, CVPR 2008, sec. 3 and 6).
 
 P_hi, P_lo  pixel values          the two that a patch shows, 0 to 255
 T           steps                 pictures in a sequence: 15, of four frames each, at 60 Hz in one second
@@ -11,17 +11,36 @@ without a pause: an exposure as long as the sequence then holds all of it, where
 """
 
 from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.calibration.blends import HIGH, LOW, Blend, blend
-from hdrlab.calibration.patch_grid import read
+from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend
+from hdrlab.calibration.chart import read_patches
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
+
+class Schedule(NamedTuple):
+    """What the display shows: one grid of rows x columns patches for each pixel value of `high`.
+
+    `high` holds the P_hi, of which the brightest should just saturate the camera, `low` is P_lo; `steps` is
+    T; `patch` and `border` are widths in display pixels, and the border is black.
+    """
+
+    high: Sequence[int] = (220, 100)
+    low: int = 0
+    rows: int = 3
+    columns: int = 5
+    steps: int = 15
+    patch: int = 30
+    border: int = 30
 
 
-def shares(rows: int = 3, columns: int = 5, steps: int = 15) -> Float:
+DEFAULT = Schedule()
+
+
+def mixing_ratios(rows: int = 3, columns: int = 5, steps: int = 15) -> F64:
     """Return alpha = k / T (rows, columns) [Wilburn08 eq. 4].
 
     Raises
@@ -31,7 +50,7 @@ def shares(rows: int = 3, columns: int = 5, steps: int = 15) -> Float:
 
     Examples
     --------
-    >>> shares(2, 2, 4)
+    >>> mixing_ratios(2, 2, 4)
     array([[0.25, 0.5 ],
            [0.75, 1.  ]])
     """
@@ -72,51 +91,22 @@ def frames_per_step(refresh: float = 60.0, exposure: float = 1.0, steps: int = 1
     return nearest
 
 
-def levels_at(step: int, high: Sequence[int], low: int, alpha: Float, steps: int) -> NDArray[np.uint8]:
-    """Return the pixel values (rows len(high), columns) of a step: P_hi while step < alpha T, then P_lo."""
-    on = step < np.round(alpha * steps)
-    return np.vstack([np.where(on, one, low) for one in high]).astype(np.uint8)
-
-
-def draw(values: NDArray[np.uint8], *, patch: int, border: int, shape: tuple[int, int]) -> NDArray[np.uint8]:
+def draw_patches(
+    values: NDArray[np.uint8], *, patch: int, border: int, shape: tuple[int, int]
+) -> NDArray[np.uint8]:
     """Return a picture of `shape` with the patches in its middle, `patch` wide, `border` of black between.
 
     Without the black, the light of bright neighbours would spill into a patch [Wilburn08 sec. 3].
     """
-    cell = np.zeros((patch + border, patch + border), np.uint8)
-    cell[:patch, :patch] = 1
+    cell = np.pad(np.ones((patch, patch), np.uint8), (0, border))
     grid = np.kron(values, cell)[: -border or None, : -border or None]
-    picture = np.zeros(shape, np.uint8)
-    top, left = ((whole - part) // 2 for whole, part in zip(shape, grid.shape, strict=True))
-    picture[top : top + grid.shape[0], left : left + grid.shape[1]] = grid
-    return picture
+    before = [(whole - part) // 2 for whole, part in zip(shape, grid.shape, strict=True)]
+    after = [whole - part - first for whole, part, first in zip(shape, grid.shape, before, strict=True)]
+    return np.pad(grid, list(zip(before, after, strict=True)))
 
 
-def pictures(
-    high: Sequence[int] = (220, 100),
-    low: int = 0,
-    *,
-    rows: int = 3,
-    columns: int = 5,
-    steps: int = 15,
-    patch: int = 30,
-    border: int = 30,
-    shape: tuple[int, int] = (480, 640),
-) -> NDArray[np.uint8]:
-    """Return the pictures (T, H, W) of a sequence; one grid per value of `high`, one under the other.
-
-    Parameters
-    ----------
-    high, low : pixel values
-        P_hi of each grid, and P_lo; the brightest should just saturate the camera.
-    rows, columns : int
-        Of each grid.
-    steps : int
-        T.
-    patch, border : int
-        Widths in display pixels; the border is black.
-    shape : (H, W)
-        Of the pictures.
+def draw_schedule(schedule: Schedule = DEFAULT, *, shape: tuple[int, int] = (480, 640)) -> NDArray[np.uint8]:
+    """Return the pictures (T, H, W) of a sequence, each of `shape`; the grids lie one under the other.
 
     Raises
     ------
@@ -125,27 +115,29 @@ def pictures(
 
     Examples
     --------
-    >>> shown = pictures((255,), rows=1, columns=2, steps=2, patch=1, border=1, shape=(1, 3))
-    >>> shown.tolist()
+    >>> two = Schedule((255,), rows=1, columns=2, steps=2, patch=1, border=1)
+    >>> draw_schedule(two, shape=(1, 3)).tolist()
     [[[255, 0, 255]], [[0, 0, 255]]]
     """
+    high, low, rows, columns, steps, patch, border = schedule
     if not high or not all(0 <= low < one <= 255 for one in high):
         raise ValueError(f"expected pixel values 0 <= low < high <= 255, got {low} and {list(high)}")
     if patch < 1 or border < 0:
         raise ValueError(
             f"expected patches of 1 pixel or more and no negative border, got {patch} and {border}"
         )
-    alpha = shares(rows, columns, steps)
-    need = [count * (patch + border) - border for count in (rows * len(high), columns)]
+    last_step = np.tile(np.round(mixing_ratios(rows, columns, steps) * steps), (len(high), 1))
+    need = [count * (patch + border) - border for count in last_step.shape]
     if need[0] > shape[0] or need[1] > shape[1]:
         raise ValueError(
             f"expected pictures of at least {need[0]} x {need[1]} pixels for these grids, got {shape}"
         )
-    shown = [levels_at(step, high, low, alpha, steps) for step in range(steps)]
-    return np.stack([draw(one, patch=patch, border=border, shape=shape) for one in shown])
+    P_hi = np.repeat(high, rows)[:, None]
+    values = [np.where(step < last_step, P_hi, low).astype(np.uint8) for step in range(steps)]
+    return np.stack([draw_patches(one, patch=patch, border=border, shape=shape) for one in values])
 
 
-def outline(picture: ArrayLike) -> Float:
+def find_corners(picture: ArrayLike) -> F64:
     """Return the corners (4, 2), (x, y) pixels, of the grid in a picture (H, W) where all patches are bright.
 
     So they are in the first picture of a sequence. The corners are the bright pixels farthest along the
@@ -163,27 +155,43 @@ def outline(picture: ArrayLike) -> Float:
 def read_blends(
     image: ArrayLike,
     corners: ArrayLike,
+    schedule: Schedule = DEFAULT,
     *,
-    grids: int = 2,
-    rows: int = 3,
-    columns: int = 5,
-    steps: int = 15,
-    gap: float = 1.0,
     core: float = 0.6,
-    low: float = LOW,
-    high: float = HIGH,
+    low: float = MIN_BRIGHTNESS,
+    high: float = MAX_BRIGHTNESS,
 ) -> list[list[Blend]]:
     """Return the blends of a photograph of the display: a list per channel, with a Blend per grid.
 
-    `corners` are the outer corners of the corner patches of all grids together, see `patches.read`; `gap` is
-    the border over the patch, `core` the part of a patch that is read; `low` and `high` bound what is taken
-    for a measurement.
+    `corners` are the outer corners of the corner patches of all grids together, see `chart.read_patches`;
+    `core` is the part of a patch that is read; `low` and `high` are the limits of what counts as measured.
 
     Raises
     ------
     ValueError
-        As `patches.read` and `shares`.
+        As `chart.read_patches` and `mixing_ratios`.
     """
-    alpha = shares(rows, columns, steps).ravel()
-    M = read(image, corners, rows * grids, columns, gap=gap, core=core).reshape(grids, rows * columns, -1)
-    return [[blend(alpha, M[j, :, c], low=low, high=high) for j in range(grids)] for c in range(M.shape[-1])]
+    grids, rows, columns = len(schedule.high), schedule.rows, schedule.columns
+    alpha, gap = mixing_ratios(rows, columns, schedule.steps).ravel(), schedule.border / schedule.patch
+    M = read_patches(image, corners, grids * rows, columns, gap=gap, core=core)
+    channels = np.moveaxis(M.reshape(grids, rows * columns, -1), -1, 0)
+    return [[make_blend(alpha, grid, low=low, high=high) for grid in channel] for channel in channels]
+
+
+def recover_display(P: ArrayLike, joined: InverseResponse) -> tuple[F64, F64]:
+    """Return the display's own response: its pixel values (n + 1,), and their light over that of the largest.
+
+    Blend j shows the pixel value P_j for the share alpha and black for the rest, so s_j is the light of P_j
+    above black: several blends calibrate the screen as well as the camera [Wilburn08 sec. 6]. The first of
+    the n + 1 is black itself, 0.
+
+    Raises
+    ------
+    ValueError
+        Where there is not one pixel value per blend.
+    """
+    P = np.asarray(P, np.float64)
+    if P.shape != joined.s.shape:
+        raise ValueError(f"expected {len(joined.s)} pixel values, one per blend, got shape {P.shape}")
+    order = np.argsort(P)
+    return np.r_[0.0, P[order]], np.r_[0.0, joined.s[order]] / joined.s[order[-1]]
