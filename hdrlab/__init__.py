@@ -15,7 +15,7 @@ The response by least squares          response.debevec.gsolve, response.debevec
 ... without exact times                response.mitsunaga.recover, response.marginal.calibrate
 ... from histograms, from a series     response.grossberg.recover, response.mann.recover
 ... in the space of measured curves    response.space.recover
-... without a bracket                  calibration.wilburn, calibration.motion_blur, calibration.chart
+... without a bracket                  calibration.display, calibration.motion_blur, calibration.chart
 ... of RAW: none to recover            response.linear.recover
 Which pixels to use                    core.sampling, response.selection
 The radiance map                       radiance.merge.merge, radiance.bounds, radiance.estimates

@@ -193,7 +193,7 @@ def compare_edges(
     >>> from hdrlab.capture import camera
     >>> dark = np.repeat([1.0, 0.0, 1.0], [110, 60, 110])
     >>> blurred = np.convolve(dark, np.full(40, 1 / 40), "valid")[None].repeat(8, 0)
-    >>> image = camera.shoot(blurred, [1.0], full_well=20_000).images[0]
+    >>> image = camera.shoot(blurred, [1.0], camera.Camera(full_well=20_000)).images[0]
     >>> compare_edges(image).linear
     True
     """
