@@ -83,7 +83,7 @@ pictures.radiance(E, alt="The radiance map of the room in false colour")
 # and height; and a number whose *sign* says the order of the bytes, negative for little endian. Then the
 # values, float32, pixel by pixel, and row by row **from the bottom up**.
 #
-# Return the file as `bytes`. (`flip=False` would leave the rows in their order; no check asks for it.)
+# Return the file as `bytes`.
 
 # %% task="to_bytes"
 # Return the PFM file of radiance (H, W[, 3]), as bytes.

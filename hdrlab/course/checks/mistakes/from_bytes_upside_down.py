@@ -7,4 +7,4 @@ MISCONCEPTION = "Your picture is upside down: the first row in the file is the l
 
 
 def from_bytes(data):
-    return pfm.from_bytes(data, flip=False)
+    return pfm.from_bytes(data)[::-1]

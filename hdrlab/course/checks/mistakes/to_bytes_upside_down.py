@@ -7,4 +7,4 @@ MISCONCEPTION = "Your picture is upside down: the rows of a PFM file run from th
 
 
 def to_bytes(E):
-    return pfm.to_bytes(E, flip=False)
+    return pfm.to_bytes(E[::-1])
