@@ -3,13 +3,13 @@
 lecture                                where
 -------------------------------------  --------------------------------------------------------------------
 Light to numbers                       capture.camera.shoot, scenes.chapel, scenes.room
-What the sensor does, and its range    capture.sensor, capture.ranges, capture.transfer.calibrate
+What the sensor does, and its range    capture.sensor, capture.ranges, capture.photon_transfer.calibrate
 Exposure, and planning a bracket       capture.exposure, capture.planning.plan
 Metering, automatic exposure           capture.metering, capture.autoexposure.expose
 Photographs in, with their exposure    io.photos.read_bracket
 Median threshold bitmaps               align.mtb.align, align.shift.shift
 From the hand: turned, tilted          align.cerman.align, align.homography.align, align.auto.align
-... moved through linear light         align.resample.photographs, capture.motion.hand
+... moved through linear light         align.resample.photographs, capture.hand_motion.hand
 The response by least squares          response.debevec.gsolve, response.debevec.recover
 ... by maximum likelihood              response.robertson.recover
 ... without exact times                response.mitsunaga.recover, response.marginal.calibrate
@@ -22,7 +22,7 @@ The radiance map                       radiance.merge.merge, radiance.bounds, ra
 Does the map explain its photographs?  diagnostics.consistency, diagnostics.contradictions
 Exposure ratios of a linear camera     radiance.ratios.ratio
 What moved, and what the lens did      radiance.deghosting.ghosts.remove, radiance.flare.remove
-... photographed with the truth        capture.movers.shoot, capture.flare.flare
+... photographed with the truth        capture.movers.shoot, capture.lens_flare.flare
 PFM, Radiance RGBE, OpenEXR            io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
 One curve for all pixels               tonemap.curves, tonemap.ward, tonemap.brush
 Local scaling, and its halo            tonemap.chiu.tonemap

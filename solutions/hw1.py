@@ -14,8 +14,8 @@
 # %%
 import numpy as np
 
+from hdrlab import scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.course.notebook import check
 from hdrlab.show import plots
 from hdrlab.show.widgets import pictures

@@ -23,8 +23,8 @@
 # %%
 import numpy as np
 
+from hdrlab import scenes
 from hdrlab.capture import camera, responses
-from hdrlab.capture.room import scenes
 from hdrlab.core import sampling
 from hdrlab.course.notebook import check
 from hdrlab.show import plots

@@ -20,7 +20,7 @@
 # %%
 import numpy as np
 
-from hdrlab.capture.room import scenes
+from hdrlab import scenes
 from hdrlab.core import colour
 from hdrlab.course.notebook import check
 from hdrlab.show.widgets import pictures

@@ -19,9 +19,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hdrlab import pipeline
+from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.core import colour
 from hdrlab.course.notebook import check
 from hdrlab.io import photos

@@ -18,7 +18,7 @@ from scipy.ndimage import gaussian_filter, zoom
 from skimage import data
 
 from hdrlab import scenes
-from hdrlab.capture import camera, motion
+from hdrlab.capture import camera, hand_motion
 from hdrlab.core import warp
 from hdrlab.core.arrays import Array
 
@@ -60,7 +60,7 @@ def pair(i: int, E: Array, moves: Array, rng: np.random.Generator, stops: float 
         offsets=moves,
         rng=rng,
     )
-    return Case(taken.images, taken.times, motion.frames(moves, E.shape)[0])
+    return Case(taken.images, taken.times, hand_motion.frames(moves, E.shape)[0])
 
 
 def away(offset: Array) -> Float:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from benchmarks.ghosts.sequences import CAMERA, SHAPE, STILL, radiance
 from hdrlab.capture import camera
-from hdrlab.capture.flare import veil
+from hdrlab.capture.lens_flare import veil
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array

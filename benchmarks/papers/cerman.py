@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, at_least, at_most, near, real
+from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
-from hdrlab.capture.room import scenes
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket

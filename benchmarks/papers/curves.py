@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_most, real, spread
+from hdrlab import scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import response_rmse
 from hdrlab.diagnostics import exposure_times as timing

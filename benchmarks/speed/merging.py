@@ -9,7 +9,7 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.io.curves import write_curve
+from hdrlab.io.response_files import write_curve
 from hdrlab.radiance.merge import merge
 
 

@@ -9,7 +9,7 @@ from typing import Any
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.core.bracket import Bracket
-from hdrlab.io.curves import read_curve
+from hdrlab.io.response_files import read_curve
 from hdrlab.response import mitsunaga
 
 

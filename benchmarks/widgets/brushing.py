@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from benchmarks.widgets import browsers
-from hdrlab.capture.room import scenes
+from hdrlab import scenes
 from hdrlab.show import widgets
 
 SHAPE, SIZE, MAGNIFICATIONS = (768, 1024), 512, (1, 2, 4)

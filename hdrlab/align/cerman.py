@@ -151,12 +151,12 @@ def align(
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, motion, responses, scenes
+    >>> from hdrlab.capture import camera, hand_motion, responses, scenes
     >>> room = scenes.room((150, 220))
     >>> turned = warp.turn(room.shape, 1.5, (4.3, -2.6))
     >>> taken = camera.shoot(room, [0.02, 0.08], offsets=[turned, np.eye(3)])
     >>> moves = align(taken.images, times=taken.times, g=responses.true_g())
-    >>> truth = motion.frames([turned, np.eye(3)], room.shape)
+    >>> truth = hand_motion.frames([turned, np.eye(3)], room.shape)
     >>> bool(warp.apart(moves[0], truth[0], room.shape) < 0.3)  # pixels at the corners
     True
     """

@@ -181,12 +181,12 @@ def align(
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, motion, scenes
+    >>> from hdrlab.capture import camera, hand_motion, scenes
     >>> room = scenes.room((220, 320))
-    >>> tilted = motion.hand(2, room.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
+    >>> tilted = hand_motion.hand(2, room.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
     >>> taken = camera.shoot(room, [0.01, 0.04], offsets=tilted)
     >>> moves = align(taken.images)
-    >>> truth = motion.frames(tilted, room.shape)
+    >>> truth = hand_motion.frames(tilted, room.shape)
     >>> bool(warp.apart(moves[0], truth[0], room.shape) < 1)  # pixels at the corners
     True
     """

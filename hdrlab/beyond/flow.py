@@ -1,6 +1,6 @@
 """Optical flow between frames, and pictures brought along it (Kang et al., SIGGRAPH 2003, sec. 4).
 
-a, b   pictures   (H, W) float32, brought to one exposure, values of `exposures`
+a, b   pictures   (H, W) float32, brought to one exposure, values of `ldr_values`
 u      flow       (2, H, W), pixels down and right: a(p) is b(p + u(p))
 f      any map    (H, W[, C])
 

@@ -1,7 +1,7 @@
 """Patch-based HDR: photographs of a moving scene, as one of them saw it (Sen et al., SIGGRAPH Asia 2012).
 
 Z_k    photograph k        (P, H, W[, 3]) levels;  t  (P,) times, s;  g  (n[, 3]) ln exposure of each level
-L_k    the same in values  (H, W, C), see `exposures`: patches differ in values about as they look
+L_k    the same in values  (H, W, C), see `ldr_values`: patches differ in values about as they look
 h      value -> radiance;  l_k  radiance -> value that exposure k makes of it
 g_k    l_k(h(L_q))         photograph q as exposure k would have had it
 alpha  (H, W, 1), 0 to 1   how well the reference is exposed
@@ -11,7 +11,7 @@ I_k    (P, H, W, C)        photographs that never were: the reference's moment i
     E(H) = sum of  alpha (h(L_ref) - H)^2 + (1 - alpha) MBDS(H | L_1, ..., L_P)        [Sen12 sec. 3]
 
 Where the reference is well exposed, H is the reference. Elsewhere H should look, in every exposure, as if it
-were made of patches of the photographs, and leave none of theirs out: `similarity` has that measure.
+were made of patches of the photographs, and leave none of theirs out: `bidirectional` has that measure.
 
 It takes long: time and memory go with pixels x side^2 x P, the time with P once more. Three photographs of
 96 x 144 pixels take two to three seconds and some 30 MB, so a megapixel would take minutes and more than two
@@ -24,9 +24,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.beyond.exposures import Float, as_values, resized
+from hdrlab.beyond.bidirectional import Search, searched, similarity, voted
+from hdrlab.beyond.ldr_values import Float, as_values, resized
 from hdrlab.beyond.patchmatch import Index, identity
-from hdrlab.beyond.similarity import Search, searched, similarity, voted
 from hdrlab.beyond.synthesis import (
     Ramp,
     Scene,

@@ -1,6 +1,6 @@
 """The HDR image synthesis equation: what a picture of light has to be like (Sen et al., SIGGRAPH Asia 2012).
 
-L_k    photograph k          (H, W, C), values of `exposures`, 0 to 1, from short to long
+L_k    photograph k          (H, W, C), values of `ldr_values`, 0 to 1, from short to long
 h      value -> radiance;  l_k  radiance -> value that exposure k makes of it
 g_k    l_k(h(L_q))           photograph q as exposure k would have had it
 alpha  (H, W, 1), 0 to 1     how well the reference is exposed
@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.beyond.exposures import Float, Mask, allowed, boosted, exposed, radiance, resized
+from hdrlab.beyond.ldr_values import Float, Mask, allowed, boosted, exposed, radiance, resized
 from hdrlab.beyond.patchmatch import cut
 
 Ramp = tuple[float, float]

@@ -2,7 +2,7 @@
 
 Z_i    frame i        (H, W[, 3]) levels, of exposure time t_i, s: short, long, short, ...
 g      response       (n[, 3]), ln exposure of each level
-v_i    frame i        (H, W, C), in values, see `exposures`
+v_i    frame i        (H, W, C), in values, see `ldr_values`
 R_i    radiance       (H, W, C), what frame i says, exp g(Z_i) / t_i
 f_W    weight         w(Z_i), of each pixel and channel, 0 where it is clipped or black
 f_MW   consistency    (H, W, 1), 0 to 1: 0 where a neighbour, brought to frame i, contradicts it
@@ -22,8 +22,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.beyond.exposures import Float, Mask, allowed, as_read, as_values, boosted, exposed, radiance
 from hdrlab.beyond.flow import Flow, halves, inside, tvl1, warped
+from hdrlab.beyond.ldr_values import Float, Mask, allowed, as_read, as_values, boosted, exposed, radiance
 from hdrlab.beyond.neighbours import windows
 from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights

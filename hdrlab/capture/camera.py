@@ -6,7 +6,7 @@ X        exposure at the sensor, float32: 1 fills the well
 M        brightness, 0 to 1
 Z        pixel level, 0 to 2^bits - 1
 offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference;
-         or homographies (P, 3, 3), see `capture.motion`
+         or homographies (P, 3, 3), see `capture.hand_motion`
 
 The light goes through the camera in this order, one function each, those of the sensor in `capture.sensor`:
 
@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.capture.motion import views
+from hdrlab.capture.hand_motion import views
 from hdrlab.capture.responses import Curve, Response, as_response
 from hdrlab.capture.sensor import (
     Float,
@@ -161,7 +161,7 @@ def shoot(
     camera : Camera
     offsets : (P, 2), (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
         relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
-        saw is `motion.views(E, offsets)[j]`. Homographies (P, 3, 3), as of `motion.hand`, turn and tilt too.
+        saw is `hand_motion.views(E, offsets)[j]`. Homographies (P, 3, 3) of `hand_motion.hand` turn and tilt.
     rng : seed, or a generator, which is advanced
 
     Returns

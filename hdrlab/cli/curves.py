@@ -26,9 +26,9 @@ class Response(click.ParamType):
         names = ["auto", *catalogue.names("response")]
         if value in names:
             return str(value)
-        from hdrlab.io import curves
+        from hdrlab.io import response_files
 
-        if str(value).lower().endswith(tuple(curves.FORMS)):
+        if str(value).lower().endswith(tuple(response_files.FORMS)):
             return Path(value)
         self.fail(f"expected one of {', '.join(names)}, or a file: {SUFFIXES}; got {value!r}", param, ctx)
 
@@ -37,7 +37,7 @@ def given(response: str | Path) -> str | Callable[..., Any]:
     """Return what `pipeline.assemble` takes: a method's name, or a function that returns a saved curve."""
     if isinstance(response, str):
         return response
-    from hdrlab.io.curves import read_curve
+    from hdrlab.io.response_files import read_curve
 
     g = read_curve(response)
     return lambda *_, **__: g
@@ -74,12 +74,12 @@ def calibrate(
     are compared, plotted over each other, and written with the method's name in the file's name.
     """
     from hdrlab import pipeline
-    from hdrlab.io import curves
     from hdrlab.io import photos as files
+    from hdrlab.io import response_files
     from hdrlab.show.plots import calibration
 
     for path in out:
-        curves.suffix_of(path)  # an unknown suffix is better known before the work than after it
+        response_files.suffix_of(path)  # an unknown suffix is better known before the work than after it
     if plot:
         calibration.check_suffix(plot)
     bracket = files.read_bracket(
@@ -139,7 +139,7 @@ def _one(
 
 def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
     from hdrlab.core.errors import well_seen
-    from hdrlab.io import curves
+    from hdrlab.io import response_files
     from hdrlab.show.plots import calibration
 
     found = {}
@@ -160,15 +160,15 @@ def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
     maps = {name: one.E for name, one in found.items()}
     click.echo("\n".join(calibration.matrix(list(g), calibration.apart(maps, well), 3)))
     for name in g:
-        _write(tuple(curves.named(path, name) for path in out), g[name])
+        _write(tuple(response_files.named(path, name) for path in out), g[name])
     if plot:
         calibration.write_plot(plot, calibration.overlay(g, title=f"{len(g)} methods on one bracket"))
         click.echo(plot)
 
 
 def _write(out: tuple[Path, ...], g: Any) -> None:
-    from hdrlab.io import curves
+    from hdrlab.io import response_files
 
     for path in out:
-        curves.write_curve(path, g)
+        response_files.write_curve(path, g)
         click.echo(path)

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from PIL import ExifTags, Image
 
 from hdrlab.io import raw
-from hdrlab.io.exposure import Exposure, exif_exposure
+from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import check_size
 
 logging.getLogger("tifffile").addHandler(logging.NullHandler())  # what is wrong is said by our errors

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.io.exposure import Exposure
+from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 
 SUFFIXES = frozenset({".cr2", ".cr3", ".nef", ".arw", ".dng", ".raf", ".rw2", ".orf", ".pef"})

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.io.exposure import HINT, Exposure, equivalent, positive
+from hdrlab.io.exif_exposure import HINT, Exposure, equivalent, positive
 
 Times = Sequence[float] | NDArray[np.floating] | Mapping[str, float] | str | Path
 

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hdrlab.beyond import exposures, patches, patchmatch, similarity, synthesis
+from hdrlab.beyond import bidirectional, ldr_values, patches, patchmatch, synthesis
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
 from hdrlab.radiance.merge import merge
@@ -86,23 +86,23 @@ def test_votes_of_a_picture_that_matches_itself_are_that_picture_both_ways():
     S = noise((1, 10, 11, 3))
     P, Q = patchmatch.cut(S[0], 3), patchmatch.sources(S, 3)
     field = patchmatch.started(P, Q, patchmatch.identity(8, 9))
-    both = similarity.Matches(field, (field,))
+    both = bidirectional.Matches(field, (field,))
     w = noise((1, 8, 9), 4)
-    assert similarity.similarity(w, both) == 0
-    assert np.allclose(similarity.voted(S, w, both, 3), S[0], atol=1e-6)
+    assert bidirectional.similarity(w, both) == 0
+    assert np.allclose(bidirectional.voted(S, w, both, 3), S[0], atol=1e-6)
 
 
 def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_coherence():
     S = np.zeros((1, 16, 16, 1), np.float32)
     S[0, 5:9, 5:9] = 1
     T = np.zeros((16, 16, 1), np.float32)
-    knobs, at, rng = similarity.Search(5, 4, 16), patchmatch.identity(12, 12), np.random.default_rng(0)
+    knobs, at, rng = bidirectional.Search(5, 4, 16), patchmatch.identity(12, 12), np.random.default_rng(0)
     free, w = np.zeros((1, 16, 16), np.float32), np.ones((1, 12, 12), np.float32)
-    lacking = similarity.searched(T, S, free, (at, (at,)), knobs, rng)
+    lacking = bidirectional.searched(T, S, free, (at, (at,)), knobs, rng)
     assert lacking.coherence.d.max() == 0 and lacking.completeness[0].d.max() > 1
-    alien = similarity.searched(S[0], T[None], free, (at, (at,)), knobs, rng)
+    alien = bidirectional.searched(S[0], T[None], free, (at, (at,)), knobs, rng)
     assert alien.coherence.d.max() > 1 and alien.completeness[0].d.max() == 0
-    assert similarity.similarity(w, lacking) > 0 and similarity.similarity(0 * w, lacking) == 0
+    assert bidirectional.similarity(w, lacking) > 0 and bidirectional.similarity(0 * w, lacking) == 0
 
 
 @settings(max_examples=25, deadline=None)
@@ -110,26 +110,26 @@ def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_c
 def test_a_value_becomes_radiance_and_a_value_again(t, full):
     v = np.linspace(0, 1, 11, dtype=np.float32)
     wells = np.float32([full])
-    assert np.allclose(exposures.exposed(exposures.radiance(v, t, wells), t, wells), v, atol=1e-5)
-    boosted = exposures.exposed(exposures.radiance(v, t, wells), 4 * t, wells)
-    assert np.allclose(exposures.boosted(v, 4), boosted, atol=1e-5)
+    assert np.allclose(ldr_values.exposed(ldr_values.radiance(v, t, wells), t, wells), v, atol=1e-5)
+    boosted = ldr_values.exposed(ldr_values.radiance(v, t, wells), 4 * t, wells)
+    assert np.allclose(ldr_values.boosted(v, 4), boosted, atol=1e-5)
 
 
 def test_values_of_photographs_agree_with_merging_one_alone(walk):
     Z, t = walk.bracket.images, walk.bracket.times
-    seen = exposures.as_values(Z, t, G)
+    seen = ldr_values.as_values(Z, t, G)
     for k in range(3):
         E = merge(Z[k : k + 1], t[k : k + 1], G, mend=False)
         inside = (Z[k] > 10) & (Z[k] < 240)
-        assert np.allclose(exposures.radiance(seen.v[k], t[k], seen.full)[inside], E[inside], rtol=1e-3)
+        assert np.allclose(ldr_values.radiance(seen.v[k], t[k], seen.full)[inside], E[inside], rtol=1e-3)
 
 
 def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
     """The true radiance lies within what each photograph allows, but for noise beyond a few levels."""
-    seen = exposures.as_values(walk.bracket.images, walk.bracket.times, G)
+    seen = ldr_values.as_values(walk.bracket.images, walk.bracket.times, G)
     unit = np.exp(G[-1])  # of g over the truth's, in which exposure 1 fills a pixel
     for k in range(3):
-        least, most = exposures.allowed(seen.v[k], seen.noise[k], seen.clipped[k], seen.t[k], seen.full)
+        least, most = ldr_values.allowed(seen.v[k], seen.noise[k], seen.clipped[k], seen.t[k], seen.full)
         truth = unit * walk.moments[k]
         assert np.mean((truth >= 0.98 * least) & (truth <= 1.02 * most)) > 0.98
 

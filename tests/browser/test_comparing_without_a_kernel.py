@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from laboratory import open_widget
 
-from hdrlab.capture.room import scenes
+from hdrlab import scenes
 from hdrlab.core import colour
 from hdrlab.show import widgets
 from hdrlab.tonemap import brush

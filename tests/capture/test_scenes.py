@@ -7,55 +7,55 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
-from hdrlab.capture.room import interior, light, scenes, textures
+from hdrlab.capture.room import illumination, interior, textures, view
 from hdrlab.core.colour import luminance
 
 
 @pytest.fixture(scope="module")
 def room():
-    return scenes.room((128, 192))
+    return view.room((128, 192))
 
 
 # The room
 
 
 def test_the_room_spans_more_than_five_decades(room):
-    assert scenes.decades(room) > 5
-    assert scenes.decades(room, tail=0) > scenes.decades(room)
+    assert view.decades(room) > 5
+    assert view.decades(room, tail=0) > view.decades(room)
 
 
 def test_the_default_room_spans_more_than_five_decades_between_its_thousandths():
-    default = inspect.signature(scenes.room).parameters["shape"].default
-    E = scenes.room(default)
-    assert E.shape == (*default, 3) and scenes.decades(E) > 5.2
+    default = inspect.signature(view.room).parameters["shape"].default
+    E = view.room(default)
+    assert E.shape == (*default, 3) and view.decades(E) > 5.2
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (7, 50), (50, 7), (33, 33)])
 def test_the_room_is_finite_and_positive_at_any_shape(shape):
     for samples in (1, 2):  # one sample in an odd frame looks straight ahead
-        E = scenes.room(shape, samples=samples)
+        E = view.room(shape, samples=samples)
         assert E.shape == (*shape, 3) and E.dtype == np.float32
         assert np.isfinite(E).all() and E.min() > 0
 
 
 def test_the_same_room_is_rendered_every_time(room):
-    assert np.array_equal(room, scenes.room((128, 192)))
+    assert np.array_equal(room, view.room((128, 192)))
 
 
 def test_the_room_does_not_depend_on_the_bands_it_is_rendered_in(room, monkeypatch):
-    monkeypatch.setattr(scenes, "BAND", 192 * 4 * 3)
-    assert np.allclose(scenes.room((128, 192)), room, rtol=1e-5)
+    monkeypatch.setattr(view, "BAND", 192 * 4 * 3)
+    assert np.allclose(view.room((128, 192)), room, rtol=1e-5)
 
 
 def test_a_larger_frame_shows_the_same_room_in_more_detail(room):
-    E = scenes.room((256, 384)).reshape(128, 2, 192, 2, 3).mean(axis=(1, 3))
+    E = view.room((256, 384)).reshape(128, 2, 192, 2, 3).mean(axis=(1, 3))
     ratio = np.log2(luminance(E) / luminance(room))
     assert abs(np.median(ratio)) < 0.01 and np.quantile(abs(ratio), 0.9) < 0.25
 
 
 def test_edges_are_smooth_and_surfaces_are_not():
-    crude, fine = (luminance(scenes.room((128, 192), samples=s)) for s in (1, 4))
-    smooth = luminance(scenes.room((128, 192)))
+    crude, fine = (luminance(view.room((128, 192), samples=s)) for s in (1, 4))
+    smooth = luminance(view.room((128, 192)))
     assert norm(np.log(smooth / fine)) < 0.6 * norm(np.log(crude / fine))
     floor = np.log(smooth[100:, 130:])
     assert abs(np.diff(floor, axis=1)).mean() > 0.05
@@ -69,7 +69,7 @@ def test_the_sun_is_the_brightest_spot_and_the_unlit_room_the_darkest(room):
 
 
 def test_without_the_sun_the_floor_is_dim_and_without_the_lamp_its_corner(room):
-    overcast, unlit = scenes.room((128, 192), sun=0), scenes.room((128, 192), lamp=0)
+    overcast, unlit = view.room((128, 192), sun=0), view.room((128, 192), lamp=0)
     L, dim, dark = (luminance(E) for E in (room, overcast, unlit))
     assert (L / dim)[95:110, 90:105].mean() > 3 > 1.05 > (L / dim)[50:80, 5:25].mean()
     assert (L / dark)[20:40, 165:180].mean() > 2
@@ -77,7 +77,7 @@ def test_without_the_sun_the_floor_is_dim_and_without_the_lamp_its_corner(room):
 
 
 def test_light_adds_up():
-    lights = [scenes.room((40, 60), sun=s, lamp=m).astype(float) for s, m in ((0, 0), (9, 0), (0, 4), (9, 4))]
+    lights = [view.room((40, 60), sun=s, lamp=m).astype(float) for s, m in ((0, 0), (9, 0), (0, 4), (9, 4))]
     assert np.allclose(
         lights[3] - lights[0], lights[1] - lights[0] + lights[2] - lights[0], rtol=1e-3, atol=1e-3
     )
@@ -89,7 +89,7 @@ def test_nothing_is_downloaded(monkeypatch):
 
     monkeypatch.setattr(socket, "socket", refuse)
     textures.texture.cache_clear()
-    assert scenes.room((20, 30)).min() > 0
+    assert view.room((20, 30)).min() > 0
 
 
 @pytest.mark.parametrize(
@@ -105,26 +105,26 @@ def test_nothing_is_downloaded(monkeypatch):
 )
 def test_a_room_that_cannot_be_is_refused(knobs):
     with pytest.raises(ValueError, match="expected"):
-        scenes.room(**{"shape": (8, 8), **knobs})
+        view.room(**{"shape": (8, 8), **knobs})
 
 
 # Its range
 
 
 def test_decades_count_powers_of_ten():
-    assert np.isclose(scenes.decades(np.geomspace(1e-3, 1e4, 50)[None], tail=0), 7)
+    assert np.isclose(view.decades(np.geomspace(1e-3, 1e4, 50)[None], tail=0), 7)
 
 
 def test_decades_leave_out_black_and_the_odd_pixel():
     E = np.geomspace(1, 100, 10_000).reshape(100, 100)
     E[0, :3], E[0, 3] = 0, 1e9
-    assert np.isclose(scenes.decades(E), 2, atol=0.02)
+    assert np.isclose(view.decades(E), 2, atol=0.02)
 
 
 @pytest.mark.parametrize(("E", "tail"), [([[0.0]], 0), ([[1.0]], 0.5), ([[1.0]], -0.1), ([[-1.0]], 0)])
 def test_decades_of_what_has_none_are_refused(E, tail):
     with pytest.raises(ValueError, match="expected"):
-        scenes.decades(E, tail=tail)
+        view.decades(E, tail=tail)
 
 
 # Its light, its surfaces
@@ -153,27 +153,27 @@ def integrate(point, n, window, steps=400):
 def test_the_light_of_a_window_is_the_sum_over_its_parts(point, face, n):
     P = np.float32(point)[:, None]
     assert np.isclose(
-        light.from_window(P, face, interior.WINDOW)[0], integrate(point, n, interior.WINDOW), rtol=1e-3
+        illumination.from_window(P, face, interior.WINDOW)[0], integrate(point, n, interior.WINDOW), rtol=1e-3
     )
 
 
 def test_a_window_gives_no_light_to_its_own_wall():
     P = np.float32([[-2, 2], [1, 1], [4.6, 4.6]])
-    assert np.allclose(light.from_window(P, interior.BACK, interior.WINDOW), 0, atol=1e-3)
+    assert np.allclose(illumination.from_window(P, interior.BACK, interior.WINDOW), 0, atol=1e-3)
 
 
 def test_the_light_of_a_globe_falls_with_the_square_of_its_distance():
     P = np.float32([[0, 0], [0, 0], [0, 0]])
-    near, far = (light.from_globe(P, interior.FLOOR, textures.rgb(0, d, 0), 0.1)[0] for d in (1, 2))
+    near, far = (illumination.from_globe(P, interior.FLOOR, textures.rgb(0, d, 0), 0.1)[0] for d in (1, 2))
     assert np.isclose(near, 0.01) and np.isclose(far, 0.0025)
     assert (
-        light.from_globe(P, interior.CEILING, textures.rgb(0, 1, 0), 0.1)[0] == 0
+        illumination.from_globe(P, interior.CEILING, textures.rgb(0, 1, 0), 0.1)[0] == 0
     )  # it is behind that surface
 
 
 def test_a_line_of_sight_leaves_a_box_where_it_should():
     d = np.float32([[0, 0, 3], [0, -1, 0], [1, 1, 1]])
-    t, face = interior.leave(np.zeros((3, 1), np.float32), d, light.Box((-1, -2, -1), (1, 2, 4)))
+    t, face = interior.leave(np.zeros((3, 1), np.float32), d, illumination.Box((-1, -2, -1), (1, 2, 4)))
     assert np.allclose(t, [4, 2, 1 / 3]) and face.tolist() == [interior.BACK, interior.FLOOR, interior.RIGHT]
 
 

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.capture import camera, ranges, sensor, transfer
-from hdrlab.capture.room import scenes
+from hdrlab import scenes
+from hdrlab.capture import camera, photon_transfer, ranges, sensor
 from hdrlab.capture.sensor import Sensor
 
 QUIET = Sensor(read_noise=0, full_well=1e9, gain=1e9 / 4000, bits=12, black=64)
@@ -178,7 +178,7 @@ def test_hot_pixels_burn_through_a_mosaic_too():
 )
 @pytest.mark.parametrize("seed", [0, 1, 2])
 def test_flat_frames_give_gain_and_read_noise_to_three_percent(one, seed):
-    found = transfer.calibrate(flats(one, seed=seed))
+    found = photon_transfer.calibrate(flats(one, seed=seed))
     assert found.gain == pytest.approx(one.gain, rel=0.03)
     assert found.read_noise == pytest.approx(one.read_noise, rel=0.03)
     assert found.black == pytest.approx(one.black, abs=0.1)
@@ -187,14 +187,14 @@ def test_flat_frames_give_gain_and_read_noise_to_three_percent(one, seed):
 
 def test_dust_and_vignetting_do_not_disturb_the_calibration():
     dusty = sensor.falloff((200, 200), 0.3) * np.random.default_rng(8).normal(1, 0.03, (200, 200))
-    found = transfer.calibrate(flats(Sensor(), uneven=dusty))
+    found = photon_transfer.calibrate(flats(Sensor(), uneven=dusty))
     assert found.gain == pytest.approx(5, rel=0.03) and found.read_noise == pytest.approx(5, rel=0.03)
     single = flats(Sensor(), uneven=dusty)[8, 0].astype(float).var()
     assert single > 5 * found.V[8]  # one photograph's own variance is mostly dust
 
 
 def test_the_variance_grows_with_the_signal_and_falls_when_the_well_is_full():
-    found = transfer.calibrate(flats(Sensor()))
+    found = photon_transfer.calibrate(flats(Sensor()))
     assert np.all(np.diff(found.V[found.used]) > 0) and found.V[-1] < found.V[found.used][-1] / 10
     assert not found.used[-1]
 
@@ -203,7 +203,7 @@ def test_a_jpeg_is_told_from_raw_levels_by_noise_that_does_not_grow():
     pairs = flats(Sensor())
     curved = np.round(255 * np.clip((pairs - 64.0) / 4000, 0, 1) ** (1 / 2.2)).astype(np.uint8)
     with pytest.raises(ValueError, match="noise that grows"):
-        transfer.calibrate(curved)
+        photon_transfer.calibrate(curved)
 
 
 @pytest.mark.parametrize(
@@ -218,7 +218,7 @@ def test_a_jpeg_is_told_from_raw_levels_by_noise_that_does_not_grow():
 )
 def test_photographs_that_tell_nothing_are_refused(Z):
     with pytest.raises(ValueError, match="expected"):
-        transfer.calibrate(Z)
+        photon_transfer.calibrate(Z)
 
 
 # Bad input

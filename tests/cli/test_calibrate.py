@@ -6,13 +6,13 @@ from matplotlib.figure import Figure
 from PIL import Image
 from test_cli import hdrlab
 
+from hdrlab import scenes
 from hdrlab.capture import camera, responses
-from hdrlab.capture.room import scenes
 from hdrlab.core.errors import response_rmse
 from hdrlab.diagnostics.bootstrap import Band
 from hdrlab.io import radiance
-from hdrlab.io.curves import read_curve, write_curve
 from hdrlab.io.photos import write_picture
+from hdrlab.io.response_files import read_curve, write_curve
 from hdrlab.show.plots import calibration
 
 LINEAR = np.log(np.maximum(np.arange(256), 0.25) / 128)

@@ -6,9 +6,8 @@ import sys
 import numpy as np
 import pytest
 
-from hdrlab import cli
+from hdrlab import cli, scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.io import radiance
 from hdrlab.io.photos import read_photo, write_picture
 

@@ -8,7 +8,7 @@ import pytest
 from PIL import Image
 from test_cli import hdrlab
 
-from hdrlab.capture.room import scenes
+from hdrlab import scenes
 from hdrlab.io import radiance
 from hdrlab.io.terminal import elapsed
 from hdrlab.pipeline import catalogue

@@ -10,16 +10,15 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from hdrlab import cli
+from hdrlab import cli, scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.course.archives.unpack import unpack
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import collect
 from hdrlab.course.projects import project, review, words
 from hdrlab.course.projects import report as reports
 from hdrlab.course.projects import submit as handing
-from hdrlab.io import curves, radiance
+from hdrlab.io import radiance, response_files
 from hdrlab.io.decode import look
 
 TIMES = [1 / 250, 1 / 60, 1 / 15]
@@ -65,7 +64,7 @@ def home(tmp_path):
     for k, (image, time) in enumerate(zip(camera.shoot(E, TIMES, rng=1).images, TIMES, strict=True)):
         photograph(folder / "photographs" / f"{9 - k}.jpg", image, time)
     radiance.write_radiance(folder / "map.hdr", E)
-    curves.write_curve(folder / "response.csv", np.log(np.linspace(0.01, 2, 256)))
+    response_files.write_curve(folder / "response.csv", np.log(np.linspace(0.01, 2, 256)))
     Image.fromarray(camera.shoot(E, [1 / 60], rng=2).images[0]).save(folder / "artifact.png")
     Image.new("RGB", (40, 30), "teal").save(folder / "figures" / "window.png")
     (folder / "source" / "hdr.py").write_text("import numpy\nfrom helpers import merge\n")

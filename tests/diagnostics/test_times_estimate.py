@@ -7,9 +7,8 @@ import pytest
 from PIL import Image, TiffImagePlugin
 from scipy.ndimage import gaussian_filter
 
-from hdrlab import cli, pipeline
+from hdrlab import cli, pipeline, scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.core.weights import gaussian
 from hdrlab.diagnostics import consistency, flats, response_steps
 from hdrlab.diagnostics.contradictions import Contradictions, contradictions, doubt, outstanding

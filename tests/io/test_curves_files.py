@@ -9,12 +9,12 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from hdrlab import scenes
 from hdrlab.capture import camera
-from hdrlab.capture.room import scenes
 from hdrlab.io import pfm
-from hdrlab.io.curves import FORMS, named, read_curve, suffix_of, write_curve
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import read_radiance
+from hdrlab.io.response_files import FORMS, named, read_curve, suffix_of, write_curve
 
 Z = np.arange(256)
 GRAY = np.log(np.maximum(Z, 0.25) / 128)

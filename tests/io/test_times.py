@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from PIL import Image
 from PIL.TiffImagePlugin import IFDRational
 
-from hdrlab.io.exposure import Exposure, equivalent, exif_exposure
+from hdrlab.io.exif_exposure import Exposure, equivalent, exif_exposure
 from hdrlab.io.times import bracket_times, read_times
 
 NAMES = ["a.jpg", "b.jpg"]

@@ -8,10 +8,9 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from hdrlab import pipeline
+from hdrlab import pipeline, scenes
 from hdrlab.align import mtb
 from hdrlab.capture import camera, responses
-from hdrlab.capture.room import scenes
 from hdrlab.core.bracket import bracket
 from hdrlab.core.colour import luminance
 from hdrlab.diagnostics import consistency

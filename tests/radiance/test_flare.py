@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab import scenes
-from hdrlab.capture import flare as lens
+from hdrlab.capture import lens_flare as lens
 from hdrlab.core.scatter import Spread, kernel, scattered
 from hdrlab.radiance import flare
 

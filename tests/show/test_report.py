@@ -8,10 +8,9 @@ import cv2
 import numpy as np
 import pytest
 
-from hdrlab import pipeline
+from hdrlab import pipeline, scenes
 from hdrlab.align.shift import crop
 from hdrlab.capture import camera, responses
-from hdrlab.capture.room import scenes
 from hdrlab.core.bracket import bracket
 from hdrlab.core.errors import Truth
 from hdrlab.radiance.bounds import Seen

@@ -28,7 +28,7 @@ import pytest
 import tifffile
 from skimage.metrics import structural_similarity
 
-from hdrlab.capture.room import scenes
+from hdrlab import scenes
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.io.radiance import read_radiance, write_radiance
 

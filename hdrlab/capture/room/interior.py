@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hdrlab.capture.room.garden import EYE_HEIGHT, SUN, SUN_RADIUS, outside, sky
-from hdrlab.capture.room.light import Box, facing, from_globe, from_walls, from_window, length
+from hdrlab.capture.room.illumination import Box, facing, from_globe, from_walls, from_window, length
 from hdrlab.capture.room.textures import Points, cover, hang, look_up, margin, rgb, within
 
 LEFT, RIGHT, FLOOR, CEILING, FRONT, BACK = range(6)

@@ -5,7 +5,7 @@ project/
   report.md         the words (or report.ipynb), of which `hdrlab report` makes report.html
   photographs/      the bracket as it came from the camera
   map.hdr           the radiance map, or .exr or .pfm
-  response.csv      the response curve, as `hdrlab calibrate` or `io.curves` writes it
+  response.csv      the response curve, as `hdrlab calibrate` or `io.response_files` writes it
   artifact.jpg      the picture for the wall, or .png or .tif
   *.py, *.ipynb     the source, also in folders
 """
@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.wording import plain
-from hdrlab.io import curves, photos
+from hdrlab.io import photos, response_files
 
 ALBUMS = ("photographs", "photos", "bracket", "pictures")
 MAPS = (".hdr", ".exr", ".pfm", ".pic", ".rgbe")
@@ -80,7 +80,7 @@ def look(folder: str | Path) -> Project:
         files,
         tuple(path for path in files if path.parent == album and path.suffix.lower() in photos.SUFFIXES),
         _one(top, ("map", "radiance", "hdr"), MAPS),
-        _one(top, ("response", "curve", "response.luminance"), tuple(curves.FORMS)),
+        _one(top, ("response", "curve", "response.luminance"), tuple(response_files.FORMS)),
         _one(top, ("artifact",), ARTIFACTS, strict=True),
         words,
         folder / PAGE if folder / PAGE in files else None,

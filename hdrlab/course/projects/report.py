@@ -15,9 +15,9 @@ from markupsafe import Markup
 from hdrlab.core.arrays import Array
 from hdrlab.course.projects import words
 from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
-from hdrlab.io import curves, photos, radiance
+from hdrlab.io import photos, radiance, response_files
 from hdrlab.io.decode import look
-from hdrlab.io.exposure import Exposure
+from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import replacing
 from hdrlab.show import plots
 from hdrlab.show.pages import sections
@@ -129,7 +129,7 @@ def _said(exposure: Exposure) -> list[str]:
 
 
 def _curves(path: Path) -> dict[str, Any]:
-    return sections.response(curves.read_curve(path), None)
+    return sections.response(response_files.read_curve(path), None)
 
 
 def _map(path: Path) -> dict[str, Any]:

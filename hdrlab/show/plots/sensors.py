@@ -3,7 +3,7 @@
 L      luminance   (K,) or (H, W), cd/m^2
 held   what one exposure makes of it: `capture.ranges.Held`
 full, noise        (H, W) bool, pixels that are full, and those that noise has swallowed
-found  a photon transfer curve: `capture.transfer.Transfer`
+found  a photon transfer curve: `capture.photon_transfer.Transfer`
 
 What is full is orange, what is lost in noise blue, here as in the benches; hatching tells them apart as well.
 """
@@ -16,9 +16,9 @@ from matplotlib.colors import Normalize
 from matplotlib.patheffects import withStroke
 from numpy.typing import ArrayLike, NDArray
 
+from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
 from hdrlab.capture.ranges import Held
-from hdrlab.capture.transfer import Transfer
 from hdrlab.core.arrays import describe
 from hdrlab.core.picture import as_picture
 from hdrlab.show.plots import axes, fixed, picture_axes
