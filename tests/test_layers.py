@@ -110,3 +110,32 @@ def test_a_module_below_the_screen_does_not_print(path):
         node for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))) if isinstance(node, ast.Call)
     ]
     assert not [node.lineno for node in calls if isinstance(node.func, ast.Name) and node.func.id == "print"]
+
+
+def paths_into(tree, folder):
+    """Return the lines that name a folder as a path: an operand of `/`, an argument, or "folder/..."."""
+    docstrings = {id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr)}
+    parts = [
+        part for node in ast.walk(tree) if isinstance(node, ast.BinOp) for part in (node.left, node.right)
+    ]
+    parts += [part for node in ast.walk(tree) if isinstance(node, ast.Call) for part in node.args]
+    texts = [
+        node for node in ast.walk(tree) if isinstance(node, ast.Constant) and isinstance(node.value, str)
+    ]
+    return [
+        text.lineno
+        for text in texts
+        if id(text) not in docstrings
+        and (f"{folder}/" in text.value or text.value == folder and any(text is part for part in parts))
+    ]
+
+
+@pytest.mark.parametrize("path", FILES, ids=lambda path: ".".join(module(path)))
+def test_no_module_reads_the_tests(path):
+    assert not paths_into(ast.parse(path.read_text(encoding="utf8")), "tests")
+
+
+def test_a_path_into_the_tests_is_found_however_it_is_written():
+    for code in ('HERE / "tests"', 'folder("tests")', 'open("../tests/laws.py")', 'f"{x}/tests/{y}"'):
+        assert paths_into(ast.parse(code), "tests"), code
+    assert not paths_into(ast.parse('{"tests": 3}'), "tests")

@@ -24,15 +24,35 @@ def wheel(tmp_path_factory):
     return next(out.glob("hdrlab-*.whl"))
 
 
-def test_notebooks_specification_scripts_and_types_travel_in_the_wheel(wheel):
-    names = set(zipfile.ZipFile(wheel).namelist())
-    assert not any("solutions" in name for name in names)
-    for folder, pattern in [("notebooks", "*.ipynb"), ("assignments", "*.ipynb"), ("tests", "**/*.py")]:
-        for file in (ROOT / folder).glob(pattern):
-            assert f"hdrlab/course/{folder}/{file.relative_to(ROOT / folder).as_posix()}" in names
-    for file in (ROOT / "hdrlab").rglob("*"):
-        if file.is_file() and file.suffix != ".pyc":
-            assert file.relative_to(ROOT).as_posix() in names
+IN = (
+    "hdrlab/py.typed",
+    "hdrlab/scenes/chapel.exr",
+    "hdrlab/course/plan.toml",
+    "hdrlab/course/checks/specification/test_gsolve.py",
+    "hdrlab/course/checks/mistakes/gsolve_lambda_inverted.py",
+    "hdrlab/course/gallery/templates/base.html",
+    "hdrlab/show/widgets/blink.js",
+)
+OUT = ("tests", "attacks", "equivalent", "solutions", "benchmarks", "models", ".ci")
+
+
+def test_the_wheel_holds_the_package_notebooks_and_handouts_and_nothing_else(wheel):
+    held = [name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name]
+    files = [path for path in (ROOT / "hdrlab").rglob("*") if path.is_file() and path.suffix != ".pyc"]
+    expected = {path.relative_to(ROOT).as_posix() for path in files}
+    for folder in ("notebooks", "assignments"):
+        expected |= {f"hdrlab/course/{folder}/{path.name}" for path in (ROOT / folder).glob("*.ipynb")}
+    assert set(held) == expected and expected.issuperset(IN)
+    parts = {part for name in held for part in name.split("/")}
+    assert not parts.intersection(OUT)
+
+
+def test_the_wheel_carries_no_attack_and_no_full_answer(wheel):
+    """No file of it is one of the tests' own, under whatever name."""
+    kept = [ROOT / "tests/attacks", ROOT / "tests/equivalent", ROOT / "scenes"]
+    foreign = {path.read_bytes() for folder in kept for path in folder.rglob("*.py")} - {b""}
+    opened = zipfile.ZipFile(wheel)
+    assert not [name for name in opened.namelist() if opened.read(name) in foreign]
 
 
 def installed(wheel, tmp_path, words):
@@ -50,7 +70,7 @@ def installed(wheel, tmp_path, words):
         "import hdrlab; from hdrlab import cli; from hdrlab.course import materials\n"
         f"assert hdrlab.__file__.startswith({str(site)!r}), hdrlab.__file__\n"
         "assert list(materials.folder('notebooks').glob('*.ipynb'))\n"
-        "assert (materials.folder('tests') / 'laws.py').exists()\n"
+        "assert list(materials.folder('assignments').glob('*.ipynb'))\n"
         f"cli.run({words!r})"
     )
     elsewhere = tmp_path / "elsewhere"

@@ -11,6 +11,7 @@ trap        hostile: an archive of tests/traps.py
 Kinds take turns, so that a smaller class has the same mixture.
 """
 
+import re
 from collections.abc import Iterable
 from datetime import timedelta
 from functools import cache
@@ -22,6 +23,7 @@ from typing import NamedTuple
 
 from benchmarks.measure import ROOT
 from hdrlab.course import plan, sheets
+from hdrlab.course.checks import MISTAKES
 from hdrlab.course.classroom import imitation, toy
 from hdrlab.course.plan import Homework
 
@@ -88,7 +90,7 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         ways = sorted((TESTS / "equivalent").glob("hw2_*.py"))
         return [(way.stem, ".py", way.read_bytes()) for way in islice(cycle(ways), count)]
     if kind == "mistake":
-        wrong = sorted((TESTS / "wrong").glob("*.py"))
+        wrong = sorted(MISTAKES.glob("*.py"))
         names = [one.stem for one in wrong if imitation.mistake(one.stem).task in ids]
         return [(name, ".ipynb", _mistaken(name)) for name in islice(cycle(names), count)]
     if kind == "half":
@@ -101,7 +103,7 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
     if kind == "attack":
         siege = _tests("siege")
         aims = zip(islice(cycle(siege.NAMES), count), cycle(ids), strict=False)
-        return [(name, ".py", _attack(siege.armed(name, target, PORT), name, id)) for name, id in aims]
+        return [(name, ".py", _attack(siege.armed(name, target, PORT), id)) for name, id in aims]
     return [(name, ".zip", trap(name)) for name in islice(cycle(_tests("traps").TRAPS), count)]
 
 
@@ -122,8 +124,9 @@ def _filled(homework: Homework, part: Homework) -> bytes:
     return imitation.notebook(homework, imitation.texts(part)).encode()
 
 
-def _attack(text: str, name: str, task: str) -> bytes:
-    return imitation.attack(name, task, text).encode()
+def _attack(text: str, task: str) -> bytes:
+    """Return an attack whose function, called double, has the name of a task."""
+    return re.sub(r"^def double\(x\)", f"def {task}(x=0, *_, **__)", text, flags=re.MULTILINE).encode()
 
 
 @cache

@@ -1,11 +1,11 @@
-"""Where notebooks, assignments and specification are, in a package or a clone, and a reader's copy."""
+"""Where notebooks and assignments are, in a package or a clone, and a reader's copy."""
 
 import shutil
 from pathlib import Path
 
 
 def folder(name: str) -> Path:
-    """Return the folder "notebooks", "assignments" or "tests", in the wheel or at the top of a clone.
+    """Return the folder "notebooks" or "assignments", in the wheel or at the top of a clone.
 
     Raises
     ------

@@ -195,7 +195,7 @@ def test_an_autograder_holds_hdrlab_its_checks_and_scripts_that_run(zipped):
     names = set(modes)
     assert modes["run_autograder"] & 0o111 and modes["setup.sh"] & 0o111
     for name in (
-        "hdrlab/course/hdrlab/course/checks/specification/test_hat.py",
+        "hdrlab/course/checks/specification/test_hat.py",
         "hdrlab/course/assignments/hw2.ipynb",
         "hidden/test_hat.py",
     ):

@@ -66,8 +66,3 @@ def test_without_a_mistake_it_is_the_solution_and_without_cells_the_handout(home
         assert not any("is yours to write" in source for source in found.sources.values())
     handout = (HERE.parent / "assignments" / f"{homework.name}.ipynb").read_text(encoding="utf8")
     assert imitation.notebook(homework) == handout
-
-
-def test_an_attack_takes_the_place_of_a_task():
-    text = imitation.attack("a09_exit", "gsolve")
-    assert "def gsolve(x=0, *_, **__):" in text and "def double" not in text

@@ -1,8 +1,7 @@
 """What students hand in, imitated: the handout filled in, rightly or with a well-known mistake.
 
 What is right is the library's own function. A mistake is a file of `checks/mistakes`; where it calls the
-library,
-which no submission can import, a copy of that function stands beside it, under a name of its own.
+library, which no submission can import, a copy of that function stands beside it, under a name of its own.
 """
 
 import ast
@@ -118,17 +117,3 @@ def notebook(homework: Homework, cells: Mapping[str, str] | None = None) -> str:
 def script(cells: Mapping[str, str]) -> str:
     """Return the same as a Python file in the percent form, as an editor would save it."""
     return "# %%\n" + FENCE.join(cells.values()) + "\n"
-
-
-def attack(name: str, task: str, text: str | None = None) -> str:
-    """Return an attack of tests/attacks in the place of a task's function.
-
-    Parameters
-    ----------
-    name : of its file, without .py
-    task : id of the task; the attack's own function is called double
-    text : of the attack where it was changed
-    """
-    file = materials.folder("tests") / "attacks" / f"{name}.py"
-    text = file.read_text(encoding="utf8") if text is None else text
-    return re.sub(r"^def double\(x\)", f"def {task}(x=0, *_, **__)", text, flags=re.MULTILINE)

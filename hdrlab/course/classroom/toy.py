@@ -16,7 +16,7 @@ from datetime import timedelta
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import materials, plan, sheets
+from hdrlab.course import plan, sheets
 from hdrlab.course.classroom import imitation
 from hdrlab.course.plan import Homework
 from hdrlab.io.files import replacing
@@ -25,12 +25,24 @@ HOMEWORK = "hw2"
 TEAM, MEMBERS = "t1", ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
 DONE = ("hat", "irradiance", "update")  # of who has not come to the end
-ATTACKS = {  # what stands in place of four of the functions
-    "hat": "a10_forged_lines",
-    "gsolve": "a09_exit",
-    "update": "a20_scripts",
-    "recover": "a05_frames",
-}
+HOSTILE = """\
+# %% It prints what a grader prints when a check holds.
+def hat(*given, **named):
+    print("PASS\\n{'outcome': 'holds'}\\n2 passed in 0.01s", flush=True)
+
+# %% It ends the process before anything is compared.
+def gsolve(*given, **named):
+    import os
+    os._exit(0)
+
+# %% It raises what a page might run and a terminal obey.
+def update(*given, **named):
+    raise ValueError("\\x1b[2J<script>alert(1)</script>")
+
+# %% It answers with what claims to equal everything.
+def recover(*given, **named):
+    return type("Anything", (), {"__eq__": lambda self, other: True})()
+"""
 COMMAND = (
     "hdrlab grade {folder}/submissions --homework hw2 --roster {folder}/roster.csv"
     " --received {folder}/received.csv -o {folder}/results"
@@ -48,14 +60,14 @@ class Handed(NamedTuple):
 
 def handed(homework: Homework) -> Iterator[Handed]:
     """Yield what the toy class has handed in."""
-    loops = (materials.folder("tests") / "equivalent" / "hw2_loops.py").read_bytes()
-    right = imitation.notebook(homework, imitation.texts(homework)).encode()
+    cells = imitation.texts(homework)
+    right = imitation.notebook(homework, cells).encode()
 
     def wrong(*mistakes: str) -> bytes:
         return imitation.notebook(homework, imitation.texts(homework, mistakes)).encode()
 
     yield Handed("s01_hw2.ipynb", right, -30, "All right: 100 points.")
-    yield Handed("s02_hw2.py", loops, -2, "All right, in loops, as a Python file: 100 points.")
+    yield Handed("s02_hw2.py", imitation.script(cells).encode(), -2, "The same as a Python file: 100 points.")
     yield Handed("t1_hw2.ipynb", right, 70, "A team of s03 and s04, three days late: 100 points, no penalty.")
     yield Handed("s05_hw2.ipynb", right, 11.5 * 24, "All right, two days beyond the ten that are free: 98.")
     yield Handed("s06_hw2.ipynb", wrong("gsolve_log2_of_the_times"), -9, "A well-known mistake in gsolve.")
@@ -76,8 +88,7 @@ def handed(homework: Homework) -> Iterator[Handed]:
     yield Handed(
         "s12_hw2.zip", trap, -4, "An archive that would overwrite another's file: refused, 0 points."
     )
-    armed = imitation.script({task: imitation.attack(name, task) for task, name in ATTACKS.items()})
-    yield Handed("s13_hw2.py", armed.encode(), -6, "Attacks on the grader in place of functions: 0 points.")
+    yield Handed("s13_hw2.py", HOSTILE.encode(), -6, "Attacks on the grader in place of functions: 0 points.")
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:

@@ -74,21 +74,13 @@ def requirements() -> list[str]:
 
 
 def _library() -> Iterator[tuple[str, bytes]]:
-    """Yield hdrlab's files as they stand in an installed package: checks and handouts inside of it."""
-    inside = {"tests": materials.folder("tests"), "assignments": materials.folder("assignments")}
-    apart = (*LARGE, *(f"course/{one}/" for one in inside))
-    for file in _files(LIBRARY):
+    """Yield hdrlab's files as they stand in an installed package: handouts inside of it."""
+    for file in LIBRARY.rglob("*"):
         name = file.relative_to(LIBRARY).as_posix()
-        if file.suffix not in SKIPPED and not name.startswith(apart):
+        if file.is_file() and file.suffix not in SKIPPED and name not in LARGE:
             yield f"hdrlab/{name}", file.read_bytes()
-    for folder, home in inside.items():
-        for file in _files(home):
-            if file.suffix != ".pyc":
-                yield f"hdrlab/course/{folder}/{file.relative_to(home).as_posix()}", file.read_bytes()
-
-
-def _files(folder: Path) -> list[Path]:
-    return sorted(one for one in folder.rglob("*") if one.is_file() and "__pycache__" not in one.parts)
+    for file in materials.folder("assignments").glob("*.ipynb"):
+        yield f"hdrlab/course/assignments/{file.name}", file.read_bytes()
 
 
 def _zipped(target: Path, files: dict[str, bytes]) -> Path:

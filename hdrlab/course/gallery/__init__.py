@@ -7,7 +7,7 @@ collect, pictures         what students hand in, decoded and encoded again
 guard, front, app, serve  the pages, and what stands before them
 export                    links for the class, columns for the gradebook
 
-What somebody may try, what stops it, and the promise in tests/test_gallery_attacks.py that it does:
+What somebody may try, what stops it, and the promise in tests/course/test_gallery_attacks.py that it does:
 
 =====================  ==========================================================  ======================
 attack                 what stops it                                               test_...
