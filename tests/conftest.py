@@ -14,7 +14,7 @@ from PIL import Image
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 
-pytest.register_assert_rewrite("laws")
+pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
 settings.load_profile("hdrlab")
 SCRATCH = tempfile.TemporaryDirectory(

@@ -8,6 +8,7 @@ from functools import wraps
 from pathlib import Path
 
 import pytest
+import scoring
 
 from hdrlab.course import plan, submission
 from hdrlab.course.checks import compare, inprocess
@@ -37,14 +38,14 @@ def tasks_of(path):
 def keeps_every_promise(functions, tasks, student):
     subject = inprocess.Subject({task: aside(functions[task]) for task in tasks})
     for task in tasks:
-        share, said = inprocess.score(task, subject, plan.seed("secret", student, task))
+        share, said = scoring.score(task, subject, plan.seed("secret", student, task))
         assert share == 1, (task, {name: str(error) for name, error in said.items() if error})
 
 
 @pytest.mark.parametrize("student", ["ada", "grace"])
 @pytest.mark.parametrize("path", FILES, ids=lambda path: path.stem)
 def test_another_way_of_writing_it_keeps_every_promise(path, student):
-    keeps_every_promise(inprocess.functions(path), tasks_of(path), student)
+    keeps_every_promise(scoring.functions(path), tasks_of(path), student)
 
 
 # The same code in another notebook

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import scoring
 
 from hdrlab.course import plan, submission
 from hdrlab.course.checks import inprocess, misconceptions
@@ -43,7 +44,7 @@ def test_a_mistake_stands_by_itself(one, tmp_path):
 def small(task):
     """Return the two smallest questions of a task's checks, as (arguments, named arguments)."""
     library = inprocess.library()
-    inprocess.score(task, library)
+    scoring.score(task, library)
     sizes = [sum(np.size(one) for one in given) for given, _, _ in library.calls]
     return [library.calls[k][:2] for k in np.argsort(sizes, kind="stable")[:2]]
 

@@ -5,6 +5,7 @@ from functools import cache
 
 import numpy as np
 import pytest
+import scoring
 
 from hdrlab.course import plan
 from hdrlab.course.checks import inprocess, misconceptions
@@ -19,7 +20,7 @@ pytestmark = pytest.mark.filterwarnings("ignore")  # a wrong function may well d
 def asked(one, student):
     """Return the share of its task's points that a wrong file gets, and what it was asked and answered."""
     subject = inprocess.Subject({one.task: one.function})
-    share, _ = inprocess.score(one.task, subject, plan.seed("secret", student, one.task))
+    share, _ = scoring.score(one.task, subject, plan.seed("secret", student, one.task))
     return share, subject.calls
 
 
@@ -62,10 +63,10 @@ def test_nine_in_ten_are_recognised_by_name_for_any_student():
 @pytest.mark.parametrize("task", sorted({one.task for one in KNOWN}))
 def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
     subject = inprocess.library()
-    inprocess.score(task, subject)
+    scoring.score(task, subject)
     assert misconceptions.recognise(task, subject.calls) is None
     stub = inprocess.Subject({task: lambda *given, **named: None})
-    inprocess.score(task, stub)
+    scoring.score(task, stub)
     assert misconceptions.recognise(task, stub.calls) is None
     assert misconceptions.recognise(task, []) is None
 

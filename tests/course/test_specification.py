@@ -6,6 +6,7 @@ import time
 
 import numpy as np
 import pytest
+import scoring
 
 from hdrlab.course import plan
 from hdrlab.course.checks import SPECIFICATION, inprocess
@@ -24,7 +25,7 @@ def unanswered():
 @pytest.mark.parametrize("task", IDS)
 @pytest.mark.parametrize("student", ["ada", "grace", "Emmy Noether"])
 def test_the_library_keeps_every_promise_whatever_a_student_draws(task, student):
-    share, said = inprocess.score(task, inprocess.library(), plan.seed("the course's secret", student, task))
+    share, said = scoring.score(task, inprocess.library(), plan.seed("the course's secret", student, task))
     assert share == 1, {name: str(error) for name, error in said.items() if error}
 
 
@@ -37,7 +38,7 @@ def test_a_blank_stub_keeps_none(task):
         lambda *given, **named: [],
         lambda *given, **named: "",
     ):
-        assert inprocess.score(task, inprocess.Subject({task: blank}))[0] == 0
+        assert scoring.score(task, inprocess.Subject({task: blank}))[0] == 0
 
 
 @pytest.mark.parametrize("task", IDS)
@@ -51,12 +52,12 @@ def test_an_answer_of_nan_gains_nothing(task):
 
     right = plan.function(PLAN.task(task))
     wrong = inprocess.Subject({task: lambda *a, **k: spoiled(inprocess.plain(right(*a, **k)))})
-    assert inprocess.score(task, wrong)[0] == 0
+    assert scoring.score(task, wrong)[0] == 0
 
 
 @pytest.mark.parametrize("task", IDS)
 def test_every_promise_has_points_three_hints_and_a_sentence_for_a_name(task):
-    found = inprocess.checks(task)
+    found = scoring.checks(task)
     assert len(found) >= 2
     for name, check, points, hints in found:
         assert points > 0 and len(hints) == 3 and all(len(hint) > 10 for hint in hints), name
@@ -84,7 +85,7 @@ def test_the_checks_of_a_homework_take_a_few_seconds_of_one_core():
     for homework in PLAN.homeworks.values():
         begun = time.process_time()
         for task in homework.tasks:
-            inprocess.score(task.id, inprocess.library())
+            scoring.score(task.id, inprocess.library())
         assert time.process_time() - begun < 5, homework.name
 
 
@@ -92,11 +93,11 @@ def test_the_checks_of_a_homework_take_a_few_seconds_of_one_core():
 def test_two_students_draw_different_inputs_and_one_draws_the_same_again(task):
     def asked(student):
         subject = inprocess.library()
-        inprocess.score(task, subject, plan.seed("secret", student, task))
+        scoring.score(task, subject, plan.seed("secret", student, task))
         return repr([(given, named) for given, named, _ in subject.calls])
 
     assert asked("ada") == asked("ada")
-    if any("rng" in inspect.signature(check).parameters for _, check, *_ in inprocess.checks(task)):
+    if any("rng" in inspect.signature(check).parameters for _, check, *_ in scoring.checks(task)):
         assert asked("ada") != asked("grace")
 
 

@@ -1,12 +1,12 @@
 """A response that its photographs contradict is refused; one that a reader brings is taken as it is."""
 
+import laws
 import numpy as np
 import pytest
 
 from hdrlab import pipeline
 from hdrlab.capture import camera
 from hdrlab.capture.responses import RESPONSES
-from hdrlab.course.checks import laws
 from hdrlab.pipeline import catalogue, recovery
 from hdrlab.response import debevec, linear
 

@@ -1,5 +1,6 @@
 """Responses from histograms: transfer functions, the two models, and the comparison of Cerman and Hlavac."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,7 +8,6 @@ from hypothesis import strategies as st
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import transfer, weights
-from hdrlab.course.checks import laws
 from hdrlab.response import grossberg
 
 CURVES = sorted(responses.RESPONSES)

@@ -1,12 +1,12 @@
 """Mann and Picard's power law: the ladder of comparisons and its slope."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.capture import camera, responses
-from hdrlab.course.checks import laws
 from hdrlab.response import mann
 
 

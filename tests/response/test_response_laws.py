@@ -1,9 +1,9 @@
 """Every recovery of a response obeys the laws; a new one is tested by existing."""
 
+import laws
 import pytest
 
 from hdrlab.capture.responses import RESPONSES
-from hdrlab.course.checks import laws
 from hdrlab.pipeline import catalogue
 
 CAMERAS = {  # what a method assumes of its camera; of one that takes seconds, one does

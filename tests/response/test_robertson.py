@@ -1,5 +1,6 @@
 """Robertson's response: the slide's two means, the table that replaces them, and the curves it finds."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +9,6 @@ from hypothesis import strategies as st
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling, weights
 from hdrlab.core.steps import last
-from hdrlab.course.checks import laws
 from hdrlab.response import joint, robertson
 
 CURVES = sorted(responses.RESPONSES)

@@ -2,6 +2,7 @@
 
 import re
 
+import laws
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
@@ -10,7 +11,6 @@ from PIL import Image
 from hdrlab import pipeline
 from hdrlab.core import colour
 from hdrlab.core.picture import Statistics, statistics
-from hdrlab.course.checks import laws
 from hdrlab.pipeline import catalogue
 from hdrlab.show.pages import contact
 from hdrlab.show.pages.sheet import GAP, Entry, draw, write_sheet

@@ -1,12 +1,12 @@
 """hdrlab.tonemap.brush: equalisation of a window, the clipped histogram, the lens."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.core.colour import decode_srgb, encode_srgb
-from hdrlab.course.checks import laws
 from hdrlab.tonemap import brush
 
 

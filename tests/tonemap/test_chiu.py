@@ -1,5 +1,6 @@
 """hdrlab.tonemap.chiu: scale, clamp, smoothing passes, halos."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,7 +8,6 @@ from hypothesis import strategies as st
 from scipy.ndimage import convolve, gaussian_filter
 
 from hdrlab.core.steps import last
-from hdrlab.course.checks import laws
 from hdrlab.tonemap import chiu
 
 

@@ -2,13 +2,13 @@
 
 from functools import partial
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.course.checks import laws
 from hdrlab.tonemap import curves, reinhard
 
 CURVES = {name: partial(curves.tonemap, curve=name) for name in curves.CURVES}

@@ -1,5 +1,6 @@
 """hdrlab.tonemap.durand: layers, compression, the fix where k is small."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
@@ -7,7 +8,6 @@ from hypothesis import strategies as st
 
 from hdrlab.core.bilateral import Filtered, bilateral
 from hdrlab.core.colour import luminance
-from hdrlab.course.checks import laws
 from hdrlab.io import rgbe
 from hdrlab.tonemap import durand
 

@@ -5,6 +5,7 @@ import subprocess
 import tracemalloc
 from functools import partial
 
+import laws
 import numpy as np
 import pytest
 from scipy.sparse import diags_array, eye_array, kron
@@ -13,7 +14,6 @@ from scipy.sparse.linalg import spsolve
 from hdrlab.core import poisson, pyramid
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
-from hdrlab.course.checks import laws
 from hdrlab.io import rgbe
 from hdrlab.tonemap import fattal
 

@@ -1,5 +1,6 @@
 """hdrlab.tonemap.quality: TMQI against its definition, its closed cases, and what must lower it."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
@@ -8,7 +9,6 @@ from scipy.ndimage import gaussian_filter
 from scipy.stats import beta, norm
 
 from hdrlab.core.colour import to_8bit
-from hdrlab.course.checks import laws
 from hdrlab.tonemap import quality, reinhard
 
 

@@ -5,6 +5,7 @@ import subprocess
 from functools import partial
 
 import cv2
+import laws
 import numpy as np
 import pytest
 from hypothesis import given
@@ -13,7 +14,6 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
-from hdrlab.course.checks import laws
 from hdrlab.tonemap import reinhard
 
 MODES = {

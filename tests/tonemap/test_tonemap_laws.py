@@ -7,13 +7,13 @@ import inspect
 from functools import partial
 from importlib import import_module
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
-from hdrlab.course.checks import laws
 from hdrlab.pipeline import catalogue
 
 OPERATORS = {name: catalogue.method("tonemap", name) for name in catalogue.names("tonemap")}

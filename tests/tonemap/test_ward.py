@@ -1,5 +1,6 @@
 """hdrlab.tonemap.ward: foveal image, trims, ceiling, the linear map where the display has range enough."""
 
+import laws
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +8,6 @@ from hypothesis import strategies as st
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
-from hdrlab.course.checks import laws
 from hdrlab.io import rgbe
 from hdrlab.tonemap import ward
 
