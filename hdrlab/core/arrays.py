@@ -104,6 +104,11 @@ def levels(images: Array) -> int:
     return 1 << (8 * images.dtype.itemsize)
 
 
+def to_256(images: Array) -> NDArray[np.uint8]:
+    """Return the images at 256 levels: 16-bit level z becomes round(z / 257)."""
+    return images if images.dtype == np.uint8 else ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
+
+
 def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
     """Return a table over pixel levels with n rows, (n,) or (n, C): as it is, or read between its levels.
 

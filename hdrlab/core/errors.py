@@ -14,8 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_radiance, as_stack, as_table, describe
-from hdrlab.core.sampling import to_256
+from hdrlab.core.arrays import Array, as_radiance, as_stack, as_table, describe, to_256
 
 Float = NDArray[np.float64]
 LOW, HIGH = 10, 250  # of 256 levels: noise rules below, the cut above

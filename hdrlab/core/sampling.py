@@ -15,15 +15,10 @@ spends its samples where the pictures have pixels.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_mask, as_stack
+from hdrlab.core.arrays import Array, as_mask, as_stack, to_256
 
 Samples = NDArray[np.intp]
 PIXELS = 1_000_000  # an even choice of about so many ranks a frame as well as all of it
-
-
-def to_256(images: Array) -> NDArray[np.uint8]:
-    """Return the images at 256 levels: 16-bit level z becomes round(z / 257)."""
-    return images if images.dtype == np.uint8 else ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
 
 
 def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Samples:

@@ -1,7 +1,8 @@
-"""How far to trust a pixel value: tables w(z) over the levels of a photograph.
+"""Tables over the pixel levels: weights, and what keeps a response smooth and monotone.
 
 z  pixel level, 0 ... n - 1
-w  weight (n,), 0 at both ends: a value there says only "at most" or "at least"
+w  weight (n,), how far to trust it; 0 at both ends, where a value is only a bound
+g  response (n, ...), ln exposure of each level
 
 Which pixels are clipped is another question, and it is asked elsewhere (`radiance.merge`): a weight says how
 much, validity says whether.
@@ -72,3 +73,27 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> Table:
     w = f / np.maximum(slope, least)
     w[[0, -1]] = 0
     return w / w[len(g) // 2]
+
+
+def second_differences(w: Table, smoothness: float) -> Table:
+    """Return the rows (n - 2, n) of lambda w(z) g''(z), which gsolve keeps small [Debevec97 eq. 3].
+
+    Examples
+    --------
+    >>> second_differences(np.ones(4), 10) @ [0, 1, 2, 4]  # g'' is 0 on a line
+    array([ 0., 10.])
+    """
+    return smoothness * w[1:-1, None] * np.diff(np.eye(len(w)), 2, axis=0)
+
+
+def make_monotone(g: Table) -> Table:
+    """Return g (n, ...) with every fall levelled, outward from the middle, which keeps its value.
+
+    Examples
+    --------
+    >>> make_monotone(np.array([-1.0, -2.0, 0.0, 2.0, 1.0])).tolist()
+    [-2.0, -2.0, 0.0, 2.0, 2.0]
+    """
+    m = len(g) // 2
+    up, down = np.maximum.accumulate(g[m:], axis=0), np.minimum.accumulate(g[m::-1], axis=0)
+    return np.concatenate([down[::-1], up[1:]])

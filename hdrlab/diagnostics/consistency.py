@@ -14,8 +14,7 @@ import warnings
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import as_mask, as_radiance, as_stack, as_times
-from hdrlab.core.sampling import to_256
+from hdrlab.core.arrays import as_mask, as_radiance, as_stack, as_times, to_256
 
 Float = NDArray[np.float64]
 LEVELS = slice(30, 226)  # away from the noise below and the shoulder above

@@ -16,8 +16,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_mask, as_stack
-from hdrlab.core.sampling import to_256
+from hdrlab.core.arrays import Array, as_mask, as_stack, to_256
 
 Mask = NDArray[np.bool_]
 SIDE = 7  # of a patch, pixels

@@ -26,7 +26,7 @@ from scipy.linalg import null_space
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_times
-from hdrlab.core.tables import second_differences
+from hdrlab.core.weights import second_differences
 
 Float = NDArray[np.float64]
 W = weights.cut(weights.hat(), below=0.02)

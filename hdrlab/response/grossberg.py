@@ -20,10 +20,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_mask, as_stack, as_table, as_times
-from hdrlab.core.sampling import to_256
-from hdrlab.core.tables import make_monotone, second_differences
+from hdrlab.core.arrays import as_mask, as_stack, as_table, as_times, to_256
 from hdrlab.core.transfer import histogram, mid_step
+from hdrlab.core.weights import make_monotone, second_differences
 from hdrlab.response import linear
 from hdrlab.response.polynomial import basis, curve
 

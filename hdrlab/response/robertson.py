@@ -24,10 +24,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.linalg import solveh_banded
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times, describe
-from hdrlab.core.sampling import by_rank, to_256
+from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times, describe, to_256
+from hdrlab.core.sampling import by_rank
 from hdrlab.core.steps import last
-from hdrlab.core.tables import make_monotone, second_differences
+from hdrlab.core.weights import make_monotone, second_differences
 from hdrlab.response.joint import Table, table, turned
 
 Float = NDArray[np.float64]

@@ -22,8 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import uniform_filter
 from scipy.stats import chi2, f
 
-from hdrlab.core.arrays import as_mask, as_stack, describe
-from hdrlab.core.sampling import to_256
+from hdrlab.core.arrays import as_mask, as_stack, describe, to_256
 
 Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.tables import make_monotone
+from hdrlab.core.weights import make_monotone
 from hdrlab.response import families
 
 Float = NDArray[np.float64]

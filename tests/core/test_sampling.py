@@ -5,7 +5,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.core.sampling import by_grid, by_rank, to_256
+from hdrlab.core.arrays import to_256
+from hdrlab.core.sampling import by_grid, by_rank
 
 WAYS = [by_rank, by_grid]
 

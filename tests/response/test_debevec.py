@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import levels
-from hdrlab.core.tables import make_monotone
+from hdrlab.core.weights import make_monotone
 from hdrlab.course.checks.specification import test_gsolve
 from hdrlab.response import debevec
 

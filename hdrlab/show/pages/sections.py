@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 import hdrlab
 from hdrlab.core import colour, errors
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, to_256
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import Truth
-from hdrlab.core.sampling import to_256
 from hdrlab.diagnostics import consistency
 from hdrlab.radiance.bounds import Seen
 from hdrlab.show import plots
