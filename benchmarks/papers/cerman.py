@@ -24,9 +24,10 @@ from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import response_rmse
 from hdrlab.core.sampling import by_grid
+from hdrlab.fast import debevec
 from hdrlab.io.radiance import read_radiance
 from hdrlab.radiance import ratios
-from hdrlab.response import debevec, grossberg
+from hdrlab.response import grossberg
 from hdrlab.response.polynomial import curve
 
 TIMES = 4.0 ** np.arange(6)  # six exposures, 2 stops apart

@@ -21,9 +21,10 @@ from hdrlab.capture import camera
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import response_rmse
 from hdrlab.diagnostics import exposure_times as timing
+from hdrlab.fast import debevec
 from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import catalogue, recovery
-from hdrlab.response import debevec, families, mitsunaga
+from hdrlab.response import families, mitsunaga
 
 Float = NDArray[np.float64]
 Method = Callable[[Bracket], Float]

@@ -13,7 +13,8 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.sampling import by_grid
-from hdrlab.response import debevec
+from hdrlab.fast import debevec
+from hdrlab.response.debevec import system
 
 SMOOTHNESS = 30.0
 HOLDS = {70: (10, 20), 256: (20, 50), 1000: (100, 200)}
@@ -34,7 +35,7 @@ def case(N: int, folder: Path, one: bool) -> Case:
     makers: dict[str, Callable[[], Run]] = {peers.OPENCV: lambda: opencv(bracket, N, one)}
     if N == max(HOLDS):
         samples = np.moveaxis(by_grid(bracket.images, N), -1, 0)
-        systems = [debevec.system(Z, B, SMOOTHNESS, w) for Z in samples]
+        systems = [system(Z, B, SMOOTHNESS, w) for Z in samples]
         makers["dense lstsq"] = lambda: lambda: dense(systems)
     else:
         makers[peers.COLOUR] = lambda: colour_hdri(each_channel, B)

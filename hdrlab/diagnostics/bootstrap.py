@@ -148,7 +148,7 @@ def bootstrap(
 
     Examples
     --------
-    >>> from hdrlab.response import debevec
+    >>> from hdrlab.fast import debevec
     >>> ramp = np.linspace(1, 100, 10_000).reshape(100, 100)  # a linear camera without noise
     >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
     >>> found = bootstrap(debevec.recover, images, [0.01, 0.02, 0.04], rounds=5, rng=1)

@@ -8,30 +8,28 @@ lE  ln irradiance        (N,), ln of (exposure / second)
 lambda                   `smoothness`, how stiff g is; its rows are multiplied by it, as in the listing
 
 The camera makes Z_ij = f(E_i t_j), hence g(Z_ij) = lE_i + B_j [eq. 2]: every sample is the same curve g, slid
-sideways by an unknown lE_i. Two frames of one sample tie two points of g together; a few hundred samples tie
+sideways by an unknown lE_i. Two frames of one sample connect two points of g; a few hundred samples connect
 them all.
 """
 
 from collections.abc import Callable
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
+from hdrlab.core.types import F64, Indices
 from hdrlab.core.weights import make_monotone
-
-Float = NDArray[np.float64]
 
 
 class Solution(NamedTuple):
-    """The system's answer: the curve, and each sample's ln irradiance, 0 for one that no frame saw well."""
+    """The curve, and each sample's ln irradiance, 0 for a sample without weight."""
 
-    g: Float
-    lE: Float
+    g: F64
+    lE: F64
 
 
 def samples_needed(frames: int, n: int = 256) -> int:
@@ -39,43 +37,25 @@ def samples_needed(frames: int, n: int = 256) -> int:
     return (n - 1) // (frames - 1) + 1
 
 
-def system(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> tuple[Float, Float]:
+def system(Z: Indices, B: F64, smoothness: float, w: F64) -> tuple[F64, F64]:
     """Return A and b of the least-squares system A x = b, x = (g, lE) [Debevec97 eq. 3 and appendix].
 
     N P rows fit the data, w (g(Z_ij) - lE_i) = w B_j; one row says g(n // 2) = 0; n - 2 rows say that
     lambda w(z) g''(z) = 0.
     """
-    Z, B, w = _checked(Z, B, smoothness, w)
     (N, P), n = Z.shape, len(w)
-    A, b = np.zeros((N * P + 1 + n - 2, n + N)), np.zeros(N * P + 1 + n - 2)
-    k = 0
-    for i in range(N):
-        for j in range(P):
-            wij = w[Z[i, j]]
-            A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
-            k += 1
-    A[k, n // 2] = 1
-    k += 1
+    A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
+    for k, (i, j) in enumerate(np.ndindex(N, P)):
+        z = Z[i, j]
+        A[k, z], A[k, n + i], b[k] = w[z], -w[z], w[z] * B[j]
+    A[N * P, n // 2] = 1
     for z in range(1, n - 1):
-        A[k, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
-        k += 1
+        A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
     return A, b
 
 
-def gsolve_svd(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solution:
-    """Return the shortest x that minimises |A x - b|: x = V S^+ U^T b, with the SVD of A = U S V^T."""
-    A, b = system(Z, B, smoothness, w)
-    x = np.asarray(np.linalg.lstsq(A, b, rcond=None)[0], np.float64)
-    n = len(np.asarray(w))
-    return Solution(x[:n], x[n:])
-
-
 def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solution:
-    """Return the same least-squares solution from n unknowns instead of n + N.
-
-    For a given g each sample's best lE_i is a weighted mean, sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2. Put into
-    the normal equations it leaves a system S g = r in g alone (a Schur complement). The table C (N, n) holds
-    the squared weights: C[i, z] is the sum of w^2 over the frames where sample i has level z.
+    """Return g and lE of the least sum of squares, by the shortest x that minimises |A x - b|.
 
     Parameters
     ----------
@@ -86,12 +66,12 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     smoothness : float
         lambda; 10 to 100 for photographs.
     w : (n,) float
-        Weights. Levels that no equation reaches, those beyond a cut, take the nearest reached one's value.
+        Weights. Levels in no equation, those beyond a cut, take the value of the nearest that is in one.
 
     Returns
     -------
-    Solution
-        g (n,) with g[n // 2] = 0 exactly, and lE (N,).
+    (g, lE) : (n,) and (N,) float64
+        The curve, g[n // 2] = 0, and the ln irradiance of each sample.
 
     Raises
     ------
@@ -105,47 +85,23 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     Examples
     --------
     >>> Z = np.array([[64, 128], [100, 200], [50, 100], [120, 240]])
-    >>> g, lE = gsolve(Z, np.log([1, 2]), 10, weights.hat())
+    >>> hat = np.minimum(np.arange(256), np.arange(255, -1, -1)) / 127
+    >>> g, lE = gsolve(Z, np.log([1, 2]), 10, hat)
     >>> bool(np.allclose(g[200] - g[100], np.log(2), atol=0.01))  # twice the light: ln 2 apart
     True
     """
-    Z, B, w = _checked(Z, B, smoothness, w)
-    N, n = len(Z), len(w)
-    W = w[Z] ** 2
-    _require_two_exposures(W, B)
-    D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
-    seen = D > 0
-    D[~seen] = 1
-    C = np.zeros((N, n))
-    np.add.at(C, (np.arange(N)[:, None], Z), W)
-    WB = W * B
-    S = np.diag(C.sum(axis=0)) - C.T @ (C / D[:, None]) + _stiffness(w, smoothness)
-    r = np.bincount(Z.ravel(), WB.ravel(), n) - C.T @ (WB.sum(axis=1) / D)
-    g = _solve_with_gauge(S, r)
-    return Solution(g, np.where(seen, (C @ g - WB.sum(axis=1)) / D, 0.0))
-
-
-def _stiffness(w: Float, smoothness: float) -> Float:
-    """Return the sum over z of (lambda w(z))^2 d d^T, d = (1, -2, 1) at z - 1, z, z + 1."""
-    S, z = np.zeros((len(w), len(w))), np.arange(1, len(w) - 1)
-    for (a, da), (b, db) in product(((-1, 1), (0, -2), (1, 1)), repeat=2):
-        S[z + a, z + b] += (smoothness * w[1:-1]) ** 2 * da * db
-    return S
-
-
-def _solve_with_gauge(S: Float, r: Float) -> Float:
-    """Return g of S g = r with g(n // 2) = 0: exactly, as a constant added to both g and lE costs nothing."""
-    n = len(r)
-    reached = (np.diag(S) > 0) | (np.arange(n) == n // 2)
-    pinned = np.flatnonzero(~reached | (np.arange(n) == n // 2))
-    S, r = S.copy(), r.copy()  # an equation g(z) = 0 for each pinned level
-    S[pinned], S[:, pinned], r[pinned] = 0, 0, 0
-    S[pinned, pinned] = 1
-    try:
-        g = np.linalg.solve(S, r)
-    except np.linalg.LinAlgError as error:
-        raise ValueError("expected more levels, frames or smoothness: the samples leave g open") from error
-    return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
+    Z, B, w = np.asarray(Z), np.asarray(B, np.float64), np.asarray(w, np.float64)
+    n = len(w)
+    if Z.ndim != 2 or B.shape != Z.shape[1:] or not 0 <= Z.min() <= Z.max() < n:
+        raise ValueError(
+            f"expected levels Z (N, P) below {n} and B (P,), got {describe(Z)} and {describe(B)}"
+        )
+    A, b = system(Z, B, smoothness, w)
+    x, _, rank, _ = np.linalg.lstsq(A, b, rcond=None)
+    if rank < np.count_nonzero(A.any(axis=0)):
+        raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
+    reached = np.flatnonzero(A[:, :n].any(axis=0))
+    return Solution(np.interp(np.arange(n), reached, x[reached]), x[n:])
 
 
 def recover(
@@ -155,10 +111,10 @@ def recover(
     smoothness: float = 30.0,
     samples: int = 1000,
     w: ArrayLike | None = None,
-    choose: Callable[..., NDArray[np.intp]] = by_rank,
+    choose: Callable[..., Indices] = by_rank,
     valid: ArrayLike | None = None,
-    monotone: bool = True,
-) -> Float:
+    solve: Callable[..., Solution] = gsolve,
+) -> F64:
     """Return the response g recovered from a bracket, each channel by itself.
 
     Parameters
@@ -179,8 +135,8 @@ def recover(
         `sampling.by_rank` (default), `sampling.by_grid`, or your own with the same signature.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
-    monotone : bool
-        Lift g where it falls, which happens at levels that no sample reached.
+    solve : function
+        What solves for g and lE, with the signature of `gsolve`.
 
     Returns
     -------
@@ -205,48 +161,18 @@ def recover(
     True
     """
     stack = as_stack(images)
-    times = as_times(times, len(stack), distinct=2)
+    B = np.log(as_times(times, len(stack), distinct=2))
     if w is None:
         w = weights.cut(np.sqrt(weights.hat() * weights.gaussian()), below=0.02)
     w = as_table(w, 256)
     Z = choose(stack, samples, valid=valid)
-    Z = Z.reshape(*Z.shape[:2], -1)
-    g = np.stack([gsolve(Z[..., c], np.log(times), smoothness, w).g for c in range(Z.shape[-1])], axis=-1)
-    g = straight_toe(g, w)
-    if monotone:
-        g = make_monotone(g)
-    return g.reshape(256, *stack.shape[3:])
+    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
+    g = np.stack([solve(Z, B, smoothness, w).g for Z in channels], axis=-1)
+    return make_monotone(straight_toe(g, w)).reshape(256, *stack.shape[3:])
 
 
-def straight_toe(g: Float, w: Float) -> Float:
-    """Return g with f^-1 in proportion to z + 1/2 below the first level of weight: nothing else says."""
+def straight_toe(g: F64, w: F64) -> F64:
+    """Return g with f^-1 in proportion to z + 1/2 below the first level that has a weight."""
     first = int(np.argmax(w > 0))
-    g = g.copy()
-    g[:first] = g[first] + np.log((np.arange(first) + 0.5) / (first + 0.5))[:, None]
-    return g
-
-
-def _checked(
-    Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike
-) -> tuple[NDArray[np.intp], Float, Float]:
-    """Return Z, B and w as arrays that fit together, or raise a ValueError."""
-    Z, B, w = np.asarray(Z), np.asarray(B, dtype=np.float64), np.asarray(w, dtype=np.float64)
-    if not 0 <= smoothness < np.inf:
-        raise ValueError(f"expected a smoothness that is finite and not negative, got {smoothness}")
-    if Z.ndim != 2 or Z.dtype.kind not in "iu" or Z.size == 0:
-        raise ValueError(f"expected integer pixel levels Z (N, P), got {describe(Z)}")
-    if w.ndim != 1 or not np.all((w >= 0) & (w < np.inf)):
-        raise ValueError(f"expected weights w (n,), finite and not negative, got {describe(w)}")
-    if Z.min() < 0 or Z.max() >= len(w):
-        raise ValueError(f"expected pixel levels 0 to {len(w) - 1}, as many as weights, got {describe(Z)}")
-    if B.shape != Z.shape[1:] or not np.all(np.isfinite(B)):
-        raise ValueError(f"expected finite ln times B ({Z.shape[1]},), got {describe(B)}")
-    return Z.astype(np.intp, copy=False), B, w
-
-
-def _require_two_exposures(W: Float, B: Float) -> None:
-    """Raise a ValueError where no sample has weight in two exposures."""
-    low = np.where(W > 0, B, np.inf).min(axis=1)
-    high = np.where(W > 0, B, -np.inf).max(axis=1)
-    if not np.any(high > low):
-        raise ValueError("expected samples seen well in two exposures, which tie levels together; got none")
+    toe = g[first] + np.log((np.arange(first) + 0.5) / (first + 0.5))[:, None]
+    return np.concatenate([toe, g[first:]])

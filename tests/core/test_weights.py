@@ -52,3 +52,15 @@ def test_a_cut_leaves_its_table_alone():
 def test_a_cut_that_leaves_nothing_is_refused(above, below):
     with pytest.raises(ValueError, match="0 <= below < above <= 1, got"):
         weights.cut(weights.hat(), above=above, below=below)
+
+
+def test_levelling_falls_outward_from_the_middle_leaves_a_rising_curve_alone():
+    g = np.array([-3.0, -1, -2, 0, 2, 1, 3])  # the middle is index 3
+    assert weights.make_monotone(g).tolist() == [-3, -2, -2, 0, 2, 2, 3]
+    assert np.array_equal(weights.make_monotone(np.sort(g)), np.sort(g))
+
+
+def test_the_second_differences_of_a_line_are_0_and_those_of_a_parabola_its_weights():
+    w, z = np.array([0.0, 1, 3, 2, 0]), np.arange(5.0)
+    assert np.allclose(weights.second_differences(w, 10) @ (3 * z + 1), 0)
+    assert np.allclose(weights.second_differences(w, 10) @ z**2, [20, 60, 40])

@@ -7,8 +7,9 @@ import pytest
 from hdrlab import pipeline
 from hdrlab.capture import camera
 from hdrlab.capture.responses import RESPONSES
+from hdrlab.fast import debevec
 from hdrlab.pipeline import catalogue, recovery
-from hdrlab.response import debevec, linear
+from hdrlab.response import linear
 
 CAMERAS = {"mann": ["gamma", "linear"], "marginal": ["film"]}
 METHODS = [name for name in catalogue.names("response") if name != "linear"]

@@ -8,8 +8,9 @@ import pytest
 from hdrlab.capture import camera
 from hdrlab.core import weights
 from hdrlab.core.errors import response_rmse
+from hdrlab.fast import debevec
 from hdrlab.radiance.merge import merge
-from hdrlab.response import debevec, grossberg, mann, marginal, mitsunaga, robertson, space
+from hdrlab.response import grossberg, mann, marginal, mitsunaga, robertson, space
 
 FREE = {"debevec": debevec.recover, "robertson": robertson.recover, "histograms": grossberg.recover}
 FORMULAS = {

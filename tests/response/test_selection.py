@@ -6,7 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.capture import camera, responses
-from hdrlab.response import debevec, selection
+from hdrlab.fast import debevec
+from hdrlab.response import selection
 
 INNER = (slice(2, -2), slice(2, -2))
 

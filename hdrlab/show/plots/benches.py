@@ -24,7 +24,7 @@ from hdrlab.capture.room.subjects import Subject
 from hdrlab.capture.sensor import Sensor
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import encode_srgb, luminance
-from hdrlab.response import debevec
+from hdrlab.fast import debevec
 from hdrlab.show.plots import curves, sensors
 from hdrlab.show.plots.figures import fit
 

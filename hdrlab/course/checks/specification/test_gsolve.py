@@ -6,7 +6,7 @@ import pytest
 from hdrlab.capture import responses
 from hdrlab.core import weights
 from hdrlab.course.checks.compare import Different, finite, parts, same
-from hdrlab.response import debevec
+from hdrlab.fast import debevec
 
 HAT = weights.hat()
 

@@ -1,0 +1,108 @@
+"""Debevec and Malik's response from n unknowns instead of n + N, and on any input: see `response.debevec`.
+
+For a given g each sample's best lE_i is a weighted mean, sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2. Put into the
+normal equations it leaves a system S g = r in g alone (a Schur complement). The table C (N, n) holds the
+squared weights: C[i, z] is the sum of w^2 over the frames where sample i has level z.
+"""
+
+from collections.abc import Callable
+from itertools import product
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import describe
+from hdrlab.core.sampling import by_rank
+from hdrlab.core.types import F64, Indices
+from hdrlab.response import debevec
+from hdrlab.response.debevec import Solution
+
+
+def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solution:
+    """Return the same least-squares solution as the lesson; g[n // 2] = 0 exactly.
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not fit together, or no sample is seen well in two different exposures.
+    """
+    Z, B, w = _validate(Z, B, smoothness, w)
+    N, n = len(Z), len(w)
+    W = w[Z] ** 2
+    _require_two_exposures(Z, W, B)
+    D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
+    has_weight = D > 0
+    D[~has_weight] = 1
+    C = np.zeros((N, n))
+    np.add.at(C, (np.arange(N)[:, None], Z), W)
+    WB = W * B
+    S = np.diag(C.sum(axis=0)) - C.T @ (C / D[:, None]) + _stiffness(w, smoothness)
+    r = np.bincount(Z.ravel(), WB.ravel(), n) - C.T @ (WB.sum(axis=1) / D)
+    g = _solve_with_gauge(S, r)
+    return Solution(g, np.where(has_weight, (C @ g - WB.sum(axis=1)) / D, 0.0))
+
+
+def _stiffness(w: F64, smoothness: float) -> F64:
+    """Return D^T D of the rows D of `core.tables.second_differences`, from their three diagonals."""
+    S, z = np.zeros((len(w), len(w))), np.arange(1, len(w) - 1)
+    for (a, da), (b, db) in product(((-1, 1), (0, -2), (1, 1)), repeat=2):
+        S[z + a, z + b] += (smoothness * w[1:-1]) ** 2 * da * db
+    return S
+
+
+def _solve_with_gauge(S: F64, r: F64) -> F64:
+    """Return g of S g = r with g(n // 2) = 0: exactly, as a constant added to both g and lE costs nothing."""
+    n = len(r)
+    reached = (np.diag(S) > 0) | (np.arange(n) == n // 2)
+    pinned = np.flatnonzero(~reached | (np.arange(n) == n // 2))
+    S, r = S.copy(), r.copy()  # an equation g(z) = 0 for each pinned level
+    S[pinned], S[:, pinned], r[pinned] = 0, 0, 0
+    S[pinned, pinned] = 1
+    try:
+        g = np.linalg.solve(S, r)
+    except np.linalg.LinAlgError as error:
+        raise ValueError("expected more levels, frames or smoothness: the samples leave g open") from error
+    return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
+
+
+def recover(
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    smoothness: float = 30.0,
+    samples: int = 1000,
+    w: ArrayLike | None = None,
+    choose: Callable[..., Indices] = by_rank,
+    valid: ArrayLike | None = None,
+    solve: Callable[..., Solution] = gsolve,
+) -> F64:
+    """Return the response g of the lesson, whose parameters these are, with the `gsolve` above."""
+    knobs = dict(smoothness=smoothness, samples=samples, w=w, choose=choose, valid=valid, solve=solve)
+    return debevec.recover(images, times, **knobs)
+
+
+def _validate(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> tuple[Indices, F64, F64]:
+    """Return Z, B and w as arrays that fit together, or raise a ValueError."""
+    Z, B, w = np.asarray(Z), np.asarray(B, dtype=np.float64), np.asarray(w, dtype=np.float64)
+    if not 0 <= smoothness < np.inf:
+        raise ValueError(f"expected a smoothness that is finite and not negative, got {smoothness}")
+    if Z.ndim != 2 or Z.dtype.kind not in "iu" or Z.size == 0:
+        raise ValueError(f"expected integer pixel levels Z (N, P), got {describe(Z)}")
+    if w.ndim != 1 or not np.all((w >= 0) & (w < np.inf)):
+        raise ValueError(f"expected weights w (n,), finite and not negative, got {describe(w)}")
+    if Z.min() < 0 or Z.max() >= len(w):
+        raise ValueError(f"expected pixel levels 0 to {len(w) - 1}, as many as weights, got {describe(Z)}")
+    if B.shape != Z.shape[1:] or not np.all(np.isfinite(B)):
+        raise ValueError(f"expected finite ln times B ({Z.shape[1]},), got {describe(B)}")
+    return Z.astype(np.intp, copy=False), B, w
+
+
+def _require_two_exposures(Z: Indices, W: F64, B: F64) -> None:
+    """Raise a ValueError where no sample has weight at two levels, in two exposures."""
+
+    def spread(values: F64) -> F64:
+        low, high = np.where(W > 0, values, np.inf), np.where(W > 0, values, -np.inf)
+        return high.max(axis=1) - low.min(axis=1)
+
+    if not np.any((spread(B) > 0) & (spread(Z) > 0)):
+        raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
