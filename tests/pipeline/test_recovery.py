@@ -23,7 +23,7 @@ def test_every_recovery_by_name_is_validated(name, response, law):
 
 
 def test_assemble_refuses_times_that_the_photographs_contradict(decades):
-    taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64], response="film")
+    taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64], camera.Camera(response="film"))
     wrong = taken._replace(times=taken.times * [1, 1, 1, 10_000])
     with pytest.raises(ValueError, match="expected times consistent with the images"):
         pipeline.assemble(wrong, align="none", response="debevec")

@@ -33,7 +33,7 @@ def test_the_matrix_has_a_row_for_each_datum_one_for_the_gauge_and_one_for_each_
 
 def test_the_systems_rows_are_those_of_the_paper():
     n, w = 8, np.array([0, 1, 2, 3, 3, 2, 1, 0])
-    A, b = debevec.system([[1, 3], [2, 5]], [0.5, 0.7], 10, w)
+    A, b = debevec.system(np.array([[1, 3], [2, 5]]), np.array([0.5, 0.7]), 10, w)
     x = np.arange(n + 2) ** 2.0  # g and lE that are easy to tell apart
     g, lE = x[:n], x[n:]
     data = [w[1] * (g[1] - lE[0]), w[3] * (g[3] - lE[0]), w[2] * (g[2] - lE[1]), w[5] * (g[5] - lE[1])]
