@@ -81,7 +81,7 @@ def film(name: str, step: int, *, pan: int = 1) -> Film:
     rng, frames, truth, hidden = np.random.default_rng(0), [], [], []
     for j, at in enumerate(movers.path(count, (0, step))):
         seen, mask = (
-            camera.views(one, offsets)[j] for one in movers.moment(place.radiance, figure(place), at)
+            camera.views(one, offsets)[j] for one in movers.compose_moment(place.radiance, figure(place), at)
         )
         truth.append(seen)
         hidden.append(mask > 0)
@@ -155,7 +155,7 @@ def lamps() -> tuple[Float, NDArray[np.bool_]]:
     """Return a workshop in which a lamp comes and goes, twelve frames, and where the lamp is not."""
     room = layers("workshop", SHAPE).radiance
     lamp = movers.ball(SHAPE, (20, 30), 8, [20 * float(room.max())] * 3, stripes=0)
-    lit, mask = movers.moment(room, lamp, (0, 0))
+    lit, mask = movers.compose_moment(room, lamp, (0, 0))
     on = np.random.default_rng(0).random(12) < 0.5
     return np.stack([lit if one else room for one in on]), mask == 0
 

@@ -9,7 +9,7 @@ Metering, automatic exposure           capture.metering, capture.autoexposure.ex
 Photographs in, with their exposure    io.photos.read_bracket
 Median threshold bitmaps               align.mtb.align, align.shift.shift
 From the hand: turned, tilted          align.cerman.align, align.homography.align, align.auto.align
-... moved through linear light         align.resample.photographs, capture.hand_motion.hand
+... moved through linear light         align.resample.photographs, capture.hand_motion.shake
 The response by least squares          response.debevec.gsolve, response.debevec.recover
 ... by maximum likelihood              response.robertson.recover
 ... without exact times                response.mitsunaga.recover, response.marginal.calibrate
@@ -22,7 +22,7 @@ The radiance map                       radiance.merge.merge, radiance.bounds, ra
 Does the map explain its photographs?  diagnostics.consistency, diagnostics.contradictions
 Exposure ratios of a linear camera     radiance.ratios.ratio
 What moved, and what the lens did      radiance.deghosting.ghosts.remove, radiance.flare.remove
-... photographed with the truth        capture.movers.shoot, capture.lens_flare.flare
+... photographed with the truth        capture.movers.shoot, capture.lens_flare.add_flare
 PFM, Radiance RGBE, OpenEXR            io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
 One curve for all pixels               tonemap.curves, tonemap.ward, tonemap.brush
 Local scaling, and its halo            tonemap.chiu.tonemap

@@ -60,7 +60,7 @@ def pair(i: int, E: Array, moves: Array, rng: np.random.Generator, stops: float 
         offsets=moves,
         rng=rng,
     )
-    return Case(taken.images, taken.times, hand_motion.frames(moves, E.shape)[0])
+    return Case(taken.images, taken.times, hand_motion.frame_homographies(moves, E.shape)[0])
 
 
 def away(offset: Array) -> Float:

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from benchmarks.ghosts.sequences import CAMERA, SHAPE, STILL, radiance
 from hdrlab.capture import camera
-from hdrlab.capture.lens_flare import veil
+from hdrlab.capture.lens_flare import add_glare
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array
@@ -51,7 +51,7 @@ def exact(item: tuple[str, Spread]) -> Left:
     """Return what is left where the map is that of the lens itself."""
     place, lens = item
     E = resample(radiance(place), SHAPE)
-    F = veil(E, lens)
+    F = add_glare(E, lens)
     return left(E, F, flare.remove(F).E, np.ones(SHAPE, bool), lens)
 
 
@@ -59,7 +59,7 @@ def photographed(item: tuple[str, Spread]) -> Left:
     """Return what is left where the map was merged from photographs."""
     place, lens = item
     E = resample(radiance(place), SHAPE)
-    F, seen = through(veil(E, lens))
+    F, seen = through(add_glare(E, lens))
     return left(E, F, flare.remove(F).E, seen == 0, lens)
 
 

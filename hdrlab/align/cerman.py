@@ -156,7 +156,7 @@ def align(
     >>> turned = warp.turn(room.shape, 1.5, (4.3, -2.6))
     >>> taken = camera.shoot(room, [0.02, 0.08], offsets=[turned, np.eye(3)])
     >>> moves = align(taken.images, times=taken.times, g=responses.true_g())
-    >>> truth = hand_motion.frames([turned, np.eye(3)], room.shape)
+    >>> truth = hand_motion.frame_homographies([turned, np.eye(3)], room.shape)
     >>> bool(warp.apart(moves[0], truth[0], room.shape) < 0.3)  # pixels at the corners
     True
     """

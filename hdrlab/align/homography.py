@@ -183,10 +183,10 @@ def align(
     --------
     >>> from hdrlab.capture import camera, hand_motion, scenes
     >>> room = scenes.room((220, 320))
-    >>> tilted = hand_motion.hand(2, room.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
+    >>> tilted = hand_motion.shake(2, room.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
     >>> taken = camera.shoot(room, [0.01, 0.04], offsets=tilted)
     >>> moves = align(taken.images)
-    >>> truth = hand_motion.frames(tilted, room.shape)
+    >>> truth = hand_motion.frame_homographies(tilted, room.shape)
     >>> bool(warp.apart(moves[0], truth[0], room.shape) < 1)  # pixels at the corners
     True
     """

@@ -36,7 +36,7 @@ def colours_and_exposures(exposures: ArrayLike = FOUR[0]) -> tuple[Array, Array]
     return np.tile(BAYER, (2, 2)), np.kron(cells, np.ones((2, 2)))
 
 
-def gained(e: ArrayLike) -> float:
+def added_decades(e: ArrayLike) -> float:
     """Return log10(max e / min e), the decades that the mosaic adds to those of one pixel."""
     e = np.asarray(e, np.float64)
     return float(np.log10(e.max() / e.min()))
@@ -103,7 +103,7 @@ def weight(Z: Array, e: Float, *, full_well: float = np.inf, read_noise: float =
     return np.where(X < FULL, e**2 / noise, 0)
 
 
-def spread(values: Float, w: Float, sigma: float) -> tuple[Float, Float]:
+def normalised_convolution(values: Float, w: Float, sigma: float) -> tuple[Float, Float]:
     """Return (G w values) / (G w), and G w: normalised convolution."""
     total = gaussian_filter(w, sigma)
     return gaussian_filter(w * values, sigma) / np.maximum(total, 1e-300), total
@@ -165,12 +165,12 @@ def reconstruct(
 
 def _fill(values: Float, w: Float, e: Float, sigma: float, seen: Array | bool = True) -> Float:
     """Return E^ from the pixels in reach, from farther ones where none knows, at last the bound 1 / min e."""
-    E, total = spread(values, w, sigma)
+    E, total = normalised_convolution(values, w, sigma)
     for wider in (2 * sigma, 4 * sigma):
         unknown = total < 1e-6 * w.max() * (e.min() / e.max()) ** 2
         if not unknown.any() or not w.any():
             break
-        more, more_total = spread(values, w, wider)
+        more, more_total = normalised_convolution(values, w, wider)
         E, total = np.where(unknown, more, E), np.where(unknown, more_total, total)
     return np.where(total > 0, E, 1 / e[np.broadcast_to(seen, e.shape)].min())
 

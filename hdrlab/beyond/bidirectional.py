@@ -46,7 +46,7 @@ def similarity(w: Float, matches: Matches) -> float:
     return completeness / len(w) + float(matches.coherence.d.mean())
 
 
-def searched(
+def search(
     T: Float,
     S: Float,
     price: Float,
@@ -55,22 +55,24 @@ def searched(
     rng: np.random.Generator,
 ) -> Matches:
     """Return the matches of both ways, looked for from where they begin."""
-    P, Q = patchmatch.cut(T, knobs.side), patchmatch.sources(S, knobs.side, price)
-    back = patchmatch.sources(T[None], knobs.side)
+    P, Q = patchmatch.cut_patches(T, knobs.side), patchmatch.make_sources(S, knobs.side, price)
+    back = patchmatch.make_sources(T[None], knobs.side)
     rows = Q.rows.reshape(*Q.shape, -1)
-    coherence = look(P, Q, begun[0], knobs, rng)
-    return Matches(coherence, tuple(look(rows[q], back, at, knobs, rng) for q, at in enumerate(begun[1])))
+    coherence = search_one_way(P, Q, begun[0], knobs, rng)
+    return Matches(
+        coherence, tuple(search_one_way(rows[q], back, at, knobs, rng) for q, at in enumerate(begun[1]))
+    )
 
 
-def look(P: Float, Q: Sources, at: Index, knobs: Search, rng: np.random.Generator) -> Field:
+def search_one_way(P: Float, Q: Sources, at: Index, knobs: Search, rng: np.random.Generator) -> Field:
     """Return the field after some rounds of PatchMatch from `at`, of this scale or of a coarser one."""
-    at = at if at.shape[:2] == P.shape[:2] else patchmatch.scaled(at, (P.shape[0], P.shape[1]))
-    begun = patchmatch.started(P, Q, at)
+    at = at if at.shape[:2] == P.shape[:2] else patchmatch.upscale_field(at, (P.shape[0], P.shape[1]))
+    begun = patchmatch.start_field(P, Q, at)
     steps = patchmatch.search_steps(P, Q, begun, radius=knobs.radius, rng=rng)
     return last(field for _, field in zip(range(knobs.rounds), steps, strict=False))
 
 
-def voted(S: Float, w: Float, matches: Matches, side: int) -> Float:
+def vote(S: Float, w: Float, matches: Matches, side: int) -> Float:
     """Return the T that is best for these matches: the mean of all that they say [Simakov08 eq. 4].
 
     Every patch of T brings the pixels of its match; every patch of S its own pixels to its match, with the
@@ -81,15 +83,15 @@ def voted(S: Float, w: Float, matches: Matches, side: int) -> Float:
     Of a picture that is the source moved by a pixel, all is found in the source:
 
     >>> S = np.random.default_rng(0).random((1, 12, 14, 1), np.float32)
-    >>> T, at, free = S[0, :, 1:-1], patchmatch.identity(10, 10), np.zeros((1, 12, 12), np.float32)
-    >>> both = searched(T, S[:, :, 2:], free, (at, (at,)), Search(3, 9, 4), np.random.default_rng(0))
+    >>> T, at, free = S[0, :, 1:-1], patchmatch.identity_field(10, 10), np.zeros((1, 12, 12), np.float32)
+    >>> both = search(T, S[:, :, 2:], free, (at, (at,)), Search(3, 9, 4), np.random.default_rng(0))
     >>> bool(both.coherence.d[:, 1:].max() == 0)
     True
     """
     shape = S.shape[1:3]
-    total, count = patchmatch.voted(S, matches.coherence.at, shape, side)
+    total, count = patchmatch.sum_votes(S, matches.coherence.at, shape, side)
     for picture, each, field in zip(S, w / len(S), matches.completeness, strict=True):
         if each.any():
-            more, votes = patchmatch.given(picture, field.at, each, shape, side)
+            more, votes = patchmatch.sum_given_votes(picture, field.at, each, shape, side)
             total, count = total + more, count + votes
     return total / count[..., None]

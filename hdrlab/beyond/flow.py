@@ -33,7 +33,7 @@ def tvl1(a: Float, b: Float) -> Float:
     return optical_flow_tvl1(a, b).astype(np.float32)
 
 
-def warped(f: Float, u: Float) -> Float:
+def warp(f: Float, u: Float) -> Float:
     """Return f(p + u(p)), linear between pixels; beyond the edge it is the edge's."""
     places = np.indices(u.shape[1:]) + u
     planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
@@ -43,19 +43,19 @@ def warped(f: Float, u: Float) -> Float:
     return np.stack(found, axis=-1).reshape(f.shape)
 
 
-def inside(u: Float) -> NDArray[np.bool_]:
+def lands_inside(u: Float) -> NDArray[np.bool_]:
     """Return where p + u(p) lies in the picture, (H, W)."""
     places = np.indices(u.shape[1:]) + u
     ends = np.array(u.shape[1:]).reshape(2, 1, 1) - 1
     return np.all((places >= 0) & (places <= ends), axis=0)
 
 
-def halves(u: Float) -> tuple[Float, Float]:
+def halve_flow(u: Float) -> tuple[Float, Float]:
     """Return the flows from the moment between a and b to either: half the way, back and forth.
 
     u belongs to the pixels of a; the pixel that is half-way is reached by two rounds of u(p - u / 2).
     """
     half = (u / 2).astype(np.float32)
     for _ in range(2):
-        half = (np.stack([warped(one, -half) for one in u]) / 2).astype(np.float32)
+        half = (np.stack([warp(one, -half) for one in u]) / 2).astype(np.float32)
     return -half, half

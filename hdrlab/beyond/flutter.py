@@ -48,7 +48,7 @@ def amplification(h: ArrayLike) -> float:
     return float(np.sqrt(np.mean(1 / H**2))) if H.min() > 1e-12 else np.inf
 
 
-def worth(h: ArrayLike) -> float:
+def equivalent_pictures(h: ArrayLike) -> float:
     """Return how many pictures of one chop, averaged, are as clean as one picture of this code.
 
     The average of n of them has a noise of amplification(one) / sqrt(n), so n is the quotient squared.

@@ -50,23 +50,23 @@ def radiance(v: Float, t: float, full: Float) -> Float:
     return v ** np.float32(GAMMA) * full / np.float32(t)
 
 
-def exposed(H: Float, t: float, full: Float) -> Float:
+def expose(H: Float, t: float, full: Float) -> Float:
     """Return l(H) = min(H t / full, 1)^(1 / 2.2)."""
     return np.minimum(H * (np.float32(t) / full), 1) ** np.float32(1 / GAMMA)
 
 
-def boosted(v: Float, ratio: float) -> Float:
+def boost(v: Float, ratio: float) -> Float:
     """Return l(h(v)) for an exposure `ratio` times as long, min(ratio^(1 / 2.2) v, 1) [Kang03 sec. 4].
 
     Examples
     --------
-    >>> boosted(np.float32([0.25, 0.8]), 4).round(3)
+    >>> boost(np.float32([0.25, 0.8]), 4).round(3)
     array([0.469, 1.   ], dtype=float32)
     """
     return np.minimum(v * np.float32(ratio ** (1 / GAMMA)), 1)
 
 
-def allowed(v: Float, noise: Float, clipped: Mask, t: float, full: Float) -> tuple[Float, Float]:
+def consistent_range(v: Float, noise: Float, clipped: Mask, t: float, full: Float) -> tuple[Float, Float]:
     """Return the least and the most radiance that fits a photograph: within WITHIN levels of what it shows.
 
     Where it is clipped it says "at least", and nothing of the most.
@@ -76,14 +76,14 @@ def allowed(v: Float, noise: Float, clipped: Mask, t: float, full: Float) -> tup
     return least, np.where(clipped, np.float32(np.inf), radiance(v + few, t, full))
 
 
-def resized(picture: Array, shape: tuple[int, int]) -> Float:
+def resize_picture(picture: Array, shape: tuple[int, int]) -> Float:
     """Return a picture (h, w, C) at another size: blurred first, where it is made smaller."""
     if picture.shape[:2] == shape:
         return picture.astype(np.float32)
     return resize(picture.astype(np.float32), shape, order=1, anti_aliasing=shape[0] < picture.shape[0])
 
 
-def as_read(table: Float, Z: Array) -> Float:
+def look_up_levels(table: Float, Z: Array) -> Float:
     """Return table[Z] (P, H, W, C), each channel by its own column where there are several."""
     return np.stack([table[Z[..., c], c % table.shape[1]] for c in range(Z.shape[-1])], axis=-1)
 
@@ -99,4 +99,4 @@ def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
     v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
     z = (Z / (n - 1)).astype(np.float32)
     full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])
-    return Values(as_read(v, Z), z, as_read(np.gradient(v, axis=0), Z), z > FULL, t, full)
+    return Values(look_up_levels(v, Z), z, look_up_levels(np.gradient(v, axis=0), Z), z > FULL, t, full)

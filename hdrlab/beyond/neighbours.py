@@ -7,14 +7,14 @@ from typing import TypeVar
 Item = TypeVar("Item")
 
 
-def windows(items: Iterable[Item], span: int) -> Iterator[tuple[int, tuple[Item, ...]]]:
+def slide_windows(items: Iterable[Item], span: int) -> Iterator[tuple[int, tuple[Item, ...]]]:
     """Yield of each item its place in the window, and the window: up to `span` items on either side.
 
     Only 2 span + 1 items are held, and each window is yielded as soon as its last item is there.
 
     Examples
     --------
-    >>> list(windows("abc", 1))
+    >>> list(slide_windows("abc", 1))
     [(0, ('a', 'b')), (1, ('a', 'b', 'c')), (1, ('b', 'c'))]
     """
     held: deque[Item] = deque()

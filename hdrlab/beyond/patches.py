@@ -24,20 +24,20 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.beyond.bidirectional import Search, searched, similarity, voted
-from hdrlab.beyond.ldr_values import Float, as_values, resized
-from hdrlab.beyond.patchmatch import Index, identity
+from hdrlab.beyond.bidirectional import Search, search, similarity, vote
+from hdrlab.beyond.ldr_values import Float, as_values, resize_picture
+from hdrlab.beyond.patchmatch import Index, identity_field
 from hdrlab.beyond.synthesis import (
     Ramp,
     Scene,
-    at_scale,
-    blended,
-    extracted,
-    guessed,
-    merged,
-    sources,
+    blend_reference,
+    boost_photographs,
+    extract_exposures,
+    guess_radiance,
+    merge_exposures,
+    resize_scene,
     trapezoid,
-    worth,
+    weigh_patches,
 )
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import short_to_long
@@ -66,22 +66,22 @@ class State(NamedTuple):
     mbds: NDArray[np.float64]
 
 
-def improved(
+def improve(
     state: State, scene: Scene, begun: list[Begun], knobs: Search, rng: np.random.Generator
 ) -> tuple[State, list[Begun]]:
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
     pictures, found, unlike = [], [], []
     for k, (T, at) in enumerate(zip(state.I, begun, strict=True)):
-        S, price = sources(k, scene)
-        w, both = worth(k, scene, price, knobs.side), searched(T, S, price, at, knobs, rng)
-        pictures.append(voted(S, w, both, knobs.side))
+        S, price = boost_photographs(k, scene)
+        w, both = weigh_patches(k, scene, price, knobs.side), search(T, S, price, at, knobs, rng)
+        pictures.append(vote(S, w, both, knobs.side))
         found.append((both.coherence.at, tuple(field.at for field in both.completeness)))
         unlike.append(similarity(w, both))
-    H = blended(merged(np.stack(pictures), scene), scene)
-    return State(state.scale, state.round + 1, H, extracted(H, scene), np.array(unlike)), found
+    H = blend_reference(merge_exposures(np.stack(pictures), scene), scene)
+    return State(state.scale, state.round + 1, H, extract_exposures(H, scene), np.array(unlike)), found
 
 
-def scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
+def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
     """Return the sides of every scale, coarse to fine; the shorter is about `coarsest` pixels at first."""
     count = max(0, round(np.log(min(shape) / coarsest) / np.log(RATIO)))
     return [(round(shape[0] / RATIO**j), round(shape[1] / RATIO**j)) for j in range(count, -1, -1)]
@@ -118,19 +118,23 @@ def synthesise_steps(
 ) -> Iterator[State]:
     """Yield the State of every scale before its first round and after each; parameters as of `synthesise`."""
     finest = as_scene(images, times, g, reference, low, high)
-    sizes = scales(finest.L.shape[1:3], coarsest)
+    sizes = plan_scales(finest.L.shape[1:3], coarsest)
     if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
         raise ValueError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
     generator, state, begun = np.random.default_rng(rng), None, None
-    for scale, (shape, count) in enumerate(zip(sizes, schedule(rounds, len(sizes)), strict=True)):
-        scene = at_scale(finest, shape)
-        H = resized(guessed(finest), shape) if state is None else blended(resized(state.H, shape), scene)
-        state = State(scale, 0, H, extracted(H, scene), np.full(len(scene.t), np.nan))
+    for scale, (shape, count) in enumerate(zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)):
+        scene = resize_scene(finest, shape)
+        H = (
+            resize_picture(guess_radiance(finest), shape)
+            if state is None
+            else blend_reference(resize_picture(state.H, shape), scene)
+        )
+        state = State(scale, 0, H, extract_exposures(H, scene), np.full(len(scene.t), np.nan))
         yield state
-        begun = standing(shape, len(scene.t), side) if begun is None else begun
+        begun = start_fields(shape, len(scene.t), side) if begun is None else begun
         knobs = Search(side, 2, max(shape) if scale == 0 else 4)
         for _ in range(count):
-            state, begun = improved(state, scene, begun, knobs, generator)
+            state, begun = improve(state, scene, begun, knobs, generator)
             yield state
 
 
@@ -188,14 +192,14 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
     return H[..., 0] if np.ndim(images) == 3 else H
 
 
-def schedule(rounds: tuple[int, int], count: int) -> list[int]:
+def plan_rounds(rounds: tuple[int, int], count: int) -> list[int]:
     """Return how many rounds each of `count` scales has: as many less from scale to scale."""
     if not min(rounds) >= 0:
         raise ValueError(f"expected numbers of rounds at the coarsest and the finest scale, got {rounds}")
     return np.rint(np.linspace(*rounds, count)).astype(int).tolist()
 
 
-def standing(shape: tuple[int, int], count: int, side: int) -> list[Begun]:
+def start_fields(shape: tuple[int, int], count: int, side: int) -> list[Begun]:
     """Return where each search begins: where the patch stands, in the photograph of the same exposure."""
     h, w = (n - side + 1 for n in shape)
-    return [(identity(h, w, k), (identity(h, w),) * count) for k in range(count)]
+    return [(identity_field(h, w, k), (identity_field(h, w),) * count) for k in range(count)]

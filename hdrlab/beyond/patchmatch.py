@@ -42,23 +42,25 @@ class Sources(NamedTuple):
     shape: tuple[int, int, int]
 
 
-def cut(picture: Float, side: int) -> Float:
+def cut_patches(picture: Float, side: int) -> Float:
     """Return the patches of a picture (H, W, C) or of several, (..., h, w, side^2 C).
 
     Examples
     --------
-    >>> cut(np.arange(12, dtype=np.float32).reshape(3, 4, 1), 3)[0, 1].tolist()
+    >>> cut_patches(np.arange(12, dtype=np.float32).reshape(3, 4, 1), 3)[0, 1].tolist()
     [1.0, 2.0, 3.0, 5.0, 6.0, 7.0, 9.0, 10.0, 11.0]
     """
     windows = sliding_window_view(picture, (side, side), axis=(-3, -2))
     return np.ascontiguousarray(windows.reshape(*windows.shape[:-3], -1))
 
 
-def sources(S: Float, side: int, price: Float | None = None) -> Sources:
+def make_sources(S: Float, side: int, price: Float | None = None) -> Sources:
     """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
-    rows = cut(S, side)
+    rows = cut_patches(S, side)
     each = (
-        np.zeros(rows.shape[:-1], np.float32) if price is None else cut(price[..., None], side).sum(axis=-1)
+        np.zeros(rows.shape[:-1], np.float32)
+        if price is None
+        else cut_patches(price[..., None], side).sum(axis=-1)
     )
     return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
 
@@ -75,26 +77,26 @@ def distance(P: Float, Q: Sources, at: Index) -> Float:
     return (d + Q.price[index]).reshape(at.shape[:2])
 
 
-def started(P: Float, Q: Sources, at: Index) -> Field:
+def start_field(P: Float, Q: Sources, at: Index) -> Field:
     """Return the Field that begins with these places."""
-    at = inside(at, Q.shape)
+    at = clip_places(at, Q.shape)
     return Field(at, distance(P, Q, at))
 
 
-def inside(at: Index, shape: tuple[int, int, int]) -> Index:
+def clip_places(at: Index, shape: tuple[int, int, int]) -> Index:
     """Return places brought into the sources."""
     return np.clip(at, 0, np.array(shape) - 1)
 
 
-def better(field: Field, P: Float, Q: Sources, at: Index) -> Field:
+def keep_nearer(field: Field, P: Float, Q: Sources, at: Index) -> Field:
     """Return the field with these places instead, where they are nearer."""
-    at = inside(at, Q.shape)
+    at = clip_places(at, Q.shape)
     d = distance(P, Q, at)
     nearer = d < field.d
     return Field(np.where(nearer[..., None], at, field.at), np.where(nearer, d, field.d))
 
 
-def neighbours(at: Index, step: tuple[int, int]) -> Index:
+def propagate(at: Index, step: tuple[int, int]) -> Index:
     """Return at(p - step) + step: the places beside the neighbours' matches [Barnes09 sec. 3.2, propagation].
 
     At the edge, where there is no neighbour, it is the nearest one's.
@@ -104,7 +106,7 @@ def neighbours(at: Index, step: tuple[int, int]) -> Index:
     return at[np.ix_(y, x)] + np.array([0, *step])
 
 
-def near(at: Index, radius: int, count: int, rng: np.random.Generator) -> Index:
+def random_places(at: Index, radius: int, count: int, rng: np.random.Generator) -> Index:
     """Return places at random within `radius` of the field's, in any source [Barnes09 sec. 3.2, search]."""
     moves = rng.integers(-radius, radius, (*at.shape[:2], 2), endpoint=True)
     source = at[..., :1] if count == 1 else rng.integers(0, count, (*at.shape[:2], 1))
@@ -117,23 +119,23 @@ def search_steps(
     """Yield the field after each round: every neighbour's match, then chance, from `radius` down to 1."""
     while True:
         for step in NEIGHBOURS:
-            field = better(field, P, Q, neighbours(field.at, step))
+            field = keep_nearer(field, P, Q, propagate(field.at, step))
         for source in range(1, Q.shape[0]):  # the same place in another picture
-            field = better(field, P, Q, (field.at + (source, 0, 0)) % (Q.shape[0], *LARGE))
+            field = keep_nearer(field, P, Q, (field.at + (source, 0, 0)) % (Q.shape[0], *LARGE))
         reach = radius
         while reach:
-            field = better(field, P, Q, near(field.at, reach, Q.shape[0], rng))
+            field = keep_nearer(field, P, Q, random_places(field.at, reach, Q.shape[0], rng))
             reach //= 2
         yield field
 
 
-def identity(h: int, w: int, source: int = 0) -> Index:
+def identity_field(h: int, w: int, source: int = 0) -> Index:
     """Return the field that looks for each patch where it stands, in one source."""
     y, x = np.indices((h, w))
     return np.stack([np.full((h, w), source), y, x], axis=-1)
 
 
-def scaled(at: Index, shape: tuple[int, int]) -> Index:
+def upscale_field(at: Index, shape: tuple[int, int]) -> Index:
     """Return a field for (h, w) patches of a finer scale, from that of a coarser one."""
     ratios = [fine / coarse for fine, coarse in zip(shape, at.shape[:2], strict=True)]
     own = [
@@ -142,10 +144,10 @@ def scaled(at: Index, shape: tuple[int, int]) -> Index:
     ]
     coarse = np.stack([np.zeros(shape, int), *np.meshgrid(*own, indexing="ij")], axis=-1)
     apart = at[np.ix_(*own)] - coarse  # which source, and how far away in pixels of the coarser scale
-    return identity(*shape) + np.rint(apart * np.array([1, *ratios])).astype(int)
+    return identity_field(*shape) + np.rint(apart * np.array([1, *ratios])).astype(int)
 
 
-def voted(S: Float, at: Index, shape: tuple[int, int], side: int) -> tuple[Float, Float]:
+def sum_votes(S: Float, at: Index, shape: tuple[int, int], side: int) -> tuple[Float, Float]:
     """Return the sums (H, W, C) of what the matches in S say of each pixel, and how many say it (H, W).
 
     Each patch of the target has a match; all its pixels vote, so that a pixel has side^2 votes inside.
@@ -159,7 +161,9 @@ def voted(S: Float, at: Index, shape: tuple[int, int], side: int) -> tuple[Float
     return total, count
 
 
-def given(S: Float, at: Index, weight: Float, shape: tuple[int, int], side: int) -> tuple[Float, Float]:
+def sum_given_votes(
+    S: Float, at: Index, weight: Float, shape: tuple[int, int], side: int
+) -> tuple[Float, Float]:
     """Return the same sums, of the votes that patches of one source S (H, W, C) give to their matches.
 
     `at` leads from the source to the target, and `weight` (h, w) says what each patch is worth.

@@ -105,12 +105,12 @@ def shoot(
     return np.round(np.round(Z / step) * step).astype(np.uint16)
 
 
-def around(full: NDArray[np.bool_]) -> Float:
+def full_share(full: NDArray[np.bool_]) -> Float:
     """Return u, the share of the window's pixels that are full."""
     return uniform_filter(full.astype(np.float64), WINDOW, mode="nearest")
 
 
-def predicted(B: Float, D: Float, full: NDArray[np.bool_]) -> Float:
+def predict_full(B: Float, D: Float, full: NDArray[np.bool_]) -> Float:
     """Return P = D sum B / sum D over the window's pixels that are not full [Tocci11 sec. 5].
 
     The paper takes the mean of the quotients B / D; that of the sums does not suffer from a D near zero.
@@ -119,7 +119,7 @@ def predicted(B: Float, D: Float, full: NDArray[np.bool_]) -> Float:
     return np.where(d > 0, D * b / np.where(d > 0, d, 1), D)
 
 
-def joined(B: Float, D: Float, full: NDArray[np.bool_]) -> tuple[Float, NDArray[np.uint8]]:
+def join_sensors(B: Float, D: Float, full: NDArray[np.bool_]) -> tuple[Float, NDArray[np.uint8]]:
     """Return the radiance of two sensors, and which of four cases each pixel is [Tocci11 sec. 5].
 
     1  nothing around is full          B
@@ -127,9 +127,9 @@ def joined(B: Float, D: Float, full: NDArray[np.bool_]) -> tuple[Float, NDArray[
     3  full, but not all around is     (1 - u) P + u D
     4  all is full                     D
     """
-    u = around(full)
+    u = full_share(full)
     some, every = u > 1e-9, u > 1 - 1e-9
-    own = np.where(full, predicted(B, D, full), B)
+    own = np.where(full, predict_full(B, D, full), B)
     E = np.where(some, np.where(every, D, (1 - u) * own + u * D), B)
     return E, np.where(full, np.where(every, 4, 3), np.where(some, 2, 1)).astype(np.uint8)
 
@@ -145,7 +145,7 @@ def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = FULL) -> Iterator[S
     E = X[-1] / each[-1]
     yield State(len(each) - 1, E, np.zeros(E.shape, np.uint8))
     for j in range(len(each) - 2, -1, -1):
-        E, case = joined(X[j] / each[j], E, X[j] >= full)
+        E, case = join_sensors(X[j] / each[j], E, X[j] >= full)
         yield State(j, E, case)
 
 

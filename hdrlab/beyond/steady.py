@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.beyond.neighbours import windows
+from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.core.extremes import robust_maximum
@@ -57,7 +57,7 @@ class Measured(NamedTuple):
     high: float
 
 
-def measured(E: ArrayLike, *, delta: float = 1e-6) -> Measured:
+def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> Measured:
     """Return mean(ln(delta + L)), delta in medians of L as in `tonemap.reinhard`, and the brightest L."""
     E = as_radiance(E)
     L = luminance(E)
@@ -65,7 +65,7 @@ def measured(E: ArrayLike, *, delta: float = 1e-6) -> Measured:
     return Measured(E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), robust_maximum(L))
 
 
-def adapted(around: Sequence[Measured], *, key: float) -> tuple[float, float]:
+def adapt(around: Sequence[Measured], *, key: float) -> tuple[float, float]:
     """Return Lav = exp(mean of the frames' logarithms), and white, at least 1  [Kang03 sec. 5]."""
     average = float(np.exp(np.mean([one.log for one in around])))
     high = float(np.exp(np.mean(np.log([max(one.high, TINY) for one in around]))))
@@ -110,9 +110,9 @@ def tonemap_steps(
     """
     if not 0 < key < np.inf or span < 0:
         raise ValueError(f"expected a positive key and a span of at least 0, got {key} and {span}")
-    for place, around in windows((measured(E) for E in frames), span):
+    for place, around in slide_windows((measure_frame(E) for E in frames), span):
         frame = around[place]
-        average, white = adapted(around, key=key)
+        average, white = adapt(around, key=key)
         own = float(np.exp(frame.log))
         Ld = operator(frame.L, key=key * own / average, white=white, **knobs)
         yield State(frame.E, Ld, own, average, white)

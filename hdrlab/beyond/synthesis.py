@@ -16,8 +16,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.beyond.ldr_values import Float, Mask, allowed, boosted, exposed, radiance, resized
-from hdrlab.beyond.patchmatch import cut
+from hdrlab.beyond.ldr_values import Float, Mask, boost, consistent_range, expose, radiance, resize_picture
+from hdrlab.beyond.patchmatch import cut_patches
 
 Ramp = tuple[float, float]
 
@@ -65,7 +65,7 @@ def triangle(v: Float) -> Float:
     return np.minimum(2 * v, 2 - 2 * v)
 
 
-def trust(I: Float) -> Float:  # noqa: E741
+def trust_weights(I: Float) -> Float:  # noqa: E741
     """Return Lambda(I_k), the triangle; but 1 in the shortest's highlights and the longest's shadows.
 
     Nobody knows better there.
@@ -75,14 +75,14 @@ def trust(I: Float) -> Float:  # noqa: E741
     return np.maximum(w, LEAST)
 
 
-def merged(I: Float, scene: Scene) -> Float:  # noqa: E741
+def merge_exposures(I: Float, scene: Scene) -> Float:  # noqa: E741
     """Return H~ = sum_k Lambda(I_k) h(I_k) / sum_k Lambda(I_k)  [Sen12 sec. 3]."""
-    w = trust(I)
+    w = trust_weights(I)
     h = np.stack([radiance(v, t, scene.full) for v, t in zip(I, scene.t, strict=True)])
     return (w * h).sum(axis=0) / w.sum(axis=0)
 
 
-def blended(H: Float, scene: Scene) -> Float:
+def blend_reference(H: Float, scene: Scene) -> Float:
     """Return alpha h(L_ref) + (1 - alpha) H~, the H of least energy for given I_k [Sen12 sec. 3].
 
     H~ is kept within what the reference allows: at least h(L_ref) where that is clipped, and elsewhere what
@@ -90,11 +90,11 @@ def blended(H: Float, scene: Scene) -> Float:
     """
     k = scene.reference
     v, t = scene.L[k], scene.t[k]
-    within = np.clip(H, *allowed(v, scene.noise[k], scene.clipped[k], t, scene.full))
+    within = np.clip(H, *consistent_range(v, scene.noise[k], scene.clipped[k], t, scene.full))
     return scene.alpha * radiance(v, t, scene.full) + (1 - scene.alpha) * within
 
 
-def guessed(scene: Scene) -> Float:
+def guess_radiance(scene: Scene) -> Float:
     """Return what to begin with: h(L_ref), or where it is clipped what a shorter exposure has, if more.
 
     The paper begins with the reference alone. But a flat, clipped region is like any other flat thing, and
@@ -105,12 +105,12 @@ def guessed(scene: Scene) -> Float:
     return np.where(scene.clipped[k], np.max(seen, axis=0), seen[k])
 
 
-def extracted(H: Float, scene: Scene) -> Float:
+def extract_exposures(H: Float, scene: Scene) -> Float:
     """Return I_k = l_k(H) of every exposure."""
-    return np.stack([exposed(H, t, scene.full) for t in scene.t])
+    return np.stack([expose(H, t, scene.full) for t in scene.t])
 
 
-def sources(k: int, scene: Scene) -> tuple[Float, Float]:
+def boost_photographs(k: int, scene: Scene) -> tuple[Float, Float]:
     """Return g_k(L_q) of all photographs (P, h, w, C), and the price of each of their pixels (P, h, w).
 
     The price is the squared noise that a photograph has in exposure k: of two patches that look alike the
@@ -118,14 +118,14 @@ def sources(k: int, scene: Scene) -> tuple[Float, Float]:
     k is unknown.
     """
     ratios = scene.t[k] / scene.t
-    g = np.stack([boosted(v, ratio) for v, ratio in zip(scene.L, ratios, strict=True)])
-    noise = np.stack([boosted(one, ratio) for one, ratio in zip(scene.noise, ratios, strict=True)])
+    g = np.stack([boost(v, ratio) for v, ratio in zip(scene.L, ratios, strict=True)])
+    noise = np.stack([boost(one, ratio) for one, ratio in zip(scene.noise, ratios, strict=True)])
     noise = np.where(g < 1, noise, 0)
     unknown = scene.clipped.any(axis=-1) & (scene.t > scene.t[k])[:, None, None]
     return g, np.where(unknown, np.float32(np.inf), PRICE * (noise**2).sum(axis=-1))
 
 
-def worth(k: int, scene: Scene, price: Float, side: int) -> Float:
+def weigh_patches(k: int, scene: Scene, price: Float, side: int) -> Float:
     """Return w (P, h', w'): how much the patches of each photograph have to be found again in I_k.
 
     As much as they are well exposed, where they are usable; and only those of the neighbouring exposures, for
@@ -133,12 +133,12 @@ def worth(k: int, scene: Scene, price: Float, side: int) -> Float:
     """
     near = np.abs(np.arange(len(scene.L)) - k) <= 1
     well = triangle(scene.L).min(axis=-1, keepdims=True) * near[:, None, None, None]
-    barred = np.isinf(cut(price[..., None], side)).any(axis=-1)
-    return np.where(barred, 0, cut(well, side).mean(axis=-1)).astype(np.float32)
+    barred = np.isinf(cut_patches(price[..., None], side)).any(axis=-1)
+    return np.where(barred, 0, cut_patches(well, side).mean(axis=-1)).astype(np.float32)
 
 
-def at_scale(scene: Scene, shape: tuple[int, int]) -> Scene:
+def resize_scene(scene: Scene, shape: tuple[int, int]) -> Scene:
     """Return the scene at another size; a pixel is clipped where one of those that it stands for is."""
-    L, noise = (np.stack([resized(v, shape) for v in all_]) for all_ in (scene.L, scene.noise))
-    clipped = np.stack([resized(one, shape) > 1e-3 for one in scene.clipped])
-    return scene._replace(L=L, noise=noise, clipped=clipped, alpha=resized(scene.alpha, shape))
+    L, noise = (np.stack([resize_picture(v, shape) for v in all_]) for all_ in (scene.L, scene.noise))
+    clipped = np.stack([resize_picture(one, shape) > 1e-3 for one in scene.clipped])
+    return scene._replace(L=L, noise=noise, clipped=clipped, alpha=resize_picture(scene.alpha, shape))

@@ -22,9 +22,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.beyond.flow import Flow, halves, inside, tvl1, warped
-from hdrlab.beyond.ldr_values import Float, Mask, allowed, as_read, as_values, boosted, exposed, radiance
-from hdrlab.beyond.neighbours import windows
+from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
+from hdrlab.beyond.ldr_values import (
+    Float,
+    Mask,
+    as_values,
+    boost,
+    consistent_range,
+    expose,
+    look_up_levels,
+    radiance,
+)
+from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array, as_table, as_times, levels
@@ -74,15 +83,15 @@ class State(NamedTuple):
     alpha: Float
 
 
-def motion(a: Frame, b: Frame, flow: Flow) -> Float:
+def estimate_motion(a: Frame, b: Frame, flow: Flow) -> Float:
     """Return the flow from a to b, the shorter exposure boosted to the longer one [Kang03 sec. 4]."""
     longer = max(a.t, b.t)
-    return flow(*(boosted(one.v, longer / one.t).mean(axis=-1) for one in (a, b)))
+    return flow(*(boost(one.v, longer / one.t).mean(axis=-1) for one in (a, b)))
 
 
-def brought(frame: Frame, u: Float) -> Term:
+def warp_frame(frame: Frame, u: Float) -> Term:
     """Return a frame brought along a flow; it has no weight where that leads out of the picture."""
-    return Term(warped(frame.R, u), warped(frame.w, u) * inside(u)[..., None])
+    return Term(warp(frame.R, u), warp(frame.w, u) * lands_inside(u)[..., None])
 
 
 def consistency(v: Float, v_: Float) -> Float:
@@ -91,38 +100,38 @@ def consistency(v: Float, v_: Float) -> Float:
     return (2 * d - 3) * d * d + 1
 
 
-def trusted(i: Frame, term: Term) -> Term:
+def weigh_neighbour(i: Frame, term: Term) -> Term:
     """Return a neighbour weighted by f_W f_MW alpha: as far as frame i can tell, and agrees."""
-    return term._replace(w=term.w * consistency(i.v, exposed(term.R, i.t, i.full)) * i.alpha)
+    return term._replace(w=term.w * consistency(i.v, expose(term.R, i.t, i.full)) * i.alpha)
 
 
-def half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
+def warp_half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
     """Return both frames brought to the moment half-way between them, and trusted where they agree there."""
-    terms = [brought(*each) for each in zip((a, b), halves(motion(a, b, flow)), strict=True)]
+    terms = [warp_frame(*each) for each in zip((a, b), halve_flow(estimate_motion(a, b, flow)), strict=True)]
     longer = max(a.t, b.t)
-    agree = consistency(*(exposed(term.R, longer, a.full) for term in terms))
+    agree = consistency(*(expose(term.R, longer, a.full) for term in terms))
     return tuple(term._replace(w=term.w * np.maximum(agree, 0.01)) for term in terms)
 
 
-def possible(i: Frame, R: Float) -> tuple[Float, Float]:
+def clip_to_frame(i: Frame, R: Float) -> tuple[Float, Float]:
     """Return R kept within what frame i allows, and f_MW (H, W, 1) of how far it had to be moved for that.
 
     Frame i allows at least R_i where it is clipped, and what lies within a few levels of R_i elsewhere.
     """
-    kept = np.clip(R, *allowed(i.v, i.noise, i.clipped, i.t, i.full))
-    return kept, consistency(exposed(kept, i.t, i.full), exposed(R, i.t, i.full))
+    kept = np.clip(R, *consistent_range(i.v, i.noise, i.clipped, i.t, i.full))
+    return kept, consistency(expose(kept, i.t, i.full), expose(R, i.t, i.full))
 
 
-def mixed(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> Float:
+def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> Float:
     """Return (f_W R_i + sum U + (1 - alpha) sum B) / (f_W + ...), each R times its weight [Kang03 sec. 4].
 
     B is asked whether frame i allows it: a badly exposed pixel still says "at least" or "at most".
     """
-    half = [(R, (1 - i.alpha) * np.maximum(possible(i, R)[1] * w, LEAST)) for R, w in between]
+    half = [(R, (1 - i.alpha) * np.maximum(clip_to_frame(i, R)[1] * w, LEAST)) for R, w in between]
     terms = [(i.R, i.w), *along, *half]
     total = np.sum([w for _, w in terms], axis=0)
     mean = np.sum([w * R for R, w in terms], axis=0) / np.where(total > 0, total, 1)
-    return possible(i, np.where(total > 0, mean, i.R))[0]
+    return clip_to_frame(i, np.where(total > 0, mean, i.R))[0]
 
 
 def merge_steps(
@@ -141,13 +150,15 @@ def merge_steps(
     """
     turn = np.atleast_1d(np.asarray(times, np.float64))
     turn = as_times(turn, max(turn.size, 1))
-    seen = alike(as_frame(Z, float(t), g, w, low, high) for Z, t in zip(frames, cycle(turn), strict=False))
-    for number, (place, around) in enumerate(windows(seen, 1)):
+    seen = require_one_size(
+        as_frame(Z, float(t), g, w, low, high) for Z, t in zip(frames, cycle(turn), strict=False)
+    )
+    for number, (place, around) in enumerate(slide_windows(seen, 1)):
         i, beside = around[place], [*around[:place], *around[place + 1 :]]
-        there = [brought(j, motion(i, j, flow)) for j in beside]
-        between = half_way(beside[0], beside[1], flow) if len(beside) == 2 else tuple(there)
-        along = tuple(trusted(i, term) for term in there)
-        E = mixed(i, along, between)
+        there = [warp_frame(j, estimate_motion(i, j, flow)) for j in beside]
+        between = warp_half_way(beside[0], beside[1], flow) if len(beside) == 2 else tuple(there)
+        along = tuple(weigh_neighbour(i, term) for term in there)
+        E = blend_terms(i, along, between)
         yield State(number, E if E.shape[-1] > 1 else E[..., 0], i.R, along, between, i.alpha)
 
 
@@ -208,13 +219,15 @@ def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None, low: Ram
     seen = as_values(stack, [t], g)
     n = levels(stack)
     chosen = weights.cut(weights.snr(as_table(g, n))) if w is None else w
-    f_W = as_read(as_table(chosen, n).reshape(n, -1).astype(np.float32), stack.reshape(seen.v.shape))[0]
+    f_W = look_up_levels(as_table(chosen, n).reshape(n, -1).astype(np.float32), stack.reshape(seen.v.shape))[
+        0
+    ]
     R = radiance(seen.v[0], t, seen.full)
     alpha = trapezoid(seen.z[0], low, high)
     return Frame(seen.v[0], seen.noise[0], seen.clipped[0], R, f_W, alpha, t, seen.full)
 
 
-def alike(frames: Iterable[Frame]) -> Iterator[Frame]:
+def require_one_size(frames: Iterable[Frame]) -> Iterator[Frame]:
     """Yield the frames; raise a ValueError at one that is not of the first one's size."""
     first = None
     for number, frame in enumerate(frames):

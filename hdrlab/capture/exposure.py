@@ -144,7 +144,7 @@ def equivalent_time(T: Real, F: Real, F_new: Real, *, S: float = 100, S_new: flo
     return _positive("shutter time", T) * (F_new / F) ** 2 * ratio
 
 
-def passes(D: Real) -> Real:
+def transmittance(D: Real) -> Real:
     """Return 10^-D, the share of the light that a neutral density filter passes: ND 0.3 passes a half."""
     return 10.0 ** -np.asarray(D, np.float64)
 

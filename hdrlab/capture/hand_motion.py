@@ -27,7 +27,7 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     real content everywhere, and nothing wraps around.
 
     With moves, or fractions of pixels, frame j sees E at H_j (x, y, 1), and all of them the largest rectangle
-    within which every one finds content. `frames` tells their moves in pixels of their own.
+    within which every one finds content. `frame_homographies` gives their moves in pixels of their own.
     """
     moves = np.asarray(offsets)
     if moves.ndim == 3 or (moves.ndim == 2 and moves.shape[1] == 2 and moves.dtype.kind == "f"):
@@ -43,7 +43,7 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     return [E[y : y + h, x : x + w] for y, x in corners]
 
 
-def frames(moves: ArrayLike, shape: tuple[int, ...]) -> Float:
+def frame_homographies(moves: ArrayLike, shape: tuple[int, ...]) -> Float:
     """Return moves (P, 3, 3) of a scene of `shape` as they are in the smaller frames that `views` returns.
 
     These begin at pixel (left, top) of the scene, so H becomes T^-1 H T with the shift T by that much. A
@@ -53,14 +53,14 @@ def frames(moves: ArrayLike, shape: tuple[int, ...]) -> Float:
     --------
     >>> turned = warp.turn((100, 160), 2)  # about the middle of the scene, and of the frames
     >>> h, w = views(np.ones((100, 160)), [turned, np.eye(3)])[0].shape
-    >>> np.allclose(frames([turned, np.eye(3)], (100, 160))[0], warp.turn((h, w), 2), atol=0.2)
+    >>> np.allclose(frame_homographies([turned, np.eye(3)], (100, 160))[0], warp.turn((h, w), 2), atol=0.2)
     True
     """
     first = _from(_shown(moves, shape))
     return np.asarray(np.linalg.inv(first) @ warp.as_moves(moves) @ first)
 
 
-def hand(
+def shake(
     count: int,
     shape: tuple[int, ...],
     *,
@@ -84,7 +84,7 @@ def hand(
 
     Examples
     --------
-    >>> hand(3, (100, 150), radius=2, degrees=0, rng=1)[:, :2, 2].round(2).tolist()  # dx, dy
+    >>> shake(3, (100, 150), radius=2, degrees=0, rng=1)[:, :2, 2].round(2).tolist()  # dx, dy
     [[1.8, 0.05], [0.0, 0.0], [1.15, -0.68]]
     """
     rng = np.random.default_rng(rng)

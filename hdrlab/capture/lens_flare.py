@@ -20,7 +20,7 @@ from hdrlab.core.scatter import Spread, checked, kernel, scattered
 Float = NDArray[np.float32]
 
 
-def veil(E: ArrayLike, spread: Spread = Spread(0.05)) -> Float:  # noqa: B008  a NamedTuple of numbers
+def add_glare(E: ArrayLike, spread: Spread = Spread(0.05)) -> Float:  # noqa: B008  a NamedTuple of numbers
     """Return the radiance behind a lens that scatters, (1 - share) E + share (K * E).
 
     Parameters
@@ -41,7 +41,7 @@ def veil(E: ArrayLike, spread: Spread = Spread(0.05)) -> Float:  # noqa: B008  a
     --------
     >>> E = np.full((20, 30), 0.01, np.float32)
     >>> E[10, 15] = 1000  # a lamp
-    >>> seen = veil(E, Spread(0.02))
+    >>> seen = add_glare(E, Spread(0.02))
     >>> bool(seen[10, 18] > 10 * seen[0, 0] > 0.1), float(seen[10, 15].round(1))
     (True, 980.0)
     """
@@ -52,7 +52,7 @@ def veil(E: ArrayLike, spread: Spread = Spread(0.05)) -> Float:  # noqa: B008  a
     return np.float32(1 - share) * E + np.float32(share) * scattered(E, kernel(E.shape, power, core))
 
 
-def reflection(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: float = 1e-4) -> Float:
+def reflect(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: float = 1e-4) -> Float:
     """Return the light of one reflection alone: the picture k times as large, as discs, a share of its light.
 
     Parameters
@@ -71,7 +71,7 @@ def reflection(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share
     --------
     >>> E = np.zeros((41, 61), np.float32)
     >>> E[10, 20] = 1e6
-    >>> y, x = np.nonzero(reflection(E, place=-0.5, radius=3, share=0.01) > 1)
+    >>> y, x = np.nonzero(reflect(E, place=-0.5, radius=3, share=0.01) > 1)
     >>> float(y.mean().round()), float(x.mean().round())  # (10, 20) before (20, 30), half as far behind it
     (25.0, 35.0)
     """
@@ -91,7 +91,7 @@ def reflection(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share
     return out.reshape(E.shape)
 
 
-def flare(
+def add_flare(
     E: ArrayLike,
     spread: Spread = Spread(0.05),  # noqa: B008
     *,
@@ -103,10 +103,10 @@ def flare(
 
     Examples
     --------
-    >>> flare(np.ones((20, 30)), places=()).shape
+    >>> add_flare(np.ones((20, 30)), places=()).shape
     (20, 30)
     """
-    seen = veil(E, spread)
+    seen = add_glare(E, spread)
     for place in places:
-        seen = seen + reflection(E, place=place, radius=radius, share=share)
+        seen = seen + reflect(E, place=place, radius=radius, share=share)
     return seen

@@ -197,7 +197,7 @@ def optimum(EV_pre: float, B_pre: float, B_opt: float = GRAY) -> float:
     return EV_pre + np.log2(B_pre) - np.log2(B_opt)
 
 
-def foresee(B: ArrayLike, w: Weight, stops: float) -> float:
+def predict_reading(B: ArrayLike, w: Weight, stops: float) -> float:
     """Return the reading after `stops` more light, sum w min(2^stops B, 1), where a full B counts as FULL."""
     B = np.asarray(B, np.float64)
     return float((w * np.minimum(np.where(B < 1, B, FULL) * 2.0**stops, 1)).sum())
@@ -211,5 +211,5 @@ def correction(B: ArrayLike, w: Weight, B_opt: float = GRAY, *, most: float = 8.
     low, high = -most, most
     for _ in range(40):
         middle = (low + high) / 2
-        low, high = (middle, high) if foresee(B, w, middle) < B_opt else (low, middle)
+        low, high = (middle, high) if predict_reading(B, w, middle) < B_opt else (low, middle)
     return (low + high) / 2

@@ -105,7 +105,7 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
     return np.rint(np.arange(count)[:, None] * stride - (count - 1) / 2 * stride).astype(np.int64)
 
 
-def placed(layer: Float, at: ArrayLike) -> Float:
+def shift_layer(layer: Float, at: ArrayLike) -> Float:
     """Return a layer moved by (dy, dx) whole pixels; what leaves the frame is lost, what enters is 0."""
     out, parts = np.zeros_like(layer), []
     for n, d in zip(layer.shape, np.asarray(at).tolist(), strict=False):
@@ -115,9 +115,9 @@ def placed(layer: Float, at: ArrayLike) -> Float:
     return out
 
 
-def moment(E: Float, figure: Figure, at: ArrayLike) -> tuple[Float, Float]:
+def compose_moment(E: Float, figure: Figure, at: ArrayLike) -> tuple[Float, Float]:
     """Return E_j = light + (1 - mask) E with the figure at (dy, dx), and its mask there [Porter84 sec. 4]."""
-    light, mask = placed(figure.light, at), placed(figure.mask, at)
+    light, mask = shift_layer(figure.light, at), shift_layer(figure.mask, at)
     return light + (1 - (mask if E.ndim == 2 else mask[..., None])) * E, mask
 
 
@@ -177,7 +177,7 @@ def shoot(
     rng, still = np.random.default_rng(rng), camera.views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
     moments, masks, shots = [], [], []
     for j in np.argsort(seconds, kind="stable"):
-        seen, mask = (camera.views(one, moves)[j] for one in moment(E, figure, places[j]))
+        seen, mask = (camera.views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
         shots.append(camera.shoot(seen, seconds[j], model, rng=rng))
         moments.append(seen)
         masks.append(mask)

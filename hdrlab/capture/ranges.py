@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.capture.sensor import Sensor, as_sensor, fills
+from hdrlab.capture.sensor import Sensor, as_sensor, full_electrons
 from hdrlab.core.arrays import describe
 
 Float = NDArray[np.float64]
@@ -66,7 +66,7 @@ def sensor_range(sensor: Sensor) -> Range:
     >>> round(sensor_range(Sensor(full_well=20_000, read_noise=2, gain=5)).decades, 2)
     3.91
     """
-    return dynamic_range(fills(as_sensor(sensor)), noise_floor(sensor))
+    return dynamic_range(full_electrons(as_sensor(sensor)), noise_floor(sensor))
 
 
 def snr(X: ArrayLike, sensor: Sensor) -> Float:
@@ -75,7 +75,7 @@ def snr(X: ArrayLike, sensor: Sensor) -> Float:
     return N / np.sqrt(N + noise_floor(sensor) ** 2)
 
 
-def held(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0) -> Held:
+def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0) -> Held:
     """Return what an exposure holds of luminances L (K,): figures 1.10 to 1.12 of the overview, as data.
 
     Levels are those without noise. Lost are luminances that are full, and those whose SNR is below 1.
@@ -89,10 +89,10 @@ def held(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0)
     if not np.all((L >= 0) & np.isfinite(L)) or not (0 < time < np.inf and 0 < sensitivity < np.inf):
         raise ValueError(f"expected luminances, a time and a sensitivity, got {describe(L)} and {time} s")
     X = sensitivity * time * L
-    N = np.minimum(sensor.full_well * X, fills(sensor))
+    N = np.minimum(sensor.full_well * X, full_electrons(sensor))
     Z = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black
     told = snr(X, sensor)
-    return Held(Z, told, sensor.full_well * X >= fills(sensor), told < 1)
+    return Held(Z, told, sensor.full_well * X >= full_electrons(sensor), told < 1)
 
 
 def levels_per_stop(bits: int) -> NDArray[np.int64]:

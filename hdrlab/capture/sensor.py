@@ -66,7 +66,7 @@ def digitise(N: Float, sensor: Sensor) -> NDArray[np.uint16]:
     return np.clip(Z, 0, 2**sensor.bits - 1).astype(np.uint16)
 
 
-def fills(sensor: Sensor) -> float:
+def full_electrons(sensor: Sensor) -> float:
     """Return the electrons at which a pixel is full: its well is, or the converter has no level above."""
     return min(sensor.full_well, sensor.gain * (2**sensor.bits - 1 - sensor.black))
 
@@ -177,7 +177,7 @@ def develop(
         raise ValueError(f"expected RAW levels uint16, (H, W) of a mosaic, got {describe(Z)}")
     if gains.shape != (3,) or not np.all((gains > 0) & np.isfinite(gains)):
         raise ValueError(f"expected three positive gains, got {describe(gains)}")
-    X = np.float32(sensor.gain / fills(sensor)) * (Z.astype(np.float32) - np.float32(sensor.black))
+    X = np.float32(sensor.gain / full_electrons(sensor)) * (Z.astype(np.float32) - np.float32(sensor.black))
     if bayer:
         X = mosaic.demosaic(X, mosaic.tile(mosaic.BAYER, Z.shape)).astype(np.float32)
     if X.ndim == 3:

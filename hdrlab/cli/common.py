@@ -55,7 +55,7 @@ def read_map(source: Path, clean: bool) -> Any:
 
     if not clean:
         return radiance.read_radiance(source)
-    mended = radiance.read_mended(source)
+    mended = radiance.read_sanitized(source)
     E, *counts = mended
     what = ("unknown pixels", "infinite values", "pixels with a negative channel", "pixels below black")
     said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)

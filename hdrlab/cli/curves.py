@@ -160,7 +160,7 @@ def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
     maps = {name: one.E for name, one in found.items()}
     click.echo("\n".join(calibration.matrix(list(g), calibration.apart(maps, well), 3)))
     for name in g:
-        _write(tuple(response_files.named(path, name) for path in out), g[name])
+        _write(tuple(response_files.insert_name(path, name) for path in out), g[name])
     if plot:
         calibration.write_plot(plot, calibration.overlay(g, title=f"{len(g)} methods on one bracket"))
         click.echo(plot)

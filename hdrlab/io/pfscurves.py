@@ -57,7 +57,7 @@ def read_pfstools(path: Path) -> Float:
         got = ", ".join(f"{head[1]} of {head[2]} levels" for head in heads[:4]) or "none"
         raise ValueError(f"expected a response of pfstools: channels IR, IG and IB, or IY; got {got}")
     f = [_read_block(text[head.end() :], *rows) for head in heads]
-    return squeezed(ln_exposure(np.stack(f, axis=-1)))
+    return squeeze_gray(ln_exposure(np.stack(f, axis=-1)))
 
 
 def _read_block(text: str, rows: int) -> Float:
@@ -92,7 +92,7 @@ def columns_of(g: Float) -> Float:
     return g.reshape(len(g), -1)
 
 
-def squeezed(columns: Float) -> Float:
+def squeeze_gray(columns: Float) -> Float:
     """Return (n, channels) as (n,) where there is one channel."""
     return columns[:, 0] if columns.shape[1] == 1 else columns
 

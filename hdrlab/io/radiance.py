@@ -40,10 +40,10 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> NDArray[np.float3
     >>> read_radiance(path)
     array([[0.5, 1. , 2. ]], dtype=float32)
     """
-    return read_mended(path).E if clean else read_checked(path)
+    return read_sanitized(path).E if clean else read_valid(path)
 
 
-def read_mended(path: str | Path) -> gamut.Mended:
+def read_sanitized(path: str | Path) -> gamut.Mended:
     """Return the radiance map as `read_radiance` cleans it, and counts of what it mended."""
     E, primaries = format_of(path).read(path), primaries_of(path)
     if primaries is None:
@@ -52,7 +52,7 @@ def read_mended(path: str | Path) -> gamut.Mended:
     return mended._replace(E=gamut.to_srgb(mended.E, primaries))
 
 
-def read_checked(path: str | Path) -> NDArray[np.float32]:
+def read_valid(path: str | Path) -> NDArray[np.float32]:
     """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
     E = format_of(path).read(path)
     try:

@@ -28,7 +28,7 @@ from hdrlab.io.pfscurves import (
     from_luminance,
     numbers,
     read_pfstools,
-    squeezed,
+    squeeze_gray,
     text_of,
     write_luminance,
     write_pfstools,
@@ -122,12 +122,12 @@ def suffix_of(path: str | Path) -> str:
     raise ValueError(f"{path}: expected a response curve ({', '.join(FORMS)})")
 
 
-def named(path: str | Path, name: str) -> Path:
+def insert_name(path: str | Path, name: str) -> Path:
     """Return the path with a name before its suffix.
 
     Examples
     --------
-    >>> named("room.luminance.csv", "mann").name
+    >>> insert_name("room.luminance.csv", "mann").name
     'room-mann.luminance.csv'
     """
     path, suffix = Path(path), suffix_of(path)
@@ -163,7 +163,7 @@ def _read_csv(path: Path) -> Float:
     table = numbers(body, len(names), ",")
     if not np.array_equal(table[:, 0], np.arange(len(table))):
         raise ValueError(f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ...")
-    return squeezed(table[:, 1:])
+    return squeeze_gray(table[:, 1:])
 
 
 def _write_npz(path: Path, g: Float) -> None:

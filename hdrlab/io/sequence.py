@@ -66,14 +66,14 @@ def read(path: str | Path) -> Iterator[Frame]:
     path = Path(path)
     if path.is_dir():
         files = photos.photographs(path)
-        return alike((photos.read_photo(file) for file in files), path)
+        return require_alike((photos.read_photo(file) for file in files), path)
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(SUFFIXES))})")
     if not path.is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
     if path.suffix.lower() in FILMS:
         require_films(path)
-    frames = alike(decoded(path), path)
+    frames = require_alike(decode_frames(path), path)
     first = next(frames)  # an unreadable file is found before anything is done with it
     return chained(first, frames)
 
@@ -97,7 +97,7 @@ def chained(first: Frame, frames: Iterator[Frame]) -> Iterator[Frame]:
     yield from frames
 
 
-def decoded(path: Path) -> Iterator[Frame]:
+def decode_frames(path: Path) -> Iterator[Frame]:
     """Yield the frames of a film or an animation, (H, W, 3) uint8."""
     film = path.suffix.lower() in FILMS
     try:
@@ -114,7 +114,7 @@ def decoded(path: Path) -> Iterator[Frame]:
         raise ValueError(f"{path}: it is cut short or damaged ({error})") from None
 
 
-def alike(frames: Iterable[Frame], path: Path) -> Iterator[Frame]:
+def require_alike(frames: Iterable[Frame], path: Path) -> Iterator[Frame]:
     """Yield the frames; raise a ValueError where there is none, or one that differs from the first."""
     first = None
     for number, frame in enumerate(frames, 1):
@@ -157,7 +157,7 @@ def write(path: str | Path, frames: Iterable[Frame], *, rate: float = 25.0) -> i
     require_writable(path)
     if not 0 < rate <= 1000:
         raise ValueError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
-    pictures = alike((as_rgb(frame) for frame in frames), path)
+    pictures = require_alike((as_rgb(frame) for frame in frames), path)
     with replacing(path) as name:
         return (
             _write_film(name, pictures, rate)

@@ -144,7 +144,7 @@ def estimate(F: ArrayLike, *, powers: tuple[float, ...] = POWERS) -> tuple[Sprea
     --------
     >>> from hdrlab import scenes
     >>> from hdrlab.capture import lens_flare
-    >>> spread, _ = estimate(lens_flare.veil(scenes.room((128, 192)), Spread(0.05, 2.5)))
+    >>> spread, _ = estimate(lens_flare.add_glare(scenes.room((128, 192)), Spread(0.05, 2.5)))
     >>> spread.power, round(spread.share, 2)
     (2.5, 0.05)
     """
@@ -186,7 +186,7 @@ def remove(F: ArrayLike, *, spread: Spread | None = None, part: float = 0.02) ->
     >>> from hdrlab import scenes
     >>> from hdrlab.capture import lens_flare
     >>> room = scenes.room((128, 192))
-    >>> found = remove(lens_flare.veil(room, Spread(0.05, 2.5)))
+    >>> found = remove(lens_flare.add_glare(room, Spread(0.05, 2.5)))
     >>> found.spread.power, round(found.spread.share, 2)
     (2.5, 0.05)
     >>> remove(room).region.any()

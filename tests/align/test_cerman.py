@@ -26,7 +26,7 @@ def shoot(E, moves, *, stops=2.0, response="film", bits=8, rng=1, count=None):
     times = camera.times_around(E, count or len(moves), stops=stops)
     model = camera.Camera(response=response, bits=bits, full_well=20_000, read_noise=5)
     taken = camera.shoot(E, times, model, offsets=moves, rng=rng)
-    return taken, hand_motion.frames(moves, E.shape)
+    return taken, hand_motion.frame_homographies(moves, E.shape)
 
 
 def off(found, truth, shape=SHAPE):
@@ -149,7 +149,7 @@ def test_gray_and_colour_8_and_16_bits(room, bits, colours):
 
 
 def test_four_frames_are_chained_to_the_middle_one(room):
-    moves = hand_motion.hand(4, SHAPE, radius=6, degrees=1.5, rng=3)
+    moves = hand_motion.shake(4, SHAPE, radius=6, degrees=1.5, rng=3)
     taken, truth = shoot(room, moves)
     found = cerman.align(taken.images, times=taken.times, g=true_g())
     assert np.array_equal(found[2], np.eye(3))
@@ -157,7 +157,7 @@ def test_four_frames_are_chained_to_the_middle_one(room):
 
 
 def test_frames_in_another_order_get_the_same_moves_in_that_order(room):
-    taken, _ = shoot(room, hand_motion.hand(3, SHAPE, radius=5, degrees=1, rng=2))
+    taken, _ = shoot(room, hand_motion.shake(3, SHAPE, radius=5, degrees=1, rng=2))
     order = [2, 0, 1]
     one = cerman.align(taken.images, times=taken.times, g=true_g())
     other = cerman.align(taken.images[order], times=taken.times[order], g=true_g())

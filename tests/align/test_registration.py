@@ -29,14 +29,14 @@ def room():
 def shoot(E, moves):
     """Return photographs two stops apart of a moved camera, and the moves in their own pixels."""
     taken = camera.shoot(E, camera.times_around(E, len(moves), stops=2), CAMERA, offsets=moves, rng=2)
-    return taken, hand_motion.frames(moves, E.shape)
+    return taken, hand_motion.frame_homographies(moves, E.shape)
 
 
 # homographies
 
 
 def test_a_homography_goes_through_four_corners():
-    H = hand_motion.hand(2, SHAPE, degrees=9, zoom=0.1, tilt=0.1, rng=5)[0]
+    H = hand_motion.shake(2, SHAPE, degrees=9, zoom=0.1, tilt=0.1, rng=5)[0]
     assert np.allclose(homography.through(SHAPE, warp.apply(H, warp.corners(SHAPE))), H / H[2, 2])
 
 
@@ -54,7 +54,7 @@ def test_points_that_do_not_agree_make_no_homography():
 
 def test_a_step_ahead_with_a_tilted_camera_is_found():
     E = scenes.room((220, 320))
-    taken, truth = shoot(E, hand_motion.hand(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7))
+    taken, truth = shoot(E, hand_motion.shake(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7))
     found = homography.align(taken.images)
     truth = np.linalg.inv(truth[-1]) @ truth
     assert warp.apart(np.linalg.inv(found[-1]) @ found, truth, E.shape).max() < 1
@@ -122,7 +122,7 @@ def test_pixels_between_pixels_are_means_of_light(room):
     times = camera.times_around(room, 2, stops=0.001, middle=0.03)
     moves = [warp.turn(SHAPE, 1.5, (2.4, 3.3)), np.eye(3)]
     taken = camera.shoot(room, times, offsets=moves)
-    moved, _ = resample.photographs(taken.images, hand_motion.frames(moves, SHAPE), true_g())
+    moved, _ = resample.photographs(taken.images, hand_motion.frame_homographies(moves, SHAPE), true_g())
     well = (moved > 20).all(axis=(0, 3)) & (moved < 240).all(axis=(0, 3))
     assert np.median(np.abs(moved[0].astype(int) - moved[1])[well]) <= 2
 
@@ -155,13 +155,13 @@ def test_moves_that_do_not_fit_the_images_are_refused():
 @pytest.fixture(scope="module")
 def turned(room):
     """Three photographs of a hand that turned, and how."""
-    return shoot(room, hand_motion.hand(3, SHAPE, **HAND))
+    return shoot(room, hand_motion.shake(3, SHAPE, **HAND))
 
 
 def map_error(found, room, taken):
     """Return the median relative error of a map on edges, where misalignment shows."""
     rows, columns = warp.inside(found.moves, taken.images.shape[1:3])
-    scene = hand_motion.views(room, hand_motion.hand(3, SHAPE, **HAND))[1][rows, columns]
+    scene = hand_motion.views(room, hand_motion.shake(3, SHAPE, **HAND))[1][rows, columns]
     slope = np.hypot(*np.gradient(np.log(scene[..., 1] + 1e-4)))
     well = (found.seen == Seen.MEASURED) & (slope > np.quantile(slope, 0.8))
     ratio = found.E[well] / scene[well]

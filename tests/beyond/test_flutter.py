@@ -78,12 +78,15 @@ def test_noise_grows_by_the_amplification(h):
 
 
 def test_one_coded_picture_is_worth_nearly_nine_short_ones():
-    assert flutter.worth(CODE) == pytest.approx(8.7, abs=0.05) and flutter.worth(ONE) == 1
+    assert (
+        flutter.equivalent_pictures(CODE) == pytest.approx(8.7, abs=0.05)
+        and flutter.equivalent_pictures(ONE) == 1
+    )
     coded = rms(flutter.sharpen(photographed(CODE), CODE), thing())
     shorts = np.stack([photographed(ONE, seed=k) for k in range(12)])
     means = [rms(flutter.sharpen(shorts[:n].mean(axis=0), ONE), thing()) for n in range(1, 13)]
     assert means[6] > coded > means[10]  # worse than 11 short ones, better than 7
-    assert abs(1 + int(np.argmin(np.abs(np.array(means) - coded))) - flutter.worth(CODE)) < 1.5
+    assert abs(1 + int(np.argmin(np.abs(np.array(means) - coded))) - flutter.equivalent_pictures(CODE)) < 1.5
 
 
 def test_a_bracket_of_two_coded_pictures_is_as_clean_as_one_of_many_short_ones():

@@ -47,27 +47,31 @@ def walk():
 
 def test_patches_are_the_windows_of_a_picture():
     T = noise((7, 9, 3))
-    P = patchmatch.cut(T, 3)
+    P = patchmatch.cut_patches(T, 3)
     assert P.shape == (5, 7, 27)
     assert np.array_equal(np.sort(P[2, 4]), np.sort(T[2:5, 4:7].ravel()))
 
 
 def test_the_distance_is_that_of_all_pixels_and_the_price_is_added():
     S, price = noise((2, 8, 9, 3)), noise((2, 8, 9), 1)
-    Q, P = patchmatch.sources(S, 3, price), patchmatch.cut(noise((8, 9, 3), 2), 3)
+    Q, P = patchmatch.make_sources(S, 3, price), patchmatch.cut_patches(noise((8, 9, 3), 2), 3)
     at = np.zeros((6, 7, 3), int)
     at[..., 0], at[..., 1], at[..., 2] = 1, 3, 2
-    expected = ((P[4, 5] - patchmatch.cut(S[1], 3)[3, 2]) ** 2).sum() + price[1, 3:6, 2:5].sum()
+    expected = ((P[4, 5] - patchmatch.cut_patches(S[1], 3)[3, 2]) ** 2).sum() + price[1, 3:6, 2:5].sum()
     assert patchmatch.distance(P, Q, at)[4, 5] == pytest.approx(expected, rel=1e-5)
 
 
 def test_patchmatch_comes_to_what_an_exhaustive_search_finds():
     T, S = noise((14, 15, 1)), noise((2, 16, 17, 1), 3)
     S[1, 3:13, 4:14] = T[2:12, 1:11]  # a part of T is to be found again
-    P, Q = patchmatch.cut(T, 5), patchmatch.sources(S, 5)
+    P, Q = patchmatch.cut_patches(T, 5), patchmatch.make_sources(S, 5)
     best = ((P[:, :, None] - Q.rows) ** 2).sum(axis=-1).min(axis=-1)
     steps = patchmatch.search_steps(
-        P, Q, patchmatch.started(P, Q, patchmatch.identity(10, 11)), radius=16, rng=np.random.default_rng(0)
+        P,
+        Q,
+        patchmatch.start_field(P, Q, patchmatch.identity_field(10, 11)),
+        radius=16,
+        rng=np.random.default_rng(0),
     )
     found = [next(steps) for _ in range(12)]
     ratios = [float((field.d.mean()) / best.mean()) for field in found]
@@ -76,31 +80,35 @@ def test_patchmatch_comes_to_what_an_exhaustive_search_finds():
 
 
 def test_a_field_of_a_finer_scale_leads_as_far_in_the_same_direction():
-    at = patchmatch.identity(6, 8, 1) + np.array([0, 1, -2])
-    fine = patchmatch.scaled(at, (12, 16))
+    at = patchmatch.identity_field(6, 8, 1) + np.array([0, 1, -2])
+    fine = patchmatch.upscale_field(at, (12, 16))
     assert np.all(fine[..., 0] == 1)
-    assert np.array_equal(fine[..., 1:], patchmatch.identity(12, 16)[..., 1:] + np.array([2, -4]))
+    assert np.array_equal(fine[..., 1:], patchmatch.identity_field(12, 16)[..., 1:] + np.array([2, -4]))
 
 
 def test_votes_of_a_picture_that_matches_itself_are_that_picture_both_ways():
     S = noise((1, 10, 11, 3))
-    P, Q = patchmatch.cut(S[0], 3), patchmatch.sources(S, 3)
-    field = patchmatch.started(P, Q, patchmatch.identity(8, 9))
+    P, Q = patchmatch.cut_patches(S[0], 3), patchmatch.make_sources(S, 3)
+    field = patchmatch.start_field(P, Q, patchmatch.identity_field(8, 9))
     both = bidirectional.Matches(field, (field,))
     w = noise((1, 8, 9), 4)
     assert bidirectional.similarity(w, both) == 0
-    assert np.allclose(bidirectional.voted(S, w, both, 3), S[0], atol=1e-6)
+    assert np.allclose(bidirectional.vote(S, w, both, 3), S[0], atol=1e-6)
 
 
 def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_coherence():
     S = np.zeros((1, 16, 16, 1), np.float32)
     S[0, 5:9, 5:9] = 1
     T = np.zeros((16, 16, 1), np.float32)
-    knobs, at, rng = bidirectional.Search(5, 4, 16), patchmatch.identity(12, 12), np.random.default_rng(0)
+    knobs, at, rng = (
+        bidirectional.Search(5, 4, 16),
+        patchmatch.identity_field(12, 12),
+        np.random.default_rng(0),
+    )
     free, w = np.zeros((1, 16, 16), np.float32), np.ones((1, 12, 12), np.float32)
-    lacking = bidirectional.searched(T, S, free, (at, (at,)), knobs, rng)
+    lacking = bidirectional.search(T, S, free, (at, (at,)), knobs, rng)
     assert lacking.coherence.d.max() == 0 and lacking.completeness[0].d.max() > 1
-    alien = bidirectional.searched(S[0], T[None], free, (at, (at,)), knobs, rng)
+    alien = bidirectional.search(S[0], T[None], free, (at, (at,)), knobs, rng)
     assert alien.coherence.d.max() > 1 and alien.completeness[0].d.max() == 0
     assert bidirectional.similarity(w, lacking) > 0 and bidirectional.similarity(0 * w, lacking) == 0
 
@@ -110,9 +118,9 @@ def test_what_is_missing_counts_against_completeness_and_what_is_alien_against_c
 def test_a_value_becomes_radiance_and_a_value_again(t, full):
     v = np.linspace(0, 1, 11, dtype=np.float32)
     wells = np.float32([full])
-    assert np.allclose(ldr_values.exposed(ldr_values.radiance(v, t, wells), t, wells), v, atol=1e-5)
-    boosted = ldr_values.exposed(ldr_values.radiance(v, t, wells), 4 * t, wells)
-    assert np.allclose(ldr_values.boosted(v, 4), boosted, atol=1e-5)
+    assert np.allclose(ldr_values.expose(ldr_values.radiance(v, t, wells), t, wells), v, atol=1e-5)
+    boosted = ldr_values.expose(ldr_values.radiance(v, t, wells), 4 * t, wells)
+    assert np.allclose(ldr_values.boost(v, 4), boosted, atol=1e-5)
 
 
 def test_values_of_photographs_agree_with_merging_one_alone(walk):
@@ -129,7 +137,9 @@ def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
     seen = ldr_values.as_values(walk.bracket.images, walk.bracket.times, G)
     unit = np.exp(G[-1])  # of g over the truth's, in which exposure 1 fills a pixel
     for k in range(3):
-        least, most = ldr_values.allowed(seen.v[k], seen.noise[k], seen.clipped[k], seen.t[k], seen.full)
+        least, most = ldr_values.consistent_range(
+            seen.v[k], seen.noise[k], seen.clipped[k], seen.t[k], seen.full
+        )
         truth = unit * walk.moments[k]
         assert np.mean((truth >= 0.98 * least) & (truth <= 1.02 * most)) > 0.98
 
@@ -137,7 +147,7 @@ def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
 def test_a_pixel_clipped_in_a_longer_exposure_cannot_be_a_source_for_a_shorter_one(walk):
     scene = patches.as_scene(walk.bracket.images, walk.bracket.times, G, None, (0.05, 0.2), (0.85, 0.95))
     for k in range(3):
-        _, price = synthesis.sources(k, scene)
+        _, price = synthesis.boost_photographs(k, scene)
         barred = np.isinf(price)
         assert not barred[: k + 1].any()
         assert np.array_equal(barred[k + 1 :], scene.clipped[k + 1 :].any(axis=-1))

@@ -24,7 +24,7 @@ def test_each_pixel_obeys_the_rule_of_its_neighbourhood():
     B, D = np.full((15, 15), 0.5), np.full((15, 15), 0.7)
     full = np.zeros((15, 15), bool)
     full[4:11, 4:11] = True
-    E, case = splitter.joined(B, D, full)
+    E, case = splitter.join_sensors(B, D, full)
     assert case[0, 0] == 1 and E[0, 0] == 0.5
     assert case[3, 7] == 2 and E[3, 7] == pytest.approx(0.6 * 0.5 + 0.4 * 0.7)  # two rows of five are full
     assert case[4, 7] == 3 and E[4, 7] == pytest.approx(0.4 * 0.5 + 0.6 * 0.7)  # B is predicted, 0.5
@@ -35,7 +35,7 @@ def test_a_full_pixel_is_predicted_by_the_ratio_that_holds_around_it():
     D = np.linspace(1, 2, 100).reshape(10, 10)
     full = np.zeros((10, 10), bool)
     full[5, 5] = True
-    assert splitter.predicted(1.1 * D, D, full)[5, 5] == pytest.approx(1.1 * D[5, 5])
+    assert splitter.predict_full(1.1 * D, D, full)[5, 5] == pytest.approx(1.1 * D[5, 5])
 
 
 def test_a_ramp_over_six_decades_comes_back_within_noise_and_rises():

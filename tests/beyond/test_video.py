@@ -31,7 +31,7 @@ def film():
     t = middle * np.where(np.arange(count) % 2, 1 / 4, 4)
     rng, frames, truth = np.random.default_rng(0), [], []
     for j in range(count):
-        seen, _ = movers.moment(place.radiance, movers.Figure(place.mover, place.mask), at[j])
+        seen, _ = movers.compose_moment(place.radiance, movers.Figure(place.mover, place.mask), at[j])
         truth.append(camera.views(seen, pan)[j])
         shot = camera.shoot(truth[-1], t[j : j + 1], camera.Camera(full_well=20000, read_noise=5), rng=rng)
         frames.append(shot.images[0])
@@ -55,15 +55,18 @@ def test_the_flow_of_a_moved_picture_is_its_move_and_brings_it_back(move):
     u = flow.tvl1(a, b)
     inside = np.s_[8:-8, 8:-8]
     assert np.abs(u[:, *inside] - np.array(move).reshape(2, 1, 1)).max() < 0.3
-    assert np.abs(flow.warped(b, u) - a)[inside].max() < 0.02
-    assert not flow.inside(np.full((2, 48, 64), 50.0)).any() and flow.inside(np.zeros((2, 48, 64))).all()
+    assert np.abs(flow.warp(b, u) - a)[inside].max() < 0.02
+    assert (
+        not flow.lands_inside(np.full((2, 48, 64), 50.0)).any()
+        and flow.lands_inside(np.zeros((2, 48, 64))).all()
+    )
 
 
 def test_half_of_a_flow_meets_in_the_middle():
     a, b = smooth(), np.roll(smooth(), 4, axis=1)
     middle = np.roll(a, 2, axis=1)
     there, back = (
-        flow.warped(one, half) for one, half in zip((a, b), flow.halves(flow.tvl1(a, b)), strict=True)
+        flow.warp(one, half) for one, half in zip((a, b), flow.halve_flow(flow.tvl1(a, b)), strict=True)
     )
     inside = np.s_[8:-8, 10:-10]
     assert np.abs(there - middle)[inside].max() < 0.02 and np.abs(back - middle)[inside].max() < 0.02
@@ -73,7 +76,7 @@ def test_a_pixel_is_warped_as_a_line_between_pixels():
     f = np.float32([[0, 1, 4], [0, 1, 4]])
     u = np.zeros((2, 2, 3), np.float32)
     u[1] = 0.5
-    assert flow.warped(f, u).tolist() == [[0.5, 2.5, 4], [0.5, 2.5, 4]]
+    assert flow.warp(f, u).tolist() == [[0.5, 2.5, 4], [0.5, 2.5, 4]]
 
 
 def test_consistency_is_one_for_equals_and_nothing_from_sixteen_levels_on():
@@ -85,7 +88,7 @@ def test_consistency_is_one_for_equals_and_nothing_from_sixteen_levels_on():
 def test_windows_hold_the_neighbours_of_each_item():
     for count in range(6):
         for span in range(4):
-            found = list(neighbours.windows(range(count), span))
+            found = list(neighbours.slide_windows(range(count), span))
             assert [around[place] for place, around in found] == list(range(count))
             for i, (_, around) in enumerate(found):
                 assert list(around) == list(range(max(0, i - span), min(count, i + span + 1)))

@@ -62,9 +62,9 @@ def test_every_name_of_the_dial_leads_to_its_own_true_time():
 
 
 def test_a_filter_of_density_0_3_takes_a_stop_and_1000_times_takes_ten():
-    assert exposure.passes(0.3) == pytest.approx(0.5, abs=0.002)
-    assert exposure.passes(exposure.density(10)) == pytest.approx(1 / 1024)
-    assert exposure.stops(1, exposure.passes(exposure.density(3))) == pytest.approx(3)
+    assert exposure.transmittance(0.3) == pytest.approx(0.5, abs=0.002)
+    assert exposure.transmittance(exposure.density(10)) == pytest.approx(1 / 1024)
+    assert exposure.stops(1, exposure.transmittance(exposure.density(3))) == pytest.approx(3)
 
 
 def test_a_sunlit_white_wall_fills_the_levels_near_the_sunny_sixteen_rule():

@@ -28,7 +28,7 @@ def E(waves):
 MOVES = {
     "a fraction of a pixel": [[0.3, -4.6], [0, 0], [7.5, 2.25]],
     "a turn": [warp.turn(SHAPE, 3, (4.5, -2)), np.eye(3), warp.turn(SHAPE, -2)],
-    "a step and a tilt": hand_motion.hand(3, SHAPE, degrees=2, zoom=0.05, tilt=0.05, rng=4),
+    "a step and a tilt": hand_motion.shake(3, SHAPE, degrees=2, zoom=0.05, tilt=0.05, rng=4),
 }
 
 
@@ -36,7 +36,7 @@ MOVES = {
 def test_a_moved_camera_sees_the_scene_between_its_pixels(waves, E, name):
     moves = MOVES[name]
     seen = hand_motion.views(E, moves)
-    own = hand_motion.frames(moves, SHAPE)
+    own = hand_motion.frame_homographies(moves, SHAPE)
     y, x = np.indices(seen[0].shape)
     places = np.stack([x.ravel(), y.ravel()], axis=-1)
     first = best_corner(waves, seen[1])
@@ -66,7 +66,7 @@ def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_
     room = scenes.room((120, 170))
     moves = [warp.turn(room.shape, 2.5, (3, 5)), np.eye(3)]
     taken = camera.shoot(room, [1e-3, 1.001e-3], camera.Camera(response="linear", bits=16), offsets=moves)
-    own = hand_motion.frames(moves, room.shape)
+    own = hand_motion.frame_homographies(moves, room.shape)
     rows, columns = warp.inside(own, taken.images.shape[1:3])
     still = taken.images[1][rows, columns].astype(float)
     first = warp.as_moves([[rows.start, columns.start]])[0]
@@ -76,8 +76,8 @@ def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_
 
 
 def test_the_hand_is_seeded_and_stays_within_what_was_asked_for():
-    moves = hand_motion.hand(50, SHAPE, radius=5, degrees=2, zoom=0.1, rng=1)
-    assert np.array_equal(moves, hand_motion.hand(50, SHAPE, radius=5, degrees=2, zoom=0.1, rng=1))
+    moves = hand_motion.shake(50, SHAPE, radius=5, degrees=2, zoom=0.1, rng=1)
+    assert np.array_equal(moves, hand_motion.shake(50, SHAPE, radius=5, degrees=2, zoom=0.1, rng=1))
     assert np.array_equal(moves[25], np.eye(3))
     middle = (np.array(SHAPE[::-1]) - 1) / 2
     assert np.abs(warp.apply(moves, [middle])[:, 0] - middle).max() <= 5
@@ -128,7 +128,7 @@ def test_of_shifted_pictures_the_rectangle_is_the_crop(offsets):
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=25)
 def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
-    moves = hand_motion.hand(3, SHAPE, radius=9, degrees=5, zoom=0.05, tilt=0.03, rng=seed)
+    moves = hand_motion.shake(3, SHAPE, radius=9, degrees=5, zoom=0.05, tilt=0.03, rng=seed)
     rows, columns = warp.inside(moves, SHAPE)
 
     def beyond(grow):
@@ -174,4 +174,4 @@ def test_moves_that_mean_nothing_are_refused(moves, said):
 @pytest.mark.parametrize("knobs", [dict(count=0), dict(radius=-1), dict(degrees=np.nan), dict(tilt=0.5)])
 def test_a_hand_that_means_nothing_is_refused(knobs):
     with pytest.raises(ValueError, match="expected at least one frame and motion"):
-        hand_motion.hand(**{"count": 3, "shape": SHAPE} | knobs)
+        hand_motion.shake(**{"count": 3, "shape": SHAPE} | knobs)

@@ -12,7 +12,7 @@ TIMES = [0.125, 0.5, 2.0]
 
 
 def test_a_moment_is_light_before_what_the_mask_leaves():
-    E, mask = movers.moment(WALL, BALL, (3, -10))
+    E, mask = movers.compose_moment(WALL, BALL, (3, -10))
     assert np.array_equal(E[mask == 0], WALL[mask == 0]) and np.allclose(
         E[mask == 1], shifted(BALL.light)[mask == 1]
     )
@@ -33,7 +33,7 @@ def test_a_ball_has_the_area_of_its_disc_and_its_radiance_at_the_brightest():
 
 def test_a_figure_that_walks_out_of_the_frame_is_gone_and_does_not_come_back():
     for at in [(0, 200), (-90, 0), (39, 59), (-40, -60)]:
-        E, mask = movers.moment(WALL, BALL, at)
+        E, mask = movers.compose_moment(WALL, BALL, at)
         assert np.array_equal(E[mask == 0], WALL[mask == 0]) and mask.sum() < BALL.mask.sum() / 4
 
 
@@ -63,7 +63,7 @@ def test_a_hand_that_shakes_moves_scene_and_figure_alike():
     offsets = np.array([[2, 0], [0, 0], [-3, 5]])
     wall = np.random.default_rng(1).random((40, 60, 3), np.float32)
     taken = movers.shoot(wall, BALL, np.zeros((3, 2), int), TIMES, offsets=offsets)
-    E, _ = movers.moment(wall, BALL, (0, 0))
+    E, _ = movers.compose_moment(wall, BALL, (0, 0))
     for seen, view in zip(taken.moments, camera.views(E, offsets), strict=True):
         assert np.array_equal(seen, view)
     assert np.array_equal(taken.still, camera.views(wall, offsets)[1])
@@ -71,7 +71,7 @@ def test_a_hand_that_shakes_moves_scene_and_figure_alike():
 
 def test_the_visitor_of_an_embedded_place_is_a_figure():
     place = scenes.layers("street", (64, 96))
-    E, _ = movers.moment(place.radiance, movers.Figure(place.mover, place.mask), (0, 7))
+    E, _ = movers.compose_moment(place.radiance, movers.Figure(place.mover, place.mask), (0, 7))
     assert np.allclose(E, scenes.compose(place, (0, 7)))
 
 

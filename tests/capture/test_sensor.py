@@ -42,7 +42,9 @@ def test_the_range_of_a_sensor_is_its_well_over_its_noise():
 def test_a_smaller_gain_digs_deeper_into_the_dark_until_it_fills_the_converter_first():
     high, base, low = (ranges.sensor_range(Sensor(gain=K)).stops for K in (40, 5, 1))
     assert high < base and low < base
-    assert sensor.fills(Sensor(gain=1)) == 4095 - 64 < 20_000 == sensor.fills(Sensor(gain=5))
+    assert (
+        sensor.full_electrons(Sensor(gain=1)) == 4095 - 64 < 20_000 == sensor.full_electrons(Sensor(gain=5))
+    )
 
 
 # Levels
@@ -97,7 +99,7 @@ def test_a_longer_exposure_holds_the_same_range_further_down():
     L = np.geomspace(1e-4, 1e4, 8001)
     ends = []
     for time in (0.01, 0.16):
-        kept = L[~(held := ranges.held(L, time, Sensor())).full & ~held.noise]
+        kept = L[~(held := ranges.expose_levels(L, time, Sensor())).full & ~held.noise]
         ends.append((kept[0], kept[-1]))
     (low_1, high_1), (low_2, high_2) = ends
     assert high_1 / high_2 == pytest.approx(16, rel=0.01) and low_1 / low_2 == pytest.approx(16, rel=0.01)
@@ -106,7 +108,7 @@ def test_a_longer_exposure_holds_the_same_range_further_down():
 def test_high_exposure_loses_the_highlights_and_low_exposure_the_shadows():
     L = np.geomspace(0.01, 10, 301)
     coarse = Sensor(bits=3, gain=20_000 / 7, black=0)  # eight levels, as in the overview's figures
-    long, short = ranges.held(L, 1.0, coarse), ranges.held(L, 0.1, coarse)
+    long, short = ranges.expose_levels(L, 1.0, coarse), ranges.expose_levels(L, 0.1, coarse)
     assert long.full.mean() > 0.3 and not short.full[:-1].any()
     assert short.noise.mean() > 2 * long.noise.mean()
     fine, wide = (np.flatnonzero(np.diff(held.Z))[:3] for held in (long, short))
@@ -182,7 +184,7 @@ def test_flat_frames_give_gain_and_read_noise_to_three_percent(one, seed):
     assert found.gain == pytest.approx(one.gain, rel=0.03)
     assert found.read_noise == pytest.approx(one.read_noise, rel=0.03)
     assert found.black == pytest.approx(one.black, abs=0.1)
-    assert found.full_well == pytest.approx(sensor.fills(one), rel=0.03)
+    assert found.full_well == pytest.approx(sensor.full_electrons(one), rel=0.03)
 
 
 def test_dust_and_vignetting_do_not_disturb_the_calibration():
@@ -249,8 +251,8 @@ def test_figures_that_mean_nothing_are_refused():
         lambda: ranges.dynamic_range(0.1, 1),
         lambda: ranges.dynamic_range(1, 0),
         lambda: ranges.levels_per_stop(0),
-        lambda: ranges.held([-1.0], 1.0, Sensor()),
-        lambda: ranges.held([1.0], 0.0, Sensor()),
+        lambda: ranges.expose_levels([-1.0], 1.0, Sensor()),
+        lambda: ranges.expose_levels([1.0], 0.0, Sensor()),
         lambda: sensor.raw(np.ones((4, 4)), -1.0),
         lambda: sensor.balance([1, 0, 1]),
         lambda: sensor.develop(np.ones((4, 4))),

@@ -48,7 +48,7 @@ def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
 
 def test_flare_is_the_last_stage_before_they_are_compared():
     room = scenes.room(SHAPE)
-    veiled = lens_flare.veil(room, Spread(0.1, 2.5))
+    veiled = lens_flare.add_glare(room, Spread(0.1, 2.5))
     times = 0.9 / veiled.max() * 4.0 ** np.arange(9)
     taken = camera.shoot(veiled, times, camera.Camera(full_well=50_000), rng=1)
     states = list(pipeline.assemble_steps(taken, align="none", flare="veil"))

@@ -20,7 +20,7 @@ def room():
 def test_a_point_of_light_becomes_the_point_spread():
     E = np.zeros((31, 41), np.float32)
     E[10, 12] = 1
-    seen = lens.veil(E, Spread(0.1, 2.5, 2.0))
+    seen = lens.add_glare(E, Spread(0.1, 2.5, 2.0))
     y, x = np.indices(E.shape)
     r = np.hypot(y - 10, x - 12)
     K = (1 + (r / 2) ** 2) ** -1.25
@@ -32,25 +32,25 @@ def test_a_point_of_light_becomes_the_point_spread():
 def test_no_light_is_made_and_what_stays_in_the_frame_is_what_was_there():
     E = np.zeros((81, 81), np.float32)
     E[40, 40] = 5
-    seen = lens.veil(E, Spread(0.2, 3.0))
+    seen = lens.add_glare(E, Spread(0.2, 3.0))
     assert 0.95 * 5 < seen.sum(dtype=float) <= 5.0001 and np.all(seen >= 0)
 
 
 def test_veils_add_and_scale_as_light_does():
     rng = np.random.default_rng(1)
     one, two = rng.random((2, 20, 30, 3)).astype(np.float32)
-    both = lens.veil(one + 3 * two)
-    assert np.allclose(both, lens.veil(one) + 3 * lens.veil(two), rtol=1e-4, atol=1e-5)
+    both = lens.add_glare(one + 3 * two)
+    assert np.allclose(both, lens.add_glare(one) + 3 * lens.add_glare(two), rtol=1e-4, atol=1e-5)
 
 
 def test_a_clear_lens_changes_nothing(room):
-    assert np.array_equal(lens.veil(room, Spread(0.0)), room)
+    assert np.array_equal(lens.add_glare(room, Spread(0.0)), room)
 
 
 def test_a_reflection_lies_across_the_middle_as_a_disc_with_its_share_of_light():
     E = np.zeros((121, 161), np.float32)
     E[30, 50] = 1e6
-    disc = lens.reflection(E, place=-0.5, radius=10, share=1e-3)
+    disc = lens.reflect(E, place=-0.5, radius=10, share=1e-3)
     y, x = np.nonzero(disc > disc.max() / 2)
     assert (y.mean(), x.mean()) == pytest.approx((60 + 15, 80 + 15), abs=0.6)
     assert len(y) == pytest.approx(np.pi * (0.5 * 10) ** 2, rel=0.15)  # half as large, as all of its picture
@@ -61,7 +61,7 @@ def test_a_reflection_lies_across_the_middle_as_a_disc_with_its_share_of_light()
 @pytest.mark.parametrize("spread", [Spread(1.0), Spread(-0.1), Spread(0.1, 0.0), Spread(0.1, 2.0, -1.0)])
 def test_a_lens_without_a_meaning_is_refused(spread):
     with pytest.raises(ValueError, match="share"):
-        lens.veil(np.ones((4, 4)), spread)
+        lens.add_glare(np.ones((4, 4)), spread)
     with pytest.raises(ValueError, match="share"):
         flare.remove(np.ones((4, 4)), spread=spread)
 
@@ -69,7 +69,7 @@ def test_a_lens_without_a_meaning_is_refused(spread):
 @pytest.mark.parametrize("wrong", [{"place": 0}, {"radius": 0}, {"share": 1}])
 def test_a_reflection_without_a_meaning_is_refused(wrong):
     with pytest.raises(ValueError, match="expected a place"):
-        lens.reflection(np.ones((4, 4)), **wrong)
+        lens.reflect(np.ones((4, 4)), **wrong)
 
 
 # Its removal
@@ -77,7 +77,7 @@ def test_a_reflection_without_a_meaning_is_refused(wrong):
 
 @pytest.mark.parametrize("power", [2.0, 2.5, 3.0])
 def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
-    F = lens.veil(room, Spread(0.1, power))
+    F = lens.add_glare(room, Spread(0.1, power))
     found = flare.remove(F)
     affected = (1 - 0.9 * room / F).max(axis=-1) > 0.05
     before, after = (np.abs(one / room - 1).max(axis=-1)[affected] for one in (F, found.E))
@@ -87,7 +87,7 @@ def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
 
 def test_a_lens_that_was_measured_is_undone_to_a_per_mille(room):
     spread = Spread(0.08, 2.25)
-    F = lens.veil(room, spread)
+    F = lens.add_glare(room, spread)
     found = flare.remove(F, spread=spread, part=1e-6)
     assert np.quantile(np.abs(found.E / room - 1), 0.99) < 1e-3
 
@@ -101,13 +101,13 @@ def test_a_scene_through_a_clear_lens_is_left_as_it_is(name):
 
 
 def test_the_rounds_come_down_to_the_share(room):
-    F = lens.veil(room, Spread(0.1, 2.0))
+    F = lens.add_glare(room, Spread(0.1, 2.0))
     shares = [state.share for state in flare.remove_steps(F, 2.0)]
     assert abs(shares[-1] - 0.1) < abs(shares[0] - 0.1) and shares[-1] == pytest.approx(0.1, rel=0.03)
 
 
 def test_outside_the_region_the_map_stays_bit_for_bit(room):
-    F = lens.veil(room, Spread(0.1, 3.0))
+    F = lens.add_glare(room, Spread(0.1, 3.0))
     found = flare.remove(F, part=0.2)
     assert 0 < found.region.mean() < 0.9
     assert np.array_equal(found.E[~found.region], F[~found.region])
@@ -116,13 +116,13 @@ def test_outside_the_region_the_map_stays_bit_for_bit(room):
 
 
 def test_the_unit_of_light_does_not_matter(room):
-    F = lens.veil(room, Spread(0.1, 2.5))
+    F = lens.add_glare(room, Spread(0.1, 2.5))
     one, other = flare.remove(F), flare.remove(F * np.float32(1024))
     assert one.spread.power == other.spread.power and np.allclose(other.E, 1024 * one.E, rtol=1e-3)
 
 
 def test_gray_maps_and_maps_without_light_are_maps(room):
-    gray = flare.remove(lens.veil(room[..., 1], Spread(0.1, 2.5)))
+    gray = flare.remove(lens.add_glare(room[..., 1], Spread(0.1, 2.5)))
     assert gray.E.shape == room.shape[:2] and gray.spread.power == 2.5
     dark = flare.remove(np.zeros((12, 14)))
     assert not dark.E.any() and dark.spread.share == 0

@@ -93,7 +93,7 @@ def test_full_pixels_are_orange_lost_ones_blue_and_the_rest_as_it_was():
 
 
 def test_a_window_says_how_many_pixels_are_held():
-    held = ranges.held(L, 1.0, sensor.Sensor())
+    held = ranges.expose_levels(L, 1.0, sensor.Sensor())
     ax = sensors.window(L, held)
     said = [text.get_text() for text in ax.get_legend().get_texts()]
     assert said[1] == f"held: {(~held.full & ~held.noise).mean():.0%}" and "cd/m²" in ax.get_xlabel()
@@ -101,7 +101,7 @@ def test_a_window_says_how_many_pixels_are_held():
 
 def test_a_staircase_has_the_levels_of_the_converter():
     few = sensor.Sensor(bits=3, gain=20_000 / 7, black=0)
-    ax = sensors.staircase(L, ranges.held(L, 1.0, few))
+    ax = sensors.staircase(L, ranges.expose_levels(L, 1.0, few))
     assert np.array_equal(np.unique(ax.lines[0].get_ydata()), np.arange(8))
     assert [text.get_text() for text in ax.get_legend().get_texts()] == ["lost in noise", "full"]
 
@@ -132,7 +132,7 @@ def test_a_titled_picture_keeps_its_proportions():
 
 
 def test_what_does_not_fit_together_is_refused():
-    held = ranges.held(L, 1.0, sensor.Sensor())
+    held = ranges.expose_levels(L, 1.0, sensor.Sensor())
     for call in (
         lambda: sensors.marked(np.zeros((2, 3), np.uint8), np.zeros((3, 2)), np.zeros((2, 3))),
         lambda: sensors.window(L[1:], held),

@@ -60,7 +60,7 @@ def metered(
         scene.E, [time], camera.Camera(response="srgb", sensitivity=s, sensor=sensor), rng=rng
     )
     L = luminance(scene.E)
-    noise = ranges.held(L, time, sensor, sensitivity=s).noise
+    noise = ranges.expose_levels(L, time, sensor, sensitivity=s).noise
     off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
     asked = metering.weights(photograph(coarse, EV), mode, at=at)
     picture = taken.images[0]
