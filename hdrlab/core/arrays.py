@@ -90,12 +90,9 @@ def _finite(array: Array, what: str) -> NDArray[np.float32]:
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
         array = array.astype(np.float32, copy=False)
     if not (array.min() >= 0 and array.max() < np.inf):  # a NaN makes both comparisons false
-        nan, inf = np.count_nonzero(np.isnan(array)), np.count_nonzero(np.isinf(array))
-        negative = np.count_nonzero(array < 0)
-        raise ValueError(
-            f"expected finite {what} that is not negative, got {nan} NaN, {inf} infinite "
-            f"and {negative} negative values in shape {array.shape}"
-        )
+        wrong = map(np.count_nonzero, (np.isnan(array), np.isinf(array), array < 0))
+        counts = "{} NaN, {} infinite and {} negative values".format(*wrong)
+        raise ValueError(f"expected finite {what} that is not negative, got {counts} in shape {array.shape}")
     return array
 
 

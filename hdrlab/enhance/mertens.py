@@ -190,5 +190,5 @@ def fuse(
     np.float32(0.43)
     """
     steps = fuse_steps(images, contrast=contrast, saturation=saturation, exposedness=exposedness)
-    R = pyramid.collapsed(last(steps).blended)
+    R = pyramid.collapse(last(steps).blended)
     return R[0] if len(R) == 1 else np.moveaxis(R, 0, -1).copy()

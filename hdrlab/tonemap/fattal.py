@@ -17,25 +17,21 @@ of them is shown badly.
 """
 
 from collections.abc import Iterator
-from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import poisson, pyramid
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bands import banded
-from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.core.steps import last
-
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32
 
 LAWS = ("exposure",)
 SATURATION = 0.6  # gradients of luminance were compressed, those of colour were not [Fattal02]
-SMALLEST = 32  # pixels: the shorter side of the coarsest level is at least this
-DARK = 1e-3  # a pixel without light is taken to be this much darker than white, or as dark as the darkest
-TINY = float(np.finfo(np.float32).tiny)
+# pixels: the shorter side of the coarsest level is at least this
+SMALLEST = 32
+# a pixel without light is taken to be this much darker than white, or as dark as the darkest
+DARK = 1e-3
 
 
 class Level(NamedTuple):
@@ -51,94 +47,91 @@ class Level(NamedTuple):
     """
 
     k: int
-    lL: Float
-    slope: Float
-    phi: Float
-    Phi: Float
+    lL: F32
+    slope: F32
+    phi: F32
+    Phi: F32
 
 
-def log_luminance(L: Float) -> Float:
+def find_range(values: F32, black: float = 1e-4, white: float = 1e-4) -> tuple[float, float]:
+    """Return the values that these fractions of the pixels lie below and above, at least one pixel each."""
+    values = np.sort(values[:: 1 + values.size // 2**18])  # of a large picture, every second, third, ...
+    low, high = (min(int(np.ceil(cut * values.size)), (values.size - 1) // 2) for cut in (black, white))
+    return float(values[low]), float(values[-1 - high])
+
+
+def log_luminance(L: F32) -> F32:
     """Return lL = ln(L / Lwhite), Lwhite the brightest L but for 0.01 % of the pixels, so its unit cancels.
 
     Pixels above it are cut, as the display would cut them; so are the darkest, and with them the zeros.
     """
-    white = robust_maximum(L)
-    black = min(robust_minimum(L), DARK * white)
-    white = max(white, TINY)
-    floor, scale = np.float32(max(black / white, TINY)), np.float32(1 / white)
-    return banded(lambda L: np.log(np.maximum(np.minimum(L, np.float32(white)) * scale, floor)), L)
+    black, white = find_range(L[L > 0])
+    floor = max(min(black / white, DARK), np.finfo(np.float32).tiny)
+    return np.log(np.clip(L / np.float32(white), np.float32(floor), 1))
 
 
-def slope(lL: Float, k: int = 0) -> Float:
+def slope(lL: F32, k: int = 0) -> F32:
     """Return |grad lL_k|, by central differences / 2^(k+1) [Fattal02].
 
     A step at level k is 2^k pixels of the picture, and a central difference takes two.
     """
-    around = np.pad(lL, 1, mode="symmetric")
-    dy, dx = around[2:, 1:-1] - around[:-2, 1:-1], around[1:-1, 2:] - around[1:-1, :-2]
+    l = np.pad(lL, 1, mode="symmetric")  # noqa: E741
+    dy, dx = l[2:, 1:-1] - l[:-2, 1:-1], l[1:-1, 2:] - l[1:-1, :-2]
     return np.sqrt(dy * dy + dx * dx) * np.float32(0.5 ** (k + 1))
 
 
-def attenuation(
-    slope: Float, mean: float, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
-) -> Float:
+def attenuation(slope: F32, mean: float, *, alpha: float, beta: float, noise: float) -> F32:
     """Return phi = a / slope (slope / a)^beta, a = alpha mean [Fattal02; Battiato08 eq. 1.41].
 
     The mean is that of the level's slopes. Where the slope goes to zero the formula goes to infinity, and
     would lift the noise of an even sky: below `noise` means it stays what it is there.
     """
-    if mean == 0:
-        return np.ones_like(slope)
-    steep = np.maximum(slope, np.float32(noise * mean))
-    return np.power(steep / np.float32(alpha * mean), np.float32(beta - 1))
+    return (np.maximum(slope / (mean or 1), noise) / alpha) ** (beta - 1)
 
 
 def attenuation_steps(
-    lL: Float, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
+    lL: F32, *, alpha: float = 0.1, beta: float = 0.9, noise: float = 0.01
 ) -> Iterator[Level]:
     """Yield the Level of k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k [Battiato08 eq. 1.42].
 
     It is enlarged by linear interpolation. The knobs are those of `attenuation`.
     """
     levels = pyramid.gaussian(lL, pyramid.depth(lL.shape, SMALLEST))
-    Phi = np.ones(pyramid.half(levels[-1].shape), np.float32)
-    while levels:
-        k, lL = len(levels) - 1, levels.pop()
-        steepness = banded(partial(slope, k=k), lL, margin=1)
-        mean = float(steepness.mean(dtype=np.float64))
-        phi = banded(partial(attenuation, mean=mean, alpha=alpha, beta=beta, noise=noise), steepness)
-        Phi = pyramid.enlarged(Phi, lL.shape, taps=pyramid.LINEAR) * phi
+    Phi = np.ones((1, 1), np.float32)
+    for k, lL in reversed(list(enumerate(levels))):
+        steepness = slope(lL, k)
+        phi = attenuation(steepness, float(steepness.mean()), alpha=alpha, beta=beta, noise=noise)
+        Phi = pyramid.interpolate(Phi, lL.shape) * phi
         yield Level(k, lL, steepness, phi, Phi)
 
 
-def attenuated(lL: Float, Phi: Float) -> Float:
+def attenuate_gradient(lL: F32, Phi: F32) -> F32:
     """Return G = Phi grad lL, by forward differences [Fattal02; Battiato08 eq. 1.38, 1.39].
 
     A step lies between two pixels, and Phi there is their mean. With that of the first pixel alone, the way
     up to a thin line would be attenuated and the way down would not: the picture would drift with every line.
     """
-    G, half = poisson.gradient(lL), np.float32(0.5)
-    G[0, :-1] *= (Phi[:-1] + Phi[1:]) * half
-    G[1, :, :-1] *= (Phi[:, :-1] + Phi[:, 1:]) * half
+    G = poisson.gradient(lL)
+    G[0, :-1] *= (Phi[:-1] + Phi[1:]) / 2
+    G[1, :, :-1] *= (Phi[:, :-1] + Phi[:, 1:]) / 2
     return G
 
 
-def divergence(lL: Float, Phi: Float) -> Float:
+def divergence(lL: F32, Phi: F32) -> F32:
     """Return div G, for `poisson.solve`: Laplacian lLd = div G [Fattal02; Battiato08 eq. 1.40]."""
-    return banded(lambda lL, Phi: poisson.divergence(attenuated(lL, Phi)), lL, Phi, margin=1)
+    return poisson.divergence(attenuate_gradient(lL, Phi))
 
 
-def display(lLd: Float, *, black: float = 0.001, white: float = 0.005) -> Float:
+def display(lLd: F32, *, black: float = 0.001, white: float = 0.005) -> F32:
     """Return Ld = (exp lLd - b) / (w - b), cut to [0, 1].
 
     A fraction `black` of the pixels has exp lLd below b, a fraction `white` above w. An even picture, where
     these are less than a factor of two apart, is not stretched over the whole display.
     """
     bright = np.exp(lLd - lLd.max())
-    top = robust_maximum(bright, cut=white)
-    low = min(robust_minimum(bright, cut=black), top / 2)
-    scale = np.float32(1 / (top - low))
-    return banded(lambda bright: np.clip((bright - np.float32(low)) * scale, 0, 1), bright)
+    low, high = find_range(bright.ravel(), black, white)
+    low = min(low, high / 2)
+    return np.clip((bright - np.float32(low)) * np.float32(1 / (high - low)), 0, 1)
 
 
 def tonemap(
@@ -149,7 +142,7 @@ def tonemap(
     noise: float = 0.01,
     black: float = 0.001,
     white: float = 0.005,
-) -> Float:
+) -> F32:
     """Return display luminance in which steep slopes of ln L are flattened, and gentle ones kept.
 
     Parameters
@@ -183,16 +176,12 @@ def tonemap(
     True
     """
     L = as_luminance(L)
-    _check(alpha, beta, noise, black, white)
-    if L.max() == 0:
-        return np.zeros_like(L)
-    lL = log_luminance(L)
-    Phi = last(attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise)).Phi
-    return display(poisson.solve(divergence(lL, Phi)), black=black, white=white)
-
-
-def _check(alpha: float, beta: float, noise: float, black: float, white: float) -> None:
     if not (0 < alpha < np.inf and 0 < beta <= 1 and 0 < noise < np.inf):
         raise ValueError(f"expected alpha > 0, 0 < beta <= 1, noise > 0, got {alpha=}, {beta=}, {noise=}")
     if not (0 <= black < 0.5 and 0 <= white < 0.5):
         raise ValueError(f"expected fractions black and white in 0 ... 0.5, got {black=}, {white=}")
+    if L.max() == 0:
+        return np.zeros_like(L)
+    lL = log_luminance(L)
+    *_, level = attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise)
+    return display(poisson.solve(divergence(lL, level.Phi)), black=black, white=white)

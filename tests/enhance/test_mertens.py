@@ -143,7 +143,7 @@ def test_every_step_adds_one_photograph_to_every_level():
         total = sum(step.weights[level] * step.details[level] for step in steps)
         assert np.allclose(steps[-1].blended[level], total, atol=1e-6)
         assert np.allclose(sum(step.weights[level] for step in steps), 1, atol=1e-5)
-    assert np.allclose(pyramid.collapsed(steps[1].details), mertens.planes(images[1]), atol=1e-5)
+    assert np.allclose(pyramid.collapse(steps[1].details), mertens.planes(images[1]), atol=1e-5)
     assert steps[0].weights[-1].shape == (2, 3)
 
 

@@ -11,7 +11,7 @@ from pairs import KINDS, MAKERS, compare
 from hdrlab import fast
 
 LESSONS = ("core", "align", "response", "calibration", "radiance", "tonemap", "enhance", "beyond", "capture")
-MODULES = sorted(info.name for info in pkgutil.iter_modules(fast.__path__))
+MODULES = sorted(i.name for i in pkgutil.iter_modules(fast.__path__) if not i.name.startswith("_"))
 
 
 def functions(module):

@@ -14,6 +14,7 @@ from scipy.sparse.linalg import spsolve
 from hdrlab.core import poisson, pyramid
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
+from hdrlab.fast import fattal as fast
 from hdrlab.io import rgbe
 from hdrlab.tonemap import fattal
 
@@ -79,16 +80,20 @@ def test_the_levels_run_from_32_pixels_to_the_picture_and_multiply():
     assert [level.k for level in levels] == [2, 1, 0] and min(levels[0].lL.shape) >= 32
     assert np.array_equal(levels[-1].lL, lL) and np.array_equal(levels[0].Phi, levels[0].phi)
     for coarse, fine in zip(levels, levels[1:], strict=False):
-        assert np.allclose(coarse.lL, pyramid.reduced(fine.lL))
+        assert np.allclose(coarse.lL, pyramid.reduce(fine.lL))
         assert np.allclose(fine.slope, fattal.slope(fine.lL, fine.k), atol=1e-6)
-        assert np.allclose(fine.phi, fattal.attenuation(fine.slope, float(fine.slope.mean())), rtol=1e-4)
+        assert np.allclose(
+            fine.phi,
+            fattal.attenuation(fine.slope, float(fine.slope.mean()), alpha=0.1, beta=0.9, noise=0.01),
+            rtol=1e-4,
+        )
         assert np.allclose(fine.Phi[::2, ::2], coarse.Phi * fine.phi[::2, ::2], rtol=1e-5)
 
 
-def test_the_divergence_in_bands_is_that_of_the_attenuated_gradient():
+def test_the_divergence_is_that_of_the_attenuated_gradient():
     lL = fattal.log_luminance(laws.scene((150, 90)))
     Phi = last(fattal.attenuation_steps(lL)).Phi
-    G = fattal.attenuated(lL, Phi)
+    G = fattal.attenuate_gradient(lL, Phi)
     assert np.allclose(G[0, :-1], (Phi[:-1] + Phi[1:]) / 2 * np.diff(lL, axis=0), atol=1e-6)
     assert np.allclose(G[1, :, :-1], (Phi[:, :-1] + Phi[:, 1:]) / 2 * np.diff(lL, axis=1), atol=1e-6)
     assert np.allclose(fattal.divergence(lL, Phi), poisson.divergence(G), atol=1e-6)
@@ -173,7 +178,7 @@ def test_twelve_megapixels_take_at_most_400_megabytes():
     """Per pixel, which is what a smaller picture can show."""
     L = laws.scene((800, 1200))
     tracemalloc.start()
-    fattal.tonemap(L)
+    fast.tonemap(L)
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
     assert peak / L.size < 400 / 12

@@ -1,0 +1,28 @@
+"""hdrlab.fast._bands: bands as the whole picture."""
+
+import numpy as np
+import pytest
+
+from hdrlab.fast import _bands as bands
+
+
+def noise(shape, seed=0):
+    """Return white noise, float32."""
+    return np.random.default_rng(seed).random(shape).astype(np.float32)
+
+
+@pytest.mark.parametrize("height", [1, 2, bands.BAND, bands.BAND + 1, 3 * bands.BAND - 1])
+def test_bands_answer_what_the_whole_picture_answers(height):
+    u = noise((height, 9))
+
+    def neighbours(u):
+        around = np.pad(u, 1, mode="symmetric")
+        return around[:-2, 1:-1] - around[2:, 1:-1]
+
+    down = bands.banded(neighbours, u, margin=1)
+    assert np.array_equal(down, neighbours(u)) and down.dtype == u.dtype
+
+
+def test_bands_take_planes_and_several_pictures():
+    u, planes = noise((70, 9)), noise((3, 70, 9), 1)
+    assert np.array_equal(bands.banded(lambda u, p: u * p.sum(axis=0), u, planes), u * planes.sum(axis=0))
