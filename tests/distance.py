@@ -1,0 +1,184 @@
+"""How far a slide is from its code: the files, and lines of code, that a function needs with all it calls.
+
+    python tests/distance.py     # prints tasks, verbs and rooms, and exits 1 where one is too large
+
+A line of code is one that is no docstring, comment or empty line. Names are followed through the imports
+inside hdrlab; what is looked up at run time is not.
+"""
+
+import ast
+import io
+import tokenize
+import tomllib
+from collections import Counter, defaultdict
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[1]
+VERBS = (
+    "align.mtb.align",
+    "align.cerman.align",
+    "response.debevec.recover",
+    "response.robertson.recover",
+    "response.mitsunaga.recover",
+    "response.grossberg.recover",
+    "response.mann.recover",
+    "radiance.merge.merge",
+    "tonemap.ward.tonemap",
+    "tonemap.chiu.tonemap",
+    "tonemap.durand.tonemap",
+    "tonemap.reinhard.tonemap",
+    "tonemap.fattal.tonemap",
+    "enhance.mertens.fuse",
+    "enhance.battiato.correct",
+)
+LESSONS = ("core", "io", "capture", "align", "response", "calibration", "radiance", "tonemap", "enhance")
+LESSONS += ("beyond", "fast", "diagnostics", "pipeline")
+# files and lines, each at most
+TASK, VERB = (3, 60), (5, 120)
+# lines
+TASKS_TOGETHER, LESSONS_TOGETHER, PACKAGE = 900, 9_000, 22_000
+
+LAYOUT = {
+    getattr(tokenize, name)
+    for name in ("COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENCODING", "ENDMARKER")
+}
+DOCUMENTED = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+
+
+def code_lines(text):
+    """Return the numbers of the lines that hold code."""
+    lines = set()
+    for token in tokenize.generate_tokens(io.StringIO(text).readline):
+        if token.type not in LAYOUT:
+            lines.update(range(token.start[0], token.end[0] + 1))
+    for node in ast.walk(ast.parse(text)):
+        if isinstance(node, DOCUMENTED) and ast.get_docstring(node) is not None:
+            lines.difference_update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
+    return lines
+
+
+class Library:
+    """The definitions, imports and code lines of every module of a package, read from the source."""
+
+    def __init__(self, sources):
+        self.definitions, self.imports, self.code = {}, {}, {}
+        for name, text in sources.items():
+            self.code[name] = code_lines(text)
+            self.definitions[name], self.imports[name] = {}, {}
+            for node in ast.parse(text).body:
+                self._enter(name, node)
+
+    def _enter(self, module, node):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            for alias in node.names:
+                self.imports[module][alias.asname or alias.name] = (node.module, alias.name)
+        elif isinstance(node, (ast.FunctionDef, ast.ClassDef)):
+            self.definitions[module][node.name] = node
+        elif isinstance(node, (ast.Assign, ast.AnnAssign)):
+            targets = node.targets if isinstance(node, ast.Assign) else [node.target]
+            for part in (part for target in targets for part in ast.walk(target)):
+                if isinstance(part, ast.Name):
+                    self.definitions[module][part.id] = node
+
+    def resolve(self, module, name):
+        """Return where a name of a module is defined: (module, name), (module, None) if a module, or None."""
+        while name not in self.definitions.get(module, {}):
+            source, name = self.imports.get(module, {}).get(name, (None, None))
+            if f"{source}.{name}" in self.definitions:
+                return f"{source}.{name}", None
+            if source not in self.definitions:
+                return None
+            module = source
+        return module, name
+
+    def needs(self, function):
+        """Return all definitions that a function needs, its own included, as a set of (module, name)."""
+        module, _, name = function.rpartition(".")
+        reached, waiting = set(), [self.resolve(module, name)]
+        assert waiting[0], f"{function} is not there"
+        while waiting:
+            place = waiting.pop()
+            if place in reached or place is None or place[1] is None:
+                continue
+            reached.add(place)
+            for node in ast.walk(self.definitions[place[0]][place[1]]):
+                if isinstance(node, ast.Name):
+                    waiting.append(self.resolve(place[0], node.id))
+                elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+                    owner = self.resolve(place[0], node.value.id)
+                    if owner and owner[1] is None:
+                        waiting.append(self.resolve(owner[0], node.attr))
+        return reached
+
+    def distance(self, function):
+        """Return how many files, and lines of code, a function needs."""
+        lines = defaultdict(set)
+        for module, name in self.needs(function):
+            node = self.definitions[module][name]
+            first = min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", []))])
+            lines[module] |= self.code[module].intersection(range(first, node.end_lineno + 1))
+        return len(lines), sum(map(len, lines.values()))
+
+    def rooms(self):
+        """Return the lines of code of each room."""
+        count = Counter()
+        for module, lines in self.code.items():
+            count[(module.split(".") + ["(top)"])[1]] += len(lines)
+        return count
+
+
+def read(package=ROOT / "hdrlab"):
+    """Return the Library of a package."""
+    sources = {}
+    for path in sorted(package.rglob("*.py")):
+        name = ".".join(path.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")
+        sources[name] = path.read_text(encoding="utf8")
+    return Library(sources)
+
+
+def tasks(package=ROOT / "hdrlab"):
+    """Return the function of each task of the plan."""
+    plan = tomllib.loads((package / "course" / "plan.toml").read_text(encoding="utf8"))
+    each = [homework for homework in plan.values() if isinstance(homework, dict)]
+    return {task["id"]: f"hdrlab.{task['function']}" for one in each for task in one.get("tasks", [])}
+
+
+def excesses(library):
+    """Yield a sentence for each task, verb or sum that is beyond its limit."""
+    far = [(name, TASK, library.distance(name)) for name in tasks().values()]
+    total = sum(lines for _, _, (_, lines) in far)
+    far += [(f"hdrlab.{verb}", VERB, library.distance(f"hdrlab.{verb}")) for verb in VERBS]
+    for name, (most_files, most_lines), (files, lines) in far:
+        if files > most_files or lines > most_lines:
+            yield f"{name}: {files} files, {lines} lines; at most {most_files} and {most_lines}"
+    rooms = library.rooms()
+    for what, lines, most in (
+        ("all tasks together", total, TASKS_TOGETHER),
+        (
+            "the lesson rooms, fast, diagnostics and pipeline",
+            sum(rooms[one] for one in LESSONS),
+            LESSONS_TOGETHER,
+        ),
+        ("hdrlab", rooms.total(), PACKAGE),
+    ):
+        if lines > most:
+            yield f"{what}: {lines:,} lines; at most {most:,}"
+
+
+def main():
+    """Print the distances and the rooms, and return 1 where a limit is exceeded."""
+    library = read()
+    print(f"{'':50}{'files':>6}{'lines':>7}")
+    for name in (*tasks().values(), *(f"hdrlab.{verb}" for verb in VERBS)):
+        print("{:50}{:6}{:7}".format(name, *library.distance(name)))
+    rooms = library.rooms()
+    for room, lines in rooms.most_common():
+        print(f"{room:56}{lines:7}")
+    print(f"{'the lesson rooms':56}{sum(rooms[one] for one in LESSONS):7}\n{'hdrlab':56}{rooms.total():7}")
+    beyond = list(excesses(library))
+    print(*beyond, sep="\n")
+    return bool(beyond)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
