@@ -18,7 +18,7 @@ The response by least squares          response.debevec.gsolve, response.debevec
 ... without a bracket                  calibration.display, calibration.motion_blur, calibration.chart
 ... of RAW: none to recover            response.linear.recover
 Which pixels to use                    core.sampling, response.selection
-The radiance map                       radiance.merge.merge, radiance.bounds, radiance.estimates
+The radiance map                       radiance.merge.merge, radiance.merge.bound
 Does the map explain its photographs?  diagnostics.consistency, diagnostics.contradictions
 Exposure ratios of a linear camera     radiance.ratios.ratio
 What moved, and what the lens did      radiance.deghosting.ghosts.remove, radiance.flare.remove

@@ -57,6 +57,6 @@ def _said(assembly: pipeline.Assembly) -> str:
             darkest, brightest = assembly.g.reshape(256, -1)[[10, 250]].mean(axis=1)
             return f"levels 10 and 250 lie {(brightest - darkest) / np.log(2):.1f} stops apart"
         case "merge":
-            return f"{np.mean(assembly.seen == 0):.2%} of the pixels measured"
+            return f"{np.mean(assembly.quality == 0):.2%} of the pixels measured"
         case _:
             return f"the frames agree to {assembly.spread:.3f} stops"

@@ -24,7 +24,7 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.radiance.deghosting import ghosts
-from hdrlab.radiance.merge import Merged, merge_seen
+from hdrlab.radiance.merge import Merged, merge_with_quality
 
 CHANGE = 0.05  # of the radiance: less than that is hardly a figure's, but the shadow's of one
 SEEDS = range(4)
@@ -50,7 +50,7 @@ class Errors(NamedTuple):
 
 def plain(taken: Bracket) -> Merged:
     """Return the plain map."""
-    return merge_seen(taken.images, taken.times, G, W)
+    return merge_with_quality(taken.images, taken.times, G, W)
 
 
 def rid(taken: Bracket, way: str) -> ghosts.Ghosts:
@@ -71,7 +71,7 @@ def errors(taken: Moving, way: str) -> Errors:
     still, moments = taken.still * scale, np.maximum(taken.moments * scale, 1e-9)
     passed = taken.region & (np.abs(np.log(moments / still)).max(axis=(0, 3)) > CHANGE)
     inside, outside = passed & (found.labels > 0), passed & (found.labels == 0)
-    known = inside & (found.seen == 0) & (merged.seen == 0)
+    known = inside & (found.quality == 0) & (merged.quality == 0)
     truth = still.copy()
     for r, j in enumerate(found.frames, start=1):
         truth[found.labels == r] = moments[j][found.labels == r]

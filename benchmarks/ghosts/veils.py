@@ -24,7 +24,7 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import Array
 from hdrlab.core.scatter import Spread
 from hdrlab.radiance import flare
-from hdrlab.radiance.merge import merge_seen
+from hdrlab.radiance.merge import merge_with_quality
 from hdrlab.scenes.places import resample
 
 LENSES = tuple(Spread(share, power) for share, power in product((0.05, 0.1), (2.0, 2.5, 3.0)))
@@ -67,8 +67,8 @@ def through(F: Array) -> tuple[Array, Array]:
     """Return a scene as ten photographs show it, in its own unit, and how each pixel is known."""
     times = 0.9 / F.max() * 4.0 ** np.arange(10)
     taken = camera.shoot(F, times, CAMERA, rng=1)
-    found = merge_seen(taken.images, taken.times, true_g("film"), weights.gaussian())
-    return found.E * np.median(F / found.E), found.seen
+    found = merge_with_quality(taken.images, taken.times, true_g("film"), weights.gaussian())
+    return found.E * np.median(F / found.E), found.quality
 
 
 def figures(what: str, work: Callable[[tuple[str, Spread]], Left]) -> Mapping[str, ArrayLike]:

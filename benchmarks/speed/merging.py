@@ -2,6 +2,7 @@
 
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
@@ -9,17 +10,17 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
+from hdrlab.fast import merge
 from hdrlab.io.response_files import write_curve
-from hdrlab.radiance.merge import merge
 
 
 def case(folder: Path, one: bool) -> Case:
     """Return the work."""
     bracket, truth, g = data.photographs(folder), data.scene(folder), data.response()
-    threads = 1 if one else None
 
     def ours() -> Array:
-        return merge(bracket.images, bracket.times, g, threads=threads)
+        with patch.object(merge, "THREADS", 1 if one else merge.THREADS):
+            return merge.merge_with_quality(bracket.images, bracket.times, g).E
 
     theirs, missing = peers.present(
         {

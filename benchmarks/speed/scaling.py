@@ -3,14 +3,16 @@
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
+from unittest.mock import patch
 
 from benchmarks import data
 from benchmarks.rows import Case, Row, Run, grows, within
 from hdrlab import pipeline
 from hdrlab.core.colour import luminance
 from hdrlab.enhance import mertens
+from hdrlab.fast import merge
 from hdrlab.pipeline import catalogue
-from hdrlab.radiance.merge import merge
 
 SIZES = {"2 MP": data.SMALL, "12 MP": data.LARGE}
 
@@ -23,7 +25,12 @@ def case(make: Callable[[Path, data.Size, bool], Run], folder: Path, one: bool) 
 def merging(folder: Path, size: data.Size, one: bool) -> Run:
     """Return the merge of seven photographs."""
     bracket, g = data.photographs(folder, size), data.response()
-    return lambda: merge(bracket.images, bracket.times, g, threads=1 if one else None)
+
+    def work() -> Any:
+        with patch.object(merge, "THREADS", 1 if one else merge.THREADS):
+            return merge.merge_with_quality(bracket.images, bracket.times, g)
+
+    return work
 
 
 def developing(folder: Path, size: data.Size, one: bool) -> Run:

@@ -87,7 +87,8 @@ def contradictions(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | No
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, scenes
+    >>> from hdrlab.capture import camera
+    >>> from hdrlab.capture.room import scenes
     >>> room = scenes.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> contradictions(taken.images, taken.times * [1, 1, 2, 1, 1]).wrong

@@ -89,7 +89,8 @@ def estimate(
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, scenes
+    >>> from hdrlab.capture import camera
+    >>> from hdrlab.capture.room import scenes
     >>> room = scenes.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> estimate(taken.images, taken.times * [1, 1, 1.1, 1, 1]).accepted

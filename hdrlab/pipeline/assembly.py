@@ -24,7 +24,7 @@ class Assembly(NamedTuple):
     offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
     g : (n,) or (n, 3), response, ln exposure of each level
     E : (h, w) or (h, w, 3) float32, radiance
-    seen : (h, w) uint8, how each pixel is known: flags of `radiance.bounds.Seen`
+    quality : (h, w) uint8, how each pixel is known: flags of `radiance.merge.Quality`
     medians : (P, C, 256), what each frame says of each level: see `diagnostics.consistency`
     notes : sentences, what to know about this map
     doubts : sentences, reasons not to trust it
@@ -38,7 +38,7 @@ class Assembly(NamedTuple):
     offsets: NDArray[np.int64]
     g: NDArray[np.float64] = None  # type: ignore[assignment]  # typed as what each stage makes of it
     E: NDArray[np.float32] = None  # type: ignore[assignment]
-    seen: NDArray[np.uint8] = None  # type: ignore[assignment]
+    quality: NDArray[np.uint8] = None  # type: ignore[assignment]
     medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()

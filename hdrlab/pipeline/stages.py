@@ -16,12 +16,13 @@ from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.diagnostics.contradictions import contradictions, doubt
+from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, Table
 from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as glare
 from hdrlab.radiance.deghosting import ghosts as moving
-from hdrlab.radiance.merge import METHODS, Merged, merge_seen
+from hdrlab.radiance.merge import METHODS, Merged
 
 STAGES = ("align", "response", "merge", "compare")
 GHOSTS = ("none", "regions", "reference")
@@ -78,7 +79,8 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, scenes
+    >>> from hdrlab.capture import camera
+    >>> from hdrlab.capture.room import scenes
     >>> photographs = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], rng=1)
     >>> assembly = assemble(photographs)
     >>> assembly.E.shape, assembly.doubts
@@ -119,8 +121,8 @@ def assemble_steps(
     images, seconds, _, valid, _ = state.bracket
     g = recovery.validated(response)(images, seconds, valid=valid)
     yield (state := state._replace(stage="response", g=g))
-    E, seen = merge_seen(images, seconds, g, w(g), method=method, valid=valid)
-    yield (state := state._replace(stage="merge", E=E, seen=seen))
+    E, quality = merge_with_quality(images, seconds, g, w(g), method=method, valid=valid)
+    yield (state := state._replace(stage="merge", E=E, quality=quality))
     if ghosts != "none":
         yield (state := unghosted(state, ghosts, w, method))
     if flare != "none":
@@ -144,13 +146,14 @@ def unghosted(state: Assembly, way: str, w: Callable[[Table], Table], method: st
         times,
         state.g,
         w(state.g),
-        merged=Merged(state.E, state.seen),
+        merged=Merged(state.E, state.quality),
         reference=len(images) // 2 if way == "reference" else None,
+        merge=merge_with_quality,
         method=method,
         valid=valid,
     )
     notes = (*state.notes, moving.note(found, names))
-    return state._replace(stage="ghosts", E=found.E, seen=found.seen, moving=found.labels, notes=notes)
+    return state._replace(stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes)
 
 
 def unveiled(state: Assembly) -> Assembly:
@@ -168,7 +171,7 @@ def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], meth
 
     def spread(times: NDArray[np.float64]) -> float:
         g = recover(images, times, valid=valid)
-        E = merge_seen(images, times, g, w(g), method=method, valid=valid).E
+        E = merge_with_quality(images, times, g, w(g), method=method, valid=valid).E
         return consistency.spread(consistency.level_medians(images, times, E, valid=valid))
 
     known = recover(images, stated, valid=valid) if response == "linear" else None

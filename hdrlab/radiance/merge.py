@@ -1,66 +1,113 @@
-"""The radiance map: a weighted mean of what the frames say of each pixel.
+"""The radiance map: the weighted mean of what the frames measure at each pixel (Debevec and Malik 1997).
 
-Z   pixel levels       (P, H, W[, 3]), n = 256 or 65536 of them
-t   exposure times     (P,) seconds; B = ln t
-g   ln f^-1            (n,) or (n, 3), ln exposure of each level
-w   weights            (n,), how far to trust a level
-E   radiance           (H, W[, 3]) float32, exposure per second: 1 brings a pixel to level n / 2 in one second
+Z      pixel levels      (P, H, W, C), n = 256 or 65536 of them
+t, B   exposure times    (P,) seconds, and ln t
+g      ln f^-1           (n,) or (n, C), ln exposure of each level; X = exp(g(Z))
+w      weights           (n,), how far to trust a level
+W      weights in use    (P, H, W, C), w(Z), or 0 where a frame measures nothing
+top    first clipped level; a level from there on says only "at least", level 0 only "at most"
+shown  (P, H, W, C) bool, False where a frame shows nothing of the scene
+E      radiance          (H, W[, C]) float32: 1 brings a pixel to level n / 2 in one second
 
-Every estimate is a quotient of two sums over the frames, sum_j a_j(Z_j) / sum_j b_j(Z_j), whose terms are
-tables over the levels: `estimates` has the formulas, `blocks` the sums.
-
-Weight and validity are two things. A weight says how much a level counts; validity says whether the pixel is
-a measurement at all. Level 0 is not, nor is a level above the cut; and a frame in which one channel of a
-pixel is clipped is left out for all three, lest the highlights take a tint, as long as another frame measures
-the pixel. What the map says where no frame does is in `bounds`.
+A frame that does not measure a pixel still bounds it: clipped in frame j, its radiance is at least
+f^-1(top) / t_j; dark in frame j, at most f^-1(1) / t_j. So a clipped sun is never darker than the sky that
+was measured beside it. `fast.merge` makes the same map by look-up tables.
 """
 
-import os
-from collections import deque
-from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from typing import Any, NamedTuple
+from enum import IntFlag
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core import weights
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_times, levels
-from hdrlab.core.bracket import short_to_long
-from hdrlab.radiance import blocks
-from hdrlab.radiance.bounds import Seen, neighbours_median, stuck
-from hdrlab.radiance.estimates import METHODS
+from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times, levels
+from hdrlab.core.types import F32, F64, Flags, Mask
+from hdrlab.core.weights import hat
+from hdrlab.radiance.stuck import repair_stuck
 
-ROWS = 16  # of a block: its planes and sums stay in the processor's cache
+# of the top level: levels above are clipped
+TOP = 0.98
+# of the largest weight: counts for nothing where there is another measurement
+FAINT = 1e-6
+
+
+class Quality(IntFlag):
+    """Pixel quality flags: MEASURED, or why not."""
+
+    MEASURED = 0
+    CLIPPED = 1  # in every frame that shows it: the shortest frame's lower bound
+    DARK = 2  # in every frame: the longest frame's upper bound; together with CLIPPED: between the two
+    STUCK = 4  # does not follow the exposure: the median of its neighbours
+    UNSEEN = 8  # no frame shows it: 0
 
 
 class Merged(NamedTuple):
-    """The radiance map (H, W[, 3]) and how each of its pixels is known (H, W), flags of `bounds.Seen`."""
+    """The radiance map (H, W[, 3]) float32, and the quality flags of its pixels (H, W) uint8."""
 
-    E: NDArray[np.float32]
-    seen: NDArray[np.uint8]
-
-
-def merge(
-    images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None, **knobs: Any
-) -> Array:
-    """Return the radiance map E alone; `merge_seen` has the parameters, and says how each pixel is known."""
-    return merge_seen(images, times, g, w, **knobs).E
+    E: F32
+    quality: Flags
 
 
-def merge_seen(
-    images: ArrayLike,
-    times: ArrayLike,
-    g: ArrayLike,
-    w: ArrayLike | None = None,
-    *,
-    method: str = "log",
-    top: float = 0.98,
-    mend: bool = True,
-    valid: ArrayLike | None = None,
-    threads: int | None = None,
-) -> Merged:
-    """Return the radiance map of a bracket, and how each of its pixels is known.
+def log_mean(W: F64, X: F64, t: F64) -> F64:
+    """Return E of ln E = sum W (ln X - ln t) / sum W [Debevec97 eq. 6]."""
+    return np.exp(np.sum(W * np.log(X / t), axis=0) / W.sum(axis=0))
+
+
+def likelihood(W: F64, X: F64, t: F64) -> F64:
+    """Return E = sum W X t / sum W t^2 [Robertson03 eq. 8]: noise of one size in every frame."""
+    return np.sum(W * X * t, axis=0) / np.sum(W * t**2, axis=0)
+
+
+def frame_mean(W: F64, X: F64, t: F64) -> F64:
+    """Return E = sum W (X / t) / sum W [Battiato08 eq. 1.20]: the mean of all radiances.
+
+    Examples
+    --------
+    >>> float(frame_mean(np.ones(2), np.array([0.25, 0.5]), np.array([1.0, 2.0])))
+    0.25
+    """
+    return np.sum(W * X / t, axis=0) / W.sum(axis=0)
+
+
+def shot_noise(W: F64, X: F64, t: F64) -> F64:
+    """Return E = sum W X / sum W t: all light over all time, best where photons are the noise."""
+    return np.sum(W * X, axis=0) / np.sum(W * t, axis=0)
+
+
+METHODS = {"log": log_mean, "likelihood": likelihood, "mean": frame_mean, "shot": shot_noise}
+
+
+def weigh(Z: Array, w: F64, top: int, shown: Mask | bool = True) -> F64:
+    """Return W: w(Z) where a frame measures a pixel, 0 elsewhere.
+
+    A frame with a clipped channel is dropped for all channels, lest highlights take a tint, as long as
+    another frame measures the pixel.
+    """
+    usable = (Z > 0) & (Z < top) & shown
+    whole = usable & np.all(Z < top, axis=-1, keepdims=True)
+    return np.where(whole.any(axis=0), whole, usable) * np.maximum(w[Z], FAINT * w.max())
+
+
+def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
+    """Return E (M,) and flags (M,) of pixels Z (P, M) that no frame measures, from the tightest bounds.
+
+    ln E >= g(top) - B_j where frame j is clipped, ln E <= g(1) - B_j where it is dark. E is the one bound, or
+    the middle of the logarithms of two, or 0. The flags are the sum of 1 where a frame is clipped and 2 where
+    one is dark, or else 8.
+    """
+    B = np.reshape(B, (-1,) + (1,) * (Z.ndim - 1))
+    lower = np.where(shown & (Z >= top), g[top] - B, -np.inf).max(axis=0)
+    upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
+    low, high = np.isfinite(lower), np.isfinite(upper)
+    lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
+    flags = Quality.CLIPPED * low + Quality.DARK * high + Quality.UNSEEN * ~(low | high)
+    return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
+
+
+def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
+    """Return E of ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j) [Debevec97 eq. 6].
+
+    Where no frame measures a pixel, E is what the tightest bounds say.
 
     Parameters
     ----------
@@ -69,24 +116,76 @@ def merge_seen(
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
-        Response, ln exposure of each level; read between its levels where n is not the images'.
+        Response, ln exposure of each level.
     w : (n,) float, optional
         Weights, the hat by default.
+
+    Returns
+    -------
+    (H, W) or (H, W, 3) float32
+        Radiance, finite and not negative.
+
+    Raises
+    ------
+    ValueError
+        For images, times and response that do not fit together.
+
+    References
+    ----------
+    Debevec and Malik, SIGGRAPH 1997, sec. 2.2.
+
+    Examples
+    --------
+    >>> images = np.array([[[40, 90]], [[80, 180]]], np.uint8)  # a linear camera, one and two seconds
+    >>> E = merge(images, [1, 2], np.log(np.maximum(np.arange(256), 0.5) / 128))
+    >>> bool(np.allclose(E, [[40 / 128, 90 / 128]]))
+    True
+    """
+    images, t = np.asarray(images), np.asarray(times, np.float64)
+    if images.dtype.kind != "u" or t.shape != images.shape[:1] or not np.all(t > 0):
+        raise ValueError(
+            f"expected photographs of {len(t)} positive times, got {images.shape} {images.dtype}"
+        )
+    n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
+    c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
+    W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
+    total = W.sum(axis=0)
+    lE = np.sum(W * (g[Z, c] - B[:, None, None, None]), axis=0) / np.where(total > 0, total, 1)
+    E = np.where(total > 0, np.exp(lE), bound(Z, B, g, top, np.ones(Z.shape, bool))[0])
+    return E.reshape(images.shape[1:]).astype(np.float32)
+
+
+def merge_with_quality(
+    images: ArrayLike,
+    times: ArrayLike,
+    g: ArrayLike,
+    w: ArrayLike | None = None,
+    *,
+    method: str = "log",
+    top: float = TOP,
+    repair: bool = True,
+    valid: ArrayLike | None = None,
+) -> Merged:
+    """Return the radiance map by any of METHODS, stuck pixels repaired, and the quality flags of its pixels.
+
+    Parameters
+    ----------
+    images, times, g, w
+        As for `merge`; tables of another depth than the images' are read between their levels.
     method : {"log", "likelihood", "mean", "shot"}
         Which quotient of sums, a key of `METHODS`.
     top : float
         Levels above this fraction of the top level are clipped.
-    mend : bool
+    repair : bool
         Replace single pixels that do not follow the exposure by their neighbours' median.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
-    threads : int, optional
-        How many blocks to merge at once; the number of processors by default.
 
     Returns
     -------
     Merged
-        E (H, W) or (H, W, 3) float32, finite and not negative, and seen (H, W) uint8.
+        E (H, W) or (H, W, 3) float32, finite and not negative, and quality (H, W) uint8.
 
     Raises
     ------
@@ -100,39 +199,40 @@ def merge_seen(
 
     Examples
     --------
-    >>> images = np.array([[[40, 90]], [[80, 180]]], np.uint8)  # a linear camera, one and two seconds
-    >>> E = merge(images, [1, 2], np.log(np.maximum(np.arange(256), 0.5) / 128))
-    >>> bool(np.allclose(E, [[40 / 128, 90 / 128]]))
-    True
+    >>> images = np.array([[[40, 255]], [[80, 255]]], np.uint8)
+    >>> found = merge_with_quality(images, [1, 2], np.log(np.maximum(np.arange(256), 0.5) / 128))
+    >>> [Quality(flag).name for flag in found.quality[0]]
+    ['MEASURED', 'CLIPPED']
     """
+    stack, t, w, curves, first = as_tables(images, times, g, w, method, top)
+    mask, Z = as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1)
+    shown = np.broadcast_to(True if mask is None else mask[..., None], Z.shape)
+    W, X = weigh(Z, w, first, shown), np.exp(curves[Z, np.arange(Z.shape[-1])])
+    bounds, flags = bound(Z, np.log(t), curves, first, shown)
+    measured = W.any(axis=0)
+    with np.errstate(invalid="ignore"):
+        E = np.where(measured, METHODS[method](W, X, t[:, None, None, None]), bounds).astype(np.float32)
+    quality = np.bitwise_or.reduce(np.where(measured, np.uint8(0), flags), axis=-1)
+    if repair:
+        quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
+    return Merged(E.reshape(stack.shape[1:]), quality)
+
+
+def as_tables(
+    images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None, method: str, top: float
+) -> tuple[Array, F64, F64, F64, int]:
+    """Return the stack, its times, w (n,), g (n, C) and the first clipped level, or raise a ValueError."""
     stack = as_stack(images)
-    times, mask = as_times(times, len(stack)), as_mask(valid, stack)
+    n, channels = levels(stack), stack[0, 0, 0].size
+    weights, curves = as_table(hat(n) if w is None else w, n), as_table(g, n).reshape(n, -1)
+    if curves.shape[1] not in (1, channels):
+        wanted = "(n,) for gray" if channels == 1 else "(n,) or (n, 3)"
+        raise ValueError(f"expected a response {wanted}, got shape {np.shape(g)}")
+    if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
+        raise ValueError(f"expected weights (n,) that are not negative and not all 0, got {np.shape(w)}")
     if method not in METHODS:
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
-    order = short_to_long(stack, times)
-    pixels, n = stack.reshape(*stack.shape[:3], -1), levels(stack)
-    w = weights.hat(n) if w is None else w
-    plan = blocks.plan(times[order], g, w, METHODS[method], n=n, channels=pixels.shape[-1], top=top)
-    E, seen = np.empty(pixels.shape[1:], np.float32), np.empty(pixels.shape[1:3], np.uint8)
-
-    def merge_rows(start: int) -> None:
-        rows = slice(start, start + ROWS)
-        shown = None if mask is None else np.stack([mask[j, rows] for j in order])
-        blocks.merge_block([pixels[j, rows] for j in order], shown, plan, E[rows], seen[rows])
-
-    _each(range(0, len(seen), ROWS), merge_rows, threads or os.cpu_count() or 1)
-    ends = order[[0, -1]]
-    if mend and times[ends[1]] >= 2 * times[ends[0]]:  # within a stop a pixel may seem to stand still
-        odd = stuck(*(pixels[j] for j in ends)) & (mask is None or mask[ends].all(axis=0))
-        if odd.any():
-            E[odd], seen[odd] = neighbours_median(E, odd), Seen.STUCK
-    return Merged(E.reshape(stack.shape[1:]), seen)
-
-
-def _each(starts: range, work: Callable[[int], None], threads: int) -> None:
-    """Do the work of each block, several at a time."""
-    if threads == 1:  # a thread of its own would have a memory pool of its own, which is slower
-        deque(map(work, starts), maxlen=0)
-        return
-    with ThreadPoolExecutor(threads) as pool:
-        deque(pool.map(work, starts), maxlen=0)
+    if not 0 < top <= 1:
+        raise ValueError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
+    first = min(int(top * (n - 1)) + 1, n - 1)
+    return stack, as_times(times, len(stack)), weights, np.broadcast_to(curves, (n, channels)), first

@@ -15,8 +15,7 @@ from hdrlab.core.bracket import bracket
 from hdrlab.core.colour import luminance
 from hdrlab.diagnostics import consistency
 from hdrlab.pipeline import assemble, assemble_steps, catalogue, develop
-from hdrlab.radiance.bounds import Seen
-from hdrlab.radiance.merge import METHODS
+from hdrlab.radiance.merge import METHODS, Quality
 
 
 @pytest.fixture(scope="module")
@@ -39,7 +38,7 @@ def hand_held(room):
 def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     states = list(assemble_steps(hand_held[0]))
     assert tuple(state.stage for state in states) == pipeline.STAGES
-    for name, first in (("g", 1), ("E", 2), ("seen", 2), ("medians", 3)):
+    for name, first in (("g", 1), ("E", 2), ("quality", 2), ("medians", 3)):
         assert [getattr(state, name) is not None for state in states] == [j >= first for j in range(4)]
     assert [math.isnan(state.spread) for state in states] == [True, True, True, False]
     assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
@@ -53,7 +52,7 @@ def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
     h, w = found.E.shape[:2]
     truth = room[top : top + h, left : left + w]
     images = found.bracket.images
-    well = ((images > 30) & (images < 225)).all(axis=-1).any(axis=0) & (found.seen == Seen.MEASURED)
+    well = ((images > 30) & (images < 225)).all(axis=-1).any(axis=0) & (found.quality == Quality.MEASURED)
     ratio = found.E[well] / truth[well]
     ratio /= np.median(ratio, axis=0)
     assert well.mean() > 0.7 and np.median(np.abs(ratio - 1)) < 0.015  # edges of half a pixel included
@@ -80,8 +79,8 @@ def test_gray_and_rgb_8_and_16_bits_linear_or_not(room, bits, colours, response)
     E = room if colours == 3 else luminance(room)
     taken = camera.shoot(E, camera.times_around(E, 5), camera.Camera(response=response, bits=bits))
     found = assemble(taken)
-    assert found.E.shape == E.shape and found.E.dtype == np.float32 and found.seen.shape == E.shape[:2]
-    well = found.seen == Seen.MEASURED
+    assert found.E.shape == E.shape and found.E.dtype == np.float32 and found.quality.shape == E.shape[:2]
+    well = found.quality == Quality.MEASURED
     ratio = found.E[well] / E[well]
     assert np.median(np.abs(ratio / np.median(ratio, axis=0) - 1)) < 0.02
     picture = develop(found.E)
@@ -126,7 +125,7 @@ def test_masks_move_with_their_photographs_and_hide_what_they_hide(hand_held):
     found = assemble(bracket(images, taken.times, valid=valid))
     assert found.bracket.valid.shape == found.bracket.images.shape[:3]
     unseen = ~found.bracket.valid.any(axis=0)
-    assert unseen.any() and np.all(found.E[unseen] == 0) and np.all(found.seen[unseen] == Seen.UNSEEN)
+    assert unseen.any() and np.all(found.E[unseen] == 0) and np.all(found.quality[unseen] == Quality.UNSEEN)
     blue = (found.bracket.images == (0, 0, 255)).all(axis=-1)
     assert not np.any(found.bracket.valid & blue)
 
@@ -233,7 +232,7 @@ def assembled(photographs):
 def test_the_map_explains_real_photographs(assembled, name, stops):
     found = assembled(name)
     assert found.spread <= stops and found.doubts == ()
-    assert np.all(np.isfinite(found.E)) and np.mean(found.seen == Seen.MEASURED) > 0.95
+    assert np.all(np.isfinite(found.E)) and np.mean(found.quality == Quality.MEASURED) > 0.95
 
 
 def test_the_arch_is_aligned_to_within_a_pixel_of_the_measured_shifts(assembled):
@@ -256,7 +255,7 @@ def test_the_memorial_church_agrees_with_its_published_map(photographs, shared, 
     found = assemble(taken._replace(valid=valid))
     published = luminance(radiance_of(shared("memorial") / "memorial.hdr", tmp_path))
     assert not found.offsets.any() and found.doubts == ()
-    seen = valid.all(axis=0) & (found.seen == Seen.MEASURED) & (published > 0)
+    seen = valid.all(axis=0) & (found.quality == Quality.MEASURED) & (published > 0)
     ours, theirs = np.log2(luminance(found.E)[seen]), np.log2(published[seen])
     error = ours - theirs - np.median(ours - theirs)  # up to one factor
     assert seen.mean() > 0.8

@@ -6,9 +6,8 @@ import pytest
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
-from hdrlab.radiance.bounds import Seen
 from hdrlab.radiance.deghosting import agreement, deviation, frames, ghosts, regions
-from hdrlab.radiance.merge import merge_seen
+from hdrlab.radiance.merge import Quality, merge_with_quality
 from hdrlab.response import linear
 
 FILM, W = true_g("film"), weights.gaussian()
@@ -69,7 +68,7 @@ def test_an_edge_of_high_contrast_that_lies_a_pixel_elsewhere_is_no_ghost(wall):
     times = camera.times_around(wall, 5)
     offsets = np.array([[0, 0], [0, 1], [1, 0], [1, 1], [0, 1]])
     images = [camera.shoot(E, [t]).images[0] for E, t in zip(camera.views(wall, offsets), times, strict=True)]
-    E = merge_seen(images, times, FILM, W).E
+    E = merge_with_quality(images, times, FILM, W).E
     plain = deviation.deviation(frames.photographs(images, times, FILM, E), W)
     assert np.sqrt(plain.v).max() > 0.5  # the door's edge is as contradictory as any ghost
     assert deviation.score(plain, tau=ghosts.TAU, edge=0).max() > 3
@@ -133,19 +132,21 @@ def test_where_the_leader_is_clipped_a_frame_that_breaks_its_bound_does_not_join
 
 def test_in_the_region_the_error_is_ten_times_smaller_and_outside_nothing_changes(moving):
     b = moving.bracket
-    plain = merge_seen(b.images, b.times, FILM, W)
+    plain = merge_with_quality(b.images, b.times, FILM, W)
     for knobs in ({}, {"reference": 2}):
         found = found_in(b, **knobs)
         truth = moving.still.copy()
         for r, j in enumerate(found.frames, start=1):
             truth[found.labels == r] = moving.moments[j][found.labels == r]
-        where = moving.region & (found.labels > 0) & (found.seen == Seen.MEASURED)
+        where = moving.region & (found.labels > 0) & (found.quality == Quality.MEASURED)
         assert where.sum() > 0.5 * moving.region.sum()
         candidates = (truth, moving.still, *moving.moments)
         assert 10 * rms(found.E, truth, where) < min(rms(plain.E, one, where) for one in candidates)
         outside = found.labels == 0
         assert np.array_equal(found.E[outside], plain.E[outside])
-        assert np.array_equal(found.seen[outside], plain.seen[outside]) and found.shown[:, outside].all()
+        assert (
+            np.array_equal(found.quality[outside], plain.quality[outside]) and found.shown[:, outside].all()
+        )
 
 
 def test_a_reference_leads_in_every_region_and_the_map_shows_its_moment(moving):
@@ -190,15 +191,15 @@ def test_a_photograph_counts_only_where_it_holds_a_picture(moving):
     valid[1] = False
     found = found_in(b, valid=valid)
     assert not found.shown[~valid].any() and 1 not in found.frames
-    assert np.all(found.seen[:, :6] == Seen.UNSEEN) and np.all(np.isfinite(found.E))
+    assert np.all(found.quality[:, :6] == Quality.UNSEEN) and np.all(np.isfinite(found.E))
 
 
 def test_what_was_given_stays_as_it_is(moving):
     b = moving.bracket
-    merged = merge_seen(b.images, b.times, FILM, W)
-    before = merged.E.copy(), merged.seen.copy(), b.images.copy()
+    merged = merge_with_quality(b.images, b.times, FILM, W)
+    before = merged.E.copy(), merged.quality.copy(), b.images.copy()
     found_in(b, merged=merged)
-    for one, other in zip(before, (merged.E, merged.seen, b.images), strict=True):
+    for one, other in zip(before, (merged.E, merged.quality, b.images), strict=True):
         assert np.array_equal(one, other)
 
 
@@ -213,7 +214,7 @@ def test_a_still_scene_has_no_region_and_its_map_bit_for_bit(wall):
         g, w = true_g("film", 2**bits), weights.gaussian(2**bits)
         found = ghosts.remove(still.images, still.times, g, w)
         assert not found.labels.any() and len(found.frames) == 0
-        assert np.array_equal(found.E, merge_seen(still.images, still.times, g, w).E)
+        assert np.array_equal(found.E, merge_with_quality(still.images, still.times, g, w).E)
 
 
 @pytest.mark.parametrize("level", [0, 255])

@@ -10,13 +10,25 @@ from hypothesis.extra.numpy import arrays
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import weights
-from hdrlab.radiance.bounds import Seen
-from hdrlab.radiance.merge import METHODS, merge, merge_seen
+from hdrlab.fast import merge as quick
+from hdrlab.radiance import merge as lesson
+from hdrlab.radiance.merge import METHODS, Quality
 from hdrlab.response import linear
 
 LINEAR = linear.curve()
 FILM = responses.true_g("film")
+merge, merge_with_quality = quick.merge, quick.merge_with_quality  # or the lesson's, see `either`
 CURVES = sorted(responses.RESPONSES)
+
+
+@pytest.fixture(scope="module", params=[lesson, quick], ids=["lesson", "fast"], autouse=True)
+def either(request):
+    """Ask every promise of the lesson, and of what runs."""
+    names = {name: getattr(request.param, name) for name in ("merge", "merge_with_quality")}
+    globals().update(names)
+    return request.param
+
+
 TOP = 250  # the first clipped of 256 levels, at the default cut of 0.98
 
 
@@ -31,7 +43,7 @@ def row(*frames, dtype=np.uint8):
 @pytest.mark.parametrize("method", METHODS)
 def test_one_frame_gives_its_exposure_over_its_time(method):
     images = np.arange(1, TOP, dtype=np.uint8)[None, None]
-    E = merge(images, [0.5], FILM, method=method)
+    E = merge_with_quality(images, [0.5], FILM, method=method).E
     assert np.allclose(E, np.exp(FILM[1:TOP]) / 0.5, rtol=1e-5)
 
 
@@ -46,7 +58,9 @@ def test_each_method_is_its_formula():
     }
     assert set(expected) == set(METHODS)
     for method, E in expected.items():
-        assert np.isclose(merge(row([60], [200]), t, FILM, w, method=method)[0, 0], E, rtol=1e-6)
+        assert np.isclose(
+            merge_with_quality(row([60], [200]), t, FILM, w, method=method).E[0, 0], E, rtol=1e-6
+        )
 
 
 @pytest.mark.parametrize("name", CURVES)
@@ -54,10 +68,12 @@ def test_on_clean_photographs_the_methods_agree(name, decades):
     E = decades((40, 60))
     taken = camera.shoot(E, camera.times_around(E, 7, stops=2), camera.Camera(response=name, bits=16))
     g = responses.true_g(name, 65536)
-    maps = [merge_seen(taken.images, taken.times, g, weights.gaussian(65536), method=m) for m in METHODS]
-    measured = maps[0].seen == Seen.MEASURED
+    maps = [
+        merge_with_quality(taken.images, taken.times, g, weights.gaussian(65536), method=m) for m in METHODS
+    ]
+    measured = maps[0].quality == Quality.MEASURED
     for found in maps:
-        assert np.array_equal(found.seen, maps[0].seen)
+        assert np.array_equal(found.quality, maps[0].quality)
         assert np.allclose(found.E[measured] / maps[0].E[measured], 1, atol=0.002)
 
 
@@ -65,7 +81,9 @@ def test_on_clean_photographs_the_methods_agree(name, decades):
 @pytest.mark.parametrize("name", CURVES)
 def test_radiance_is_found_to_one_percent_where_a_frame_saw_it_well(name, method, seven_frames):
     E, taken = seven_frames(name)
-    found = merge_seen(taken.images, taken.times, responses.true_g(name), weights.gaussian(), method=method)
+    found = merge_with_quality(
+        taken.images, taken.times, responses.true_g(name), weights.gaussian(), method=method
+    )
     well = ((taken.images > 30) & (taken.images < 225)).any(axis=0)
     ratio = found.E[well] / E[well]
     assert well.mean() > 0.8 and np.median(np.abs(ratio / np.median(ratio) - 1)) < 0.01
@@ -82,38 +100,38 @@ def test_any_order_of_frames_gives_the_same_map_bit_for_bit(method, bits, times)
     rng = np.random.default_rng(3)
     images = rng.integers(0, 2**bits, (3, 6, 7, 3), dtype)
     valid, times = rng.random((3, 6, 7)) > 0.2, np.array(times)
-    first = merge_seen(images, times, FILM, method=method, valid=valid)
+    first = merge_with_quality(images, times, FILM, method=method, valid=valid)
     for order in map(list, permutations(range(3))):
-        other = merge_seen(images[order], times[order], FILM, method=method, valid=valid[order])
-        assert np.array_equal(other.E, first.E) and np.array_equal(other.seen, first.seen)
+        other = merge_with_quality(images[order], times[order], FILM, method=method, valid=valid[order])
+        assert np.array_equal(other.E, first.E) and np.array_equal(other.quality, first.quality)
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_16_bits_give_the_map_of_the_8_they_hold(method):
     images = np.random.default_rng(4).integers(0, 256, (3, 20, 30, 3), np.uint8)
-    eight = merge_seen(images, [1, 2, 8], FILM, method=method)
-    sixteen = merge_seen(images.astype(np.uint16) * 257, [1, 2, 8], FILM, method=method)
-    measured = eight.seen == Seen.MEASURED
-    assert np.array_equal(sixteen.seen, eight.seen)
+    eight = merge_with_quality(images, [1, 2, 8], FILM, method=method)
+    sixteen = merge_with_quality(images.astype(np.uint16) * 257, [1, 2, 8], FILM, method=method)
+    measured = eight.quality == Quality.MEASURED
+    assert np.array_equal(sixteen.quality, eight.quality)
     assert np.allclose(sixteen.E[measured], eight.E[measured], rtol=2e-6)
     assert np.allclose(sixteen.E, eight.E, rtol=0.02)  # a clipped level begins half a level earlier
 
 
 def test_a_gray_stack_gives_the_channel_of_three_equal_ones():
     images = np.random.default_rng(5).integers(0, 256, (3, 20, 30), np.uint8)
-    gray = merge_seen(images, [1, 2, 8], FILM)
-    rgb = merge_seen(np.stack([images] * 3, axis=-1), [1, 2, 8], np.stack([FILM] * 3, axis=-1))
+    gray = merge_with_quality(images, [1, 2, 8], FILM)
+    rgb = merge_with_quality(np.stack([images] * 3, axis=-1), [1, 2, 8], np.stack([FILM] * 3, axis=-1))
     assert gray.E.shape == (20, 30) and rgb.E.shape == (20, 30, 3)
-    assert np.array_equal(gray.seen, rgb.seen)
+    assert np.array_equal(gray.quality, rgb.quality)
     assert all(np.array_equal(rgb.E[..., c], gray.E) for c in range(3))
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_doubled_times_halve_the_map(method):
     images = np.random.default_rng(6).integers(0, 256, (4, 20, 30, 3), np.uint8)
-    once = merge_seen(images, [1, 2, 8, 16], FILM, method=method)
-    twice = merge_seen(images, [2, 4, 16, 32], FILM, method=method)
-    assert np.array_equal(once.seen, twice.seen) and np.allclose(once.E, 2 * twice.E, rtol=2e-6)
+    once = merge_with_quality(images, [1, 2, 8, 16], FILM, method=method)
+    twice = merge_with_quality(images, [2, 4, 16, 32], FILM, method=method)
+    assert np.array_equal(once.quality, twice.quality) and np.allclose(once.E, 2 * twice.E, rtol=2e-6)
 
 
 def test_the_scale_of_the_weights_does_not_matter():
@@ -122,21 +140,25 @@ def test_the_scale_of_the_weights_does_not_matter():
     assert np.allclose(maps[0], maps[1], rtol=1e-5) and np.allclose(maps[0], maps[2], rtol=1e-5)
 
 
-def test_the_number_of_threads_changes_nothing():
+def test_the_number_of_threads_changes_nothing(monkeypatch):
     images = np.random.default_rng(8).integers(0, 256, (3, 70, 30, 3), np.uint8)
-    one, three = (merge_seen(images, [1, 2, 8], FILM, threads=threads) for threads in (1, 3))
-    assert np.array_equal(one.E, three.E) and np.array_equal(one.seen, three.seen)
+    one, three = (
+        monkeypatch.setattr(quick, "THREADS", threads) or quick.merge_with_quality(images, [1, 2, 8], FILM)
+        for threads in (1, 3)
+    )
+    assert np.array_equal(one.E, three.E) and np.array_equal(one.quality, three.quality)
 
 
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 def test_what_was_given_stays_as_it_is_in_any_layout(dtype):
     images = np.random.default_rng(9).integers(0, np.iinfo(dtype).max, (3, 40, 30, 3), dtype)
-    given, plain = np.asfortranarray(images), merge(images, [4, 2, 1], FILM)
+    g = responses.true_g("film", np.iinfo(dtype).max + 1)
+    given, plain = np.asfortranarray(images), merge(images, [4, 2, 1], g)
     given.setflags(write=False)
-    assert np.array_equal(merge(given, [4, 2, 1], FILM), plain) and np.array_equal(given, images)
+    assert np.array_equal(merge(given, [4, 2, 1], g), plain) and np.array_equal(given, images)
     wide = np.repeat(images, 2, axis=2)[:, :, ::2]
-    assert np.array_equal(merge(wide, [4, 2, 1], FILM), plain)
-    assert np.array_equal(merge(list(images), [4, 2, 1], FILM), plain)
+    assert np.array_equal(merge(wide, [4, 2, 1], g), plain)
+    assert np.array_equal(merge(list(images), [4, 2, 1], g), plain)
 
 
 # What no frame measures
@@ -144,9 +166,9 @@ def test_what_was_given_stays_as_it_is_in_any_layout(dtype):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_pixel_clipped_in_every_frame_takes_the_shortest_ones_bound_and_says_so(method):
-    found = merge_seen(row([255, 100], [255, 200]), [0.25, 0.5], FILM, method=method)
+    found = merge_with_quality(row([255, 100], [255, 200]), [0.25, 0.5], FILM, method=method)
     assert np.isclose(found.E[0, 0], np.exp(FILM[TOP]) / 0.25, rtol=1e-6)
-    assert found.seen.tolist() == [[Seen.CLIPPED, Seen.MEASURED]]
+    assert found.quality.tolist() == [[Quality.CLIPPED, Quality.MEASURED]]
 
 
 @pytest.mark.parametrize(("level", "bound"), [(255, TOP), (0, 1)])
@@ -158,16 +180,16 @@ def test_each_channel_has_its_own_bound(level, bound):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_pixel_dark_in_every_frame_takes_the_longest_ones_bound_and_says_so(method):
-    found = merge_seen(row([0, 10], [0, 20]), [0.25, 0.5], FILM, method=method)
+    found = merge_with_quality(row([0, 10], [0, 20]), [0.25, 0.5], FILM, method=method)
     assert np.isclose(found.E[0, 0], np.exp(FILM[1]) / 0.5, rtol=1e-6)
-    assert found.seen.tolist() == [[Seen.DARK, Seen.MEASURED]]
+    assert found.quality.tolist() == [[Quality.DARK, Quality.MEASURED]]
 
 
 def test_a_pixel_that_leaps_from_dark_to_clipped_lies_between_its_two_bounds():
-    found = merge_seen(row([0, 10], [255, 20]), [0.25, 1024], FILM)
+    found = merge_with_quality(row([0, 10], [255, 20]), [0.25, 1024], FILM)
     low, high = np.exp(FILM[TOP]) / 1024, np.exp(FILM[1]) / 0.25
     assert low < high and np.isclose(found.E[0, 0], np.sqrt(low * high), rtol=1e-6)
-    assert found.seen[0, 0] == Seen.DARK | Seen.CLIPPED
+    assert found.quality[0, 0] == Quality.DARK | Quality.CLIPPED
 
 
 STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
@@ -177,12 +199,14 @@ STACKS = arrays(np.uint8, st.tuples(*[st.integers(1, 5)] * 3, st.just(3)))
 def test_no_sun_is_dark_and_no_shadow_bright(images, method, data):
     """All that is measured lies between what a dark pixel takes and what a clipped one takes."""
     times = np.array(data.draw(st.lists(st.floats(1e-3, 30), min_size=len(images), max_size=len(images))))
-    found = merge_seen(images, times, FILM, method=method, mend=False)
+    found = merge_with_quality(images, times, FILM, method=method, repair=False)
     low, high = np.exp(FILM[1]) / times.max(), np.exp(FILM[TOP]) / times.min()
     assert found.E.dtype == np.float32 and np.all(np.isfinite(found.E))
     assert np.all(found.E >= low * (1 - 1e-5)) and np.all(found.E <= high * (1 + 1e-5))
     clipped = (images >= TOP).all(axis=0)
-    assert np.allclose(found.E[clipped], high) and np.all(found.seen[clipped.any(axis=-1)] & Seen.CLIPPED)
+    assert np.allclose(found.E[clipped], high) and np.all(
+        found.quality[clipped.any(axis=-1)] & Quality.CLIPPED
+    )
 
 
 @given(
@@ -197,17 +221,19 @@ def test_no_sun_is_dark_and_no_shadow_bright(images, method, data):
 def test_any_16_bit_stack_with_any_mask_gives_a_finite_map_that_is_not_negative(images, method, data):
     valid = data.draw(arrays(bool, images.shape))
     times = 2.0 ** np.arange(len(images))
-    found = merge_seen(images, times, responses.true_g("gamma", 65536), method=method, valid=valid)
+    found = merge_with_quality(images, times, responses.true_g("gamma", 65536), method=method, valid=valid)
     assert np.all(np.isfinite(found.E)) and np.all(found.E >= 0)
-    assert np.array_equal((found.seen & Seen.UNSEEN) > 0, ~valid.any(axis=0) & (found.seen != Seen.STUCK))
-    assert np.all((found.E > 0) | (found.seen != Seen.MEASURED))
+    assert np.array_equal(
+        (found.quality & Quality.UNSEEN) > 0, ~valid.any(axis=0) & (found.quality != Quality.STUCK)
+    )
+    assert np.all((found.E > 0) | (found.quality != Quality.MEASURED))
 
 
 @pytest.mark.parametrize("level", [0, 255])
 def test_a_black_or_white_stack_is_finite_and_says_that_nothing_was_measured(level):
-    found = merge_seen(np.full((3, 4, 5, 3), level, np.uint8), [1, 2, 4], FILM)
+    found = merge_with_quality(np.full((3, 4, 5, 3), level, np.uint8), [1, 2, 4], FILM)
     assert np.all(np.isfinite(found.E)) and np.ptp(found.E) == 0
-    assert np.all(found.seen == (Seen.CLIPPED if level else Seen.DARK))
+    assert np.all(found.quality == (Quality.CLIPPED if level else Quality.DARK))
 
 
 def test_a_sun_in_a_photographed_scene_is_no_darker_than_its_sky():
@@ -216,9 +242,9 @@ def test_a_sun_in_a_photographed_scene_is_no_darker_than_its_sky():
     taken = camera.shoot(
         E, [1 / 256, 1 / 64, 1 / 16, 1 / 4], camera.Camera(full_well=20_000, read_noise=5), rng=1
     )
-    found = merge_seen(taken.images, taken.times, FILM)
+    found = merge_with_quality(taken.images, taken.times, FILM)
     sun = np.hypot(y, x) < 5
-    assert np.all(found.seen[sun] == Seen.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
+    assert np.all(found.quality[sun] == Quality.CLIPPED) and found.E[sun].min() >= found.E[~sun].max()
 
 
 # Clipped in one channel
@@ -234,9 +260,9 @@ def test_a_frame_with_one_clipped_channel_is_left_out_for_all_three():
 
 def test_where_every_frame_clips_a_channel_the_others_keep_their_measurement():
     images = np.array([[[[255, 100, 0]]], [[[255, 200, 1]]]], np.uint8)
-    found = merge_seen(images, [1, 2], LINEAR)
+    found = merge_with_quality(images, [1, 2], LINEAR)
     assert np.allclose(found.E[0, 0], [LINEAR_AT_TOP, 100 / 128, 1 / 128 / 2], rtol=1e-5)
-    assert found.seen[0, 0] == Seen.CLIPPED
+    assert found.quality[0, 0] == Quality.CLIPPED
 
 
 LINEAR_AT_TOP = TOP / 128
@@ -247,8 +273,8 @@ def test_highlights_keep_the_colour_of_their_light():
     taken = camera.shoot(
         np.repeat(E, 9, axis=0), 4.0 ** np.arange(-4, 1), camera.Camera(full_well=50_000), rng=2
     )
-    found = merge_seen(taken.images, taken.times, FILM)
-    tint = np.median(found.E, axis=0)[np.median(found.seen, axis=0) == Seen.MEASURED]
+    found = merge_with_quality(taken.images, taken.times, FILM)
+    tint = np.median(found.E, axis=0)[np.median(found.quality, axis=0) == Quality.MEASURED]
     assert np.allclose(tint[:, 1:] / tint[:, :1], [0.7, 0.5], rtol=0.06)
 
 
@@ -269,22 +295,24 @@ def test_a_stuck_pixel_takes_its_neighbours_median_and_says_so(level, where):
     y, x = where
     images = taken.images.copy()
     images[:, y, x, 1] = level  # hot or dead in every frame
-    clean, found = (merge_seen(Z, taken.times, FILM) for Z in (taken.images, images))
-    assert found.seen[y, x] == Seen.STUCK and np.count_nonzero(found.seen) == 1
+    clean, found = (merge_with_quality(Z, taken.times, FILM) for Z in (taken.images, images))
+    assert found.quality[y, x] == Quality.STUCK and np.count_nonzero(found.quality) == 1
     assert np.allclose(found.E[y, x], clean.E[y, x], rtol=0.1)
-    others = np.ones(found.seen.shape, bool)
+    others = np.ones(found.quality.shape, bool)
     others[y, x] = False
     assert np.array_equal(found.E[others], clean.E[others])
-    left = merge_seen(images, taken.times, FILM, mend=False)
-    assert left.seen[y, x] != Seen.STUCK and not np.allclose(left.E[y, x, 1], clean.E[y, x, 1], rtol=0.1)
+    left = merge_with_quality(images, taken.times, FILM, repair=False)
+    assert left.quality[y, x] != Quality.STUCK and not np.allclose(
+        left.E[y, x, 1], clean.E[y, x, 1], rtol=0.1
+    )
 
 
 def test_the_hot_pixels_of_a_camera_do_not_reach_the_map():
     light = np.linspace(0.2, 0.8, 60 * 80, dtype=np.float32).reshape(60, 80)
     taken = camera.shoot(light, 4.0 ** np.arange(-3, 1), camera.Camera(hot=0.002, full_well=50_000), rng=3)
-    found = merge_seen(taken.images, taken.times, FILM)
+    found = merge_with_quality(taken.images, taken.times, FILM)
     hot = taken.images[0] == 255
-    assert 3 < hot.sum() < 30 and np.array_equal(found.seen == Seen.STUCK, hot)
+    assert 3 < hot.sum() < 30 and np.array_equal(found.quality == Quality.STUCK, hot)
     ratio = found.E / light
     assert np.all(np.abs(ratio / np.median(ratio) - 1) < 0.1)
 
@@ -293,8 +321,8 @@ def test_a_true_highlight_of_one_pixel_that_a_frame_measures_stays():
     E = np.full((9, 9), 0.3, np.float32)
     E[4, 4] = 12
     taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
-    found = merge_seen(taken.images, taken.times, FILM)
-    assert not found.seen.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 40, rtol=0.03)
+    found = merge_with_quality(taken.images, taken.times, FILM)
+    assert not found.quality.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 40, rtol=0.03)
 
 
 def test_around_a_true_highlight_that_no_frame_measures_nothing_changes():
@@ -302,16 +330,16 @@ def test_around_a_true_highlight_that_no_frame_measures_nothing_changes():
     dark = merge(camera.shoot(E, [1 / 16, 1 / 4, 1]).images, [1 / 16, 1 / 4, 1], FILM)
     E[3:5, 4:6] = 1000
     taken = camera.shoot(E, [1 / 16, 1 / 4, 1])
-    found = merge_seen(taken.images, taken.times, FILM)
-    assert np.all(found.seen[E == 1000] == Seen.CLIPPED) and np.array_equal(found.E[E < 1], dark[E < 1])
+    found = merge_with_quality(taken.images, taken.times, FILM)
+    assert np.all(found.quality[E == 1000] == Quality.CLIPPED) and np.array_equal(found.E[E < 1], dark[E < 1])
 
 
 def test_without_two_exposures_nothing_counts_as_stuck():
     E = np.full((9, 9), 0.1, np.float32)
     E[4, 4] = 0.8
     for times in ([1.0], [1.0, 1.0], [1.0, 1.1]):
-        found = merge_seen(camera.shoot(E, times).images, times, FILM)
-        assert not found.seen.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 8, rtol=0.03)
+        found = merge_with_quality(camera.shoot(E, times).images, times, FILM)
+        assert not found.quality.any() and np.isclose(found.E[4, 4] / found.E[0, 0], 8, rtol=0.03)
 
 
 # Masks and weights
@@ -321,25 +349,29 @@ def test_a_frame_counts_where_it_shows_something_and_nowhere_else():
     images = np.random.default_rng(10).integers(1, TOP, (3, 20, 30), np.uint8)
     valid = np.ones(images.shape, bool)
     valid[0, :, :10], valid[2, :, 20:] = False, False
-    found = merge(images, [1, 2, 4], FILM, valid=valid, mend=False)
-    assert np.array_equal(found[:, :10], merge(images[1:, :, :10], [2, 4], FILM, mend=False))
-    assert np.array_equal(found[:, 20:], merge(images[:2, :, 20:], [1, 2], FILM, mend=False))
-    assert np.array_equal(found[:, 10:20], merge(images[:, :, 10:20], [1, 2, 4], FILM, mend=False))
+    found = merge_with_quality(images, [1, 2, 4], FILM, valid=valid, repair=False).E
+    assert np.array_equal(found[:, :10], merge_with_quality(images[1:, :, :10], [2, 4], FILM, repair=False).E)
+    assert np.array_equal(found[:, 20:], merge_with_quality(images[:2, :, 20:], [1, 2], FILM, repair=False).E)
+    assert np.array_equal(
+        found[:, 10:20], merge_with_quality(images[:, :, 10:20], [1, 2, 4], FILM, repair=False).E
+    )
 
 
 def test_a_pixel_that_no_frame_shows_is_0_and_says_so():
     images = np.full((2, 3, 4, 3), 100, np.uint8)
     valid = np.ones((2, 3, 4), bool)
     valid[:, 1, 2] = False
-    found = merge_seen(images, [1, 2], FILM, valid=valid)
+    found = merge_with_quality(images, [1, 2], FILM, valid=valid)
     assert (
-        np.all(found.E[1, 2] == 0) and found.seen[1, 2] == Seen.UNSEEN and np.count_nonzero(found.seen) == 1
+        np.all(found.E[1, 2] == 0)
+        and found.quality[1, 2] == Quality.UNSEEN
+        and np.count_nonzero(found.quality) == 1
     )
 
 
 def test_the_bounds_come_from_frames_that_show_the_pixel():
     valid = np.array([[[False, True]], [[True, True]]])
-    found = merge_seen(row([255, 255], [255, 255]), [1, 4], FILM, valid=valid)
+    found = merge_with_quality(row([255, 255], [255, 255]), [1, 4], FILM, valid=valid)
     assert np.allclose(found.E, np.exp(FILM[TOP]) * np.array([[1 / 4, 1]]))
 
 
@@ -347,15 +379,15 @@ def test_a_masked_pixel_is_not_mistaken_for_a_stuck_one():
     taken = flat_scene()
     images, valid = taken.images.copy(), np.ones(taken.images.shape[:3], bool)
     images[[0, 2], 5, 6], valid[[0, 2], 5, 6] = 255, False
-    found = merge_seen(images, taken.times, FILM, valid=valid)
-    assert not found.seen.any()
+    found = merge_with_quality(images, taken.times, FILM, valid=valid)
+    assert not found.quality.any()
     assert np.array_equal(found.E[5, 6], merge(taken.images[1:2], taken.times[1:2], FILM)[5, 6])
 
 
 def test_a_level_that_weighs_nothing_still_counts_where_there_is_no_other():
     w = weights.cut(weights.flat(), above=0.8, below=0.2)
-    found = merge_seen(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
-    assert not found.seen.any() and np.allclose(found.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4)
+    found = merge_with_quality(row([20, 230, 100], [40, 255, 200]), [1, 2], LINEAR, w)
+    assert not found.quality.any() and np.allclose(found.E, [[20 / 128, 230 / 128, 100 / 128]], rtol=1e-4)
 
 
 def test_the_response_decides_each_channel():
@@ -386,4 +418,4 @@ def test_the_response_decides_each_channel():
 def test_what_does_not_fit_together_is_refused(given, said):
     knobs = {"images": np.zeros((2, 4, 5, 3), np.uint8), "times": [1, 2], "g": FILM} | given
     with pytest.raises(ValueError, match=said):
-        merge_seen(**knobs)
+        merge_with_quality(**knobs)

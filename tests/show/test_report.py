@@ -13,7 +13,7 @@ from hdrlab.align.shift import crop
 from hdrlab.capture import camera, responses
 from hdrlab.core.bracket import bracket
 from hdrlab.core.errors import Truth
-from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages import wording
 from hdrlab.show.pages.report import write_report
 from hdrlab.show.plots import figures
@@ -157,10 +157,15 @@ def test_without_a_truth_no_errors_are_claimed(tmp_path):
 
 def test_pixels_that_were_not_measured_are_counted_and_shown(tmp_path):
     found = flat()
-    seen = found.seen.copy()
-    seen[0, :7], seen[5, 5], seen[9, :3], seen[10, 1] = Seen.CLIPPED, Seen.STUCK, Seen.DARK, Seen.UNSEEN
-    seen[20, 20] = Seen.CLIPPED | Seen.DARK
-    shown = report(tmp_path, found._replace(seen=seen))
+    quality = found.quality.copy()
+    quality[0, :7], quality[5, 5], quality[9, :3], quality[10, 1] = (
+        Quality.CLIPPED,
+        Quality.STUCK,
+        Quality.DARK,
+        Quality.UNSEEN,
+    )
+    quality[20, 20] = Quality.CLIPPED | Quality.DARK
+    shown = report(tmp_path, found._replace(quality=quality))
     counts = dict(
         re.findall(r"<b>([\w ]+)</b> <span.{0,120}?</th><td class=\"right\">([\d,]+)</td>", shown.source)
     )

@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import Array, as_table
-from hdrlab.radiance.bounds import ROWS
 from hdrlab.radiance.deghosting.frames import Photographs
+from hdrlab.radiance.stuck import ROWS
 
 Float = NDArray[np.float32]
 Tables = NDArray[np.complex64]

@@ -12,11 +12,11 @@ region the best exposure leads, but other frames join it where they agree with i
 clipped and its dark pixels are not lost, nor is its noise all there is. `alone` leaves them out, as on the
 slide.
 
-One frame per region means one moment per region: who walks through the picture in great steps may be seen
+One frame per region means one moment per region: who walks through the picture in great steps may be quality
 twice, or never. With a `reference`, that frame leads in every region, and the map shows its moment.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -41,7 +41,7 @@ from hdrlab.radiance.deghosting.regions import (
     seam,
     seeds,
 )
-from hdrlab.radiance.merge import Merged, merge_seen
+from hdrlab.radiance.merge import Merged, merge_with_quality
 
 Float = NDArray[np.float32]
 TAU = 0.1  # ln E: what photographs of a still scene contradict each other by, noise and edges aside
@@ -64,7 +64,7 @@ class Ghosts(NamedTuple):
     Attributes
     ----------
     E : (H, W) or (H, W, 3) float32, the map; outside the regions it is the plain one
-    seen : (H, W) uint8, how each pixel is known, flags of `bounds.Seen`
+    quality : (H, W) uint8, how each pixel is known, flags of `merge.Quality`
     labels : (H, W) int32, the regions 1 ... R; 0 where nothing moved
     frames : (R,) int, the frame that leads in each region
     shown : (P, H, W) bool, the frames that make each pixel, in the order of the images given
@@ -72,7 +72,7 @@ class Ghosts(NamedTuple):
     """
 
     E: Float
-    seen: NDArray[np.uint8]
+    quality: NDArray[np.uint8]
     labels: Labels
     frames: NDArray[np.int64]
     shown: NDArray[np.bool_]
@@ -108,8 +108,8 @@ def exposures(taken: Photographs, labels: Labels) -> NDArray[np.float64]:
         inside = labels[boxes[r]] == r + 1
         Z = taken.images[j][boxes[r]][inside]
         loss = np.mean([cost[j, c][Z[:, c]] for c in range(Z.shape[1])], axis=0)
-        seen = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
-        out[j, r] = np.where(seen, loss, 1).mean()
+        quality = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
+        out[j, r] = np.where(quality, loss, 1).mean()
     return out
 
 
@@ -169,6 +169,7 @@ def remove(
     w: ArrayLike | None = None,
     *,
     merged: Merged | None = None,
+    merge: Callable[..., Merged] = merge_with_quality,
     reference: int | None = None,
     alone: bool = False,
     tau: float = TAU,
@@ -186,7 +187,8 @@ def remove(
     times : (P,) seconds
     g : (n,) or (n, 3), response, ln exposure of each level
     w : (n,), weights; the hat by default
-    merged : the plain map of `merge_seen`, where it is known; else it is made here
+    merged : the plain map of `merge_with_quality`, where it is known; else it is made here
+    merge : `merge_with_quality`, or its fast form
     reference : number of the frame that leads in every region; by default each has its own best exposure
     alone : nothing but the leading frame counts in a region, as on the slide
     tau : contradiction, in ln E, that is tolerated everywhere
@@ -194,7 +196,7 @@ def remove(
         is shifted by up to a pixel counts
     margin : pixels by which regions are dilated, and over which seams are blended; by default 1 in 150 of
         the width, at least 4
-    top, valid, **knobs : of `merge_seen`
+    top, valid, **knobs : of `merge_with_quality`
 
     Returns
     -------
@@ -227,23 +229,23 @@ def remove(
     margin = around(stack) if margin is None else margin
     w = weights.hat(n) if w is None else w
     knobs |= {"top": top}
-    E, seen = merge_seen(stack, seconds, g, w, valid=mask, **knobs) if merged is None else merged
+    E, quality = merge(stack, seconds, g, w, valid=mask, **knobs) if merged is None else merged
     taken = photographs(stack, seconds, g, E, top=top, valid=mask)
     score, moved = detect(deviation.deviation(taken, w), tau=tau, edge=edge, margin=margin)
     plain = E.reshape(taken.images.shape[1:])
     labels, frames = last(led_steps(taken, plain, moved, margin, reference=reference))
     alpha = seam(labels, margin // 2)
-    E, seen = E.copy(), seen.copy()
+    E, quality = E.copy(), quality.copy()
     shown = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
     for r, box in enumerate(ndimage.find_objects(labels)):
         y, x = wide = padded(box, 2 * agreement.BOX, labels.shape)
         here = labels[wide] == r + 1
         follow = followers(taken, wide, int(frames[r]), alone=alone)
-        led = merge_seen(stack[:, y, x], seconds, g, w, valid=follow, **knobs)
+        led = merge(stack[:, y, x], seconds, g, w, valid=follow, **knobs)
         E[wide][here] = blended(E[wide], led.E, alpha[wide])[here]
-        seen[wide][here] = led.seen[here]
+        quality[wide][here] = led.quality[here]
         shown[:, y, x][:, here] = follow[:, here]
-    return Ghosts(E, seen, labels, frames, shown, score)
+    return Ghosts(E, quality, labels, frames, shown, score)
 
 
 def note(found: Ghosts, names: Sequence[str]) -> str:

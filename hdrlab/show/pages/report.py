@@ -71,11 +71,11 @@ def write_report(
 def _page(
     assembly: Assembly, picture: np.ndarray, recipe: str | Mapping[str, Any], truth: Truth | None
 ) -> str:
-    stage, bracket, offsets, g, E, seen, medians, notes, doubts, *_ = assembly
-    if g is None or E is None or seen is None or medians is None:
+    stage, bracket, offsets, g, E, quality, medians, notes, doubts, *_ = assembly
+    if g is None or E is None or quality is None or medians is None:
         raise ValueError(f"expected a finished assembly, got one after the stage {stage!r}")
-    if picture.dtype != np.uint8 or picture.shape[:2] != seen.shape or picture.shape[2:] not in ((), (3,)):
-        raise ValueError(f"expected a uint8 picture of {seen.shape} pixels, got {describe(picture)}")
+    if picture.dtype != np.uint8 or picture.shape[:2] != quality.shape or picture.shape[2:] not in ((), (3,)):
+        raise ValueError(f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}")
     return (
         templates(Path(__file__).parent)
         .get_template(PAGE)
@@ -85,11 +85,11 @@ def _page(
             picture=figures.photograph(
                 picture, 1600, "The picture: the radiance map, tone-mapped for a display"
             ),
-            facts=sections.facts(E, seen, medians),
+            facts=sections.facts(E, quality, medians),
             bracket=sections.bracket(bracket, offsets),
             response=sections.response(g, truth),
             radiance=sections.radiance(E),
-            known=sections.known(seen, picture),
+            known=sections.known(quality, picture),
             moving=sections.moving(assembly.moving, picture),
             agreement=sections.agreement(bracket, medians),
             errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),

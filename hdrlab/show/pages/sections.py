@@ -17,7 +17,7 @@ from hdrlab.core.arrays import Array, to_256
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import Truth
 from hdrlab.diagnostics import consistency
-from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
 from hdrlab.show.pages.wording import CLOSE, KINDS, offset, share, signed, verdict
 from hdrlab.show.pages.wording import stops as in_stops
@@ -27,7 +27,7 @@ Float = NDArray[np.float64]
 Image = NDArray[np.uint8]
 
 
-def facts(E: Array, seen: Image, medians: Float) -> list[tuple[str, str]]:
+def facts(E: Array, quality: Image, medians: Float) -> list[tuple[str, str]]:
     """Return the figures that stand beside the picture: (value, what it is)."""
     low, high = np.nanpercentile(figures.stops(E), [0.1, 99.9])
     spread = consistency.spread(medians)
@@ -36,7 +36,7 @@ def facts(E: Array, seen: Image, medians: Float) -> list[tuple[str, str]]:
             f"{high - low:.1f} stops",
             f"from dark to bright: {(high - low) * np.log10(2):.1f} decades of luminance",
         ),
-        (share(seen == Seen.MEASURED), "of the pixels measured by at least one frame"),
+        (share(quality == Quality.MEASURED), "of the pixels measured by at least one frame"),
         (in_stops(spread), f"between what the frames say of the same light: {verdict(spread)}"),
     ]
 
@@ -77,23 +77,23 @@ def radiance(E: Array) -> dict[str, Any]:
     return {"picture": shown, "scale": figures.scale(low, high)}
 
 
-def known(seen: Image, picture: Image) -> dict[str, Any]:
+def known(quality: Image, picture: Image) -> dict[str, Any]:
     """Return how many pixels are known in which way, and where those stand that were not measured."""
     rows = [
         {
             "kind": kind,
             "meaning": meaning,
-            "count": f"{np.count_nonzero(seen == flag):,}",
-            "share": share(seen == flag),
+            "count": f"{np.count_nonzero(quality == flag):,}",
+            "share": share(quality == flag),
             "colour": figures.KNOWN.get(flag),
         }
         for flag, (kind, meaning) in KINDS.items()
-        if flag == Seen.MEASURED or np.any(seen == flag)
+        if flag == Quality.MEASURED or np.any(quality == flag)
     ]
     if len(rows) == 1:
         return {"rows": rows, "picture": None}
     alt = "The picture in pale gray, with dots where a pixel was not measured"
-    return {"rows": rows, "picture": figures.photograph(figures.known(picture, seen), 1000, alt)}
+    return {"rows": rows, "picture": figures.photograph(figures.known(picture, quality), 1000, alt)}
 
 
 def moving(labels: NDArray[np.int32] | None, picture: Image) -> dict[str, Any] | None:

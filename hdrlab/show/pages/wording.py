@@ -4,19 +4,19 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.pipeline.stages import CONTRADICTION
-from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import Quality
 
 CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach
 KINDS = {
-    Seen.MEASURED: ("measured", "at least one frame shows it neither clipped nor dark"),
-    Seen.CLIPPED: (
+    Quality.MEASURED: ("measured", "at least one frame shows it neither clipped nor dark"),
+    Quality.CLIPPED: (
         "clipped in every frame",
         "at least this bright: the map holds the shortest frame’s bound",
     ),
-    Seen.DARK: ("dark in every frame", "at most this bright: the map holds the longest frame’s bound"),
-    Seen.CLIPPED | Seen.DARK: ("clipped or dark in every frame", "bounded, but measured by none"),
-    Seen.STUCK: ("stuck", "do not follow the exposure: the map holds the median of the neighbours"),
-    Seen.UNSEEN: ("shown by no frame", "the map holds 0"),
+    Quality.DARK: ("dark in every frame", "at most this bright: the map holds the longest frame’s bound"),
+    Quality.CLIPPED | Quality.DARK: ("clipped or dark in every frame", "bounded, but measured by none"),
+    Quality.STUCK: ("stuck", "do not follow the exposure: the map holds the median of the neighbours"),
+    Quality.UNSEEN: ("shown by no frame", "the map holds 0"),
 }
 
 

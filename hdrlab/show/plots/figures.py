@@ -1,7 +1,7 @@
 """Maps and plots for a page that writes its own scales, in colours that colour-blind readers tell apart.
 
 ev    radiance in stops   (H, W), log2 of luminance over its median; NaN without light
-seen  (H, W) uint8        how each pixel is known, flags of `radiance.bounds.Seen`
+quality  (H, W) uint8     how each pixel is known, flags of `radiance.merge.Quality`
 
 The plots of `show.plots` carry their scale inside the picture. On a page the scale is text beside it, which
 stays legible on a telephone and which a screen reader can read.
@@ -22,7 +22,7 @@ from scipy.ndimage import maximum_filter
 from hdrlab.core.arrays import Array
 from hdrlab.core.colour import luminance
 from hdrlab.io import web
-from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages.wording import signed
 
 Image = NDArray[np.uint8]
@@ -30,11 +30,11 @@ MISSING = "#808080"
 ORANGE, OUTLINE = (230, 126, 0), (60, 20, 0)  # of a region, and its edge
 # What was not measured, from dark to light, so that the kinds part in gray too.
 KNOWN = {
-    Seen.DARK: "#14148C",
-    Seen.UNSEEN: "#404040",
-    Seen.STUCK: "#D6007F",
-    Seen.CLIPPED | Seen.DARK: "#F0A400",
-    Seen.CLIPPED: "#FFF06A",
+    Quality.DARK: "#14148C",
+    Quality.UNSEEN: "#404040",
+    Quality.STUCK: "#D6007F",
+    Quality.CLIPPED | Quality.DARK: "#F0A400",
+    Quality.CLIPPED: "#FFF06A",
 }
 
 
@@ -70,12 +70,12 @@ def false_colour(values: Array, low: float, high: float, *, colours: str = "viri
     return table(np.clip(position, 0, 1), bytes=True)[..., :3]
 
 
-def known(picture: Image, seen: NDArray[np.uint8]) -> Image:
+def known(picture: Image, quality: NDArray[np.uint8]) -> Image:
     """Return the picture in pale gray, with a dot of its kind's colour where a pixel was not measured."""
     gray = picture if picture.ndim == 2 else picture.mean(axis=-1)
     shown = np.repeat((120 + gray * 0.4).astype(np.uint8)[..., None], 3, axis=-1)
     for flag, colour in KNOWN.items():
-        spots = maximum_filter(seen == flag, size=dot(seen.shape))
+        spots = maximum_filter(quality == flag, size=dot(quality.shape))
         shown[spots] = tuple(bytes.fromhex(colour[1:]))
     return shown
 

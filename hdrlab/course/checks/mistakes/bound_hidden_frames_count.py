@@ -1,10 +1,10 @@
 """A wrong bound: hidden frames count."""
 
-from hdrlab.radiance import bounds
+from hdrlab.radiance import merge as merging
 
 TASK = "bound"
 MISCONCEPTION = "You ask frames that do not show the pixel: `shown` says which do."
 
 
 def bound(Z, B, g, top, shown):
-    return bounds.bound(Z, B, g, top, shown | True)
+    return merging.bound(Z, B, g, top, shown | True)

@@ -9,4 +9,4 @@ MISCONCEPTION = (
 
 
 def merge(images, times, g, w=None):
-    return merging.merge(images, times, g, w, method="mean")
+    return merging.merge_with_quality(images, times, g, w, method="mean", repair=False).E

@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab.capture import responses
 from hdrlab.course.checks.compare import finite, parts, same
-from hdrlab.radiance import bounds
+from hdrlab.radiance.merge import bound
 
 G, TOP = responses.true_g("gamma"), 250
 
@@ -72,7 +72,7 @@ def test_dark_in_all_frames_is_the_bound_of_the_longest(subject, rng):
 )
 def test_between_two_bounds_is_the_middle_of_their_logarithms(subject, rng):
     Z, B = drawn(rng)
-    truth = bounds.bound(Z, B, G, TOP, np.ones(Z.shape, bool))[0]
+    truth = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[0]
     same(asked(subject, Z, B)[0], np.log(truth), 1e-3, what="ln E")
 
 
@@ -86,7 +86,7 @@ def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
     Z, B = drawn(rng)
     shown = np.ones(Z.shape, bool)
     shown[0] = False
-    truth = bounds.bound(Z, B, G, TOP, shown)[0]
+    truth = bound(Z, B, G, TOP, shown)[0]
     same(asked(subject, Z, B, shown)[0], np.log(truth), 1e-3, what="ln E")
 
 
@@ -94,9 +94,9 @@ def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
 @pytest.mark.hints(
     "The second answer says how each pixel is known.",
     "1 is clipped, 2 is dark, and 3 is both.",
-    "Seen.CLIPPED + Seen.DARK, and Seen.UNSEEN where neither.",
+    "1 * clipped + 2 * dark, and 8 where neither.",
 )
 def test_the_flags_say_what_stood_in_the_way(subject, rng):
     Z, B = drawn(rng)
-    flags = bounds.bound(Z, B, G, TOP, np.ones(Z.shape, bool))[1]
+    flags = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[1]
     same(asked(subject, Z, B)[1], flags, 0, what="the flags")

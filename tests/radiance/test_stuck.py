@@ -1,51 +1,9 @@
-"""Bounds: what frames say of a pixel that they do not measure, and which pixels are stuck."""
+"""Stuck pixels: a single pixel that does not follow the exposure takes its neighbours' median."""
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
-from hdrlab.radiance.bounds import Seen, bound, neighbours_median, stuck
-from hdrlab.response.linear import curve
-
-G = curve()
-TOP = 250
-B = np.log([1.0, 4.0, 16.0])
-
-
-def answer(*levels, shown=(True, True, True)):
-    """Return E and flag of one pixel of three frames, 1, 4 and 16 seconds."""
-    E, flags = bound(np.array(levels)[:, None], B, G, TOP, np.array(shown)[:, None])
-    return E[0], flags[0]
-
-
-@pytest.mark.parametrize(
-    ("levels", "shown", "E", "flag"),
-    [
-        ((255, 255, 255), (1, 1, 1), TOP / 128, Seen.CLIPPED),
-        ((250, 251, 252), (1, 1, 1), TOP / 128, Seen.CLIPPED),
-        ((255, 255, 255), (0, 1, 1), TOP / 128 / 4, Seen.CLIPPED),
-        ((255, 255, 255), (0, 0, 1), TOP / 128 / 16, Seen.CLIPPED),
-        ((0, 0, 0), (1, 1, 1), 1 / 128 / 16, Seen.DARK),
-        ((0, 0, 0), (1, 1, 0), 1 / 128 / 4, Seen.DARK),
-        ((0, 0, 255), (1, 1, 1), np.sqrt(TOP / 16 * 1 / 4) / 128, Seen.CLIPPED | Seen.DARK),
-        ((0, 255, 255), (1, 1, 1), np.sqrt(TOP / 4 * 1) / 128, Seen.CLIPPED | Seen.DARK),
-        ((0, 0, 255), (1, 1, 0), 1 / 128 / 4, Seen.DARK),
-        ((0, 0, 255), (0, 0, 0), 0, Seen.UNSEEN),
-    ],
-)
-def test_the_tightest_bound_of_the_frames_that_show_a_pixel_is_taken(levels, shown, E, flag):
-    found, seen = answer(*levels, shown=np.array(shown, bool))
-    assert np.isclose(found, E, rtol=1e-12) and seen == flag
-
-
-@given(st.lists(st.sampled_from([0, 250, 255]), min_size=3, max_size=3))
-def test_what_is_bounded_is_positive_and_flagged(levels):
-    E, flag = answer(*levels)
-    assert np.isfinite(E) and E > 0 and flag in (Seen.CLIPPED, Seen.DARK, Seen.CLIPPED | Seen.DARK)
-
-
-# Stuck pixels
+from hdrlab.radiance.stuck import find_stuck, neighbours_median
 
 
 def pair(shape=(7, 9), dtype=np.uint8):
@@ -62,13 +20,13 @@ def test_a_pixel_that_stands_still_and_stands_out_is_stuck_anywhere(dtype, where
     short[where], long[where] = [level * (np.iinfo(dtype).max // 255)] * 2
     expected = np.zeros((7, 9), bool)
     expected[where] = True
-    assert np.array_equal(stuck(short, long), expected)
+    assert np.array_equal(find_stuck(short, long), expected)
 
 
 def test_one_stuck_channel_makes_a_stuck_pixel():
     short, long = (np.repeat(frame, 3, axis=-1) for frame in pair())
     short[2, 2, 1] = long[2, 2, 1] = 255
-    assert np.argwhere(stuck(short, long)).tolist() == [[2, 2]]
+    assert np.argwhere(find_stuck(short, long)).tolist() == [[2, 2]]
 
 
 @pytest.mark.parametrize(
@@ -84,19 +42,19 @@ def test_one_stuck_channel_makes_a_stuck_pixel():
 def test_a_pixel_that_follows_the_exposure_or_does_not_stand_out_is_not_stuck(short_level, long_level):
     short, long = pair()
     short[3, 4], long[3, 4] = short_level, long_level
-    assert not stuck(short, long).any()
+    assert not find_stuck(short, long).any()
 
 
 def test_two_pixels_side_by_side_are_a_thing_and_not_stuck():
     short, long = pair()
     short[3, 4:6], long[3, 4:6] = 255, 255
-    assert not stuck(short, long).any()
+    assert not find_stuck(short, long).any()
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (1, 5), (5, 1)])
 def test_the_smallest_pictures_have_no_stuck_pixels_but_for_the_obvious(shape):
     short, long = pair(shape)
-    assert not stuck(short, long).any()
+    assert not find_stuck(short, long).any()
 
 
 def test_the_median_is_that_of_the_eight_neighbours():

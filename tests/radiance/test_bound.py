@@ -1,0 +1,47 @@
+"""Bounds: what frames indicate of a pixel that they do not measure."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.radiance.merge import Quality, bound
+from hdrlab.response.linear import curve
+
+G = curve()
+TOP = 250
+B = np.log([1.0, 4.0, 16.0])
+
+
+def answer(*levels, shown=(True, True, True)):
+    """Return E and flag of one pixel of three frames, 1, 4 and 16 seconds."""
+    E, flags = bound(np.array(levels)[:, None], B, G, TOP, np.array(shown)[:, None])
+    return E[0], flags[0]
+
+
+@pytest.mark.parametrize(
+    ("levels", "shown", "E", "flag"),
+    [
+        ((255, 255, 255), (1, 1, 1), TOP / 128, Quality.CLIPPED),
+        ((250, 251, 252), (1, 1, 1), TOP / 128, Quality.CLIPPED),
+        ((255, 255, 255), (0, 1, 1), TOP / 128 / 4, Quality.CLIPPED),
+        ((255, 255, 255), (0, 0, 1), TOP / 128 / 16, Quality.CLIPPED),
+        ((0, 0, 0), (1, 1, 1), 1 / 128 / 16, Quality.DARK),
+        ((0, 0, 0), (1, 1, 0), 1 / 128 / 4, Quality.DARK),
+        ((0, 0, 255), (1, 1, 1), np.sqrt(TOP / 16 * 1 / 4) / 128, Quality.CLIPPED | Quality.DARK),
+        ((0, 255, 255), (1, 1, 1), np.sqrt(TOP / 4 * 1) / 128, Quality.CLIPPED | Quality.DARK),
+        ((0, 0, 255), (1, 1, 0), 1 / 128 / 4, Quality.DARK),
+        ((0, 0, 255), (0, 0, 0), 0, Quality.UNSEEN),
+    ],
+)
+def test_the_tightest_bound_of_the_frames_that_show_a_pixel_is_taken(levels, shown, E, flag):
+    found, quality = answer(*levels, shown=np.array(shown, bool))
+    assert np.isclose(found, E, rtol=1e-12) and quality == flag
+
+
+@given(st.lists(st.sampled_from([0, 250, 255]), min_size=3, max_size=3))
+def test_what_is_bounded_is_positive_and_flagged(levels):
+    E, flag = answer(*levels)
+    assert (
+        np.isfinite(E) and E > 0 and flag in (Quality.CLIPPED, Quality.DARK, Quality.CLIPPED | Quality.DARK)
+    )
