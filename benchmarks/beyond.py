@@ -23,8 +23,8 @@ from hdrlab.beyond import patches, splitter, steady, video
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
 from hdrlab.core import colour
+from hdrlab.fast.merge import merge
 from hdrlab.radiance.deghosting import ghosts
-from hdrlab.radiance.merge import merge
 from hdrlab.scenes.places import PLACES, Layers, layers
 from hdrlab.tonemap import reinhard
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hdrlab.beyond import bidirectional, ldr_values, patches, patchmatch, synthesis
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
-from hdrlab.radiance.merge import merge
+from hdrlab.fast.merge import merge
 from hdrlab.scenes.places import layers
 
 G = true_g("film")
@@ -127,7 +127,7 @@ def test_values_of_photographs_agree_with_merging_one_alone(walk):
     Z, t = walk.bracket.images, walk.bracket.times
     seen = ldr_values.as_values(Z, t, G)
     for k in range(3):
-        E = merge(Z[k : k + 1], t[k : k + 1], G, mend=False)
+        E = merge(Z[k : k + 1], t[k : k + 1], G)
         inside = (Z[k] > 10) & (Z[k] < 240)
         assert np.allclose(ldr_values.radiance(seen.v[k], t[k], seen.full)[inside], E[inside], rtol=1e-3)
 

@@ -7,7 +7,7 @@ from hdrlab.beyond import splitter
 from hdrlab.capture import camera, movers
 from hdrlab.core import mosaic
 from hdrlab.core.colour import luminance
-from hdrlab.radiance.merge import merge
+from hdrlab.fast.merge import merge
 from hdrlab.scenes.places import layers
 
 E_SHARES = splitter.shares()

@@ -7,7 +7,7 @@ from hdrlab.beyond import flow, neighbours, steady, video
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
 from hdrlab.core.colour import luminance
-from hdrlab.radiance.merge import merge
+from hdrlab.fast.merge import merge
 from hdrlab.scenes.places import layers
 from hdrlab.tonemap import reinhard
 

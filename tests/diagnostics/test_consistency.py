@@ -6,7 +6,7 @@ import pytest
 from hdrlab.capture import camera, responses
 from hdrlab.core.weights import gaussian
 from hdrlab.diagnostics import consistency
-from hdrlab.radiance.merge import merge
+from hdrlab.fast.merge import merge
 
 G = responses.true_g("film")
 

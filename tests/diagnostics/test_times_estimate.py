@@ -14,7 +14,7 @@ from hdrlab.diagnostics import consistency, flats, response_steps
 from hdrlab.diagnostics.contradictions import Contradictions, contradictions, doubt, outstanding
 from hdrlab.diagnostics.exposure_times import estimate, note
 from hdrlab.fast import debevec
-from hdrlab.radiance.merge import merge
+from hdrlab.fast.merge import merge
 from hdrlab.response import linear
 
 

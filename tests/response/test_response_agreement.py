@@ -9,7 +9,7 @@ from hdrlab.capture import camera
 from hdrlab.core import weights
 from hdrlab.core.errors import response_rmse
 from hdrlab.fast import debevec
-from hdrlab.radiance.merge import merge
+from hdrlab.fast.merge import merge
 from hdrlab.response import grossberg, mann, marginal, mitsunaga, robertson, space
 
 FREE = {"debevec": debevec.recover, "robertson": robertson.recover, "histograms": grossberg.recover}
