@@ -1,8 +1,8 @@
 """Which well-known mistake an answer comes from: it agrees with a wrong file, and not with the library.
 
-The folder `mistakes` holds a file for each mistake: the id of its TASK, the MISCONCEPTION as a sentence to
-the student, and the wrong function. All of them are asked what the student was asked. Wrong files are
-ours, and run here.
+The folder `mistakes` holds a file for each mistake: a docstring that says to the student
+what is wrong, the id of its TASK, and the wrong function. All of them are asked what the student was asked.
+Wrong files are ours, and run here.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
@@ -44,7 +44,8 @@ def known() -> tuple[Misconception, ...]:
 
 def _read(path: Path) -> Misconception:
     names = runpy.run_path(str(path))
-    return Misconception(path.stem, names["TASK"], names["MISCONCEPTION"], names[names["TASK"]])
+    sentence = " ".join(names["__doc__"].split())
+    return Misconception(path.stem, names["TASK"], sentence, names[names["TASK"]])
 
 
 def recognise(task: str, calls: Sequence[Call]) -> str | None:

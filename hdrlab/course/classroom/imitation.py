@@ -15,7 +15,6 @@ from hdrlab.course.checks import MISTAKES
 from hdrlab.course.code import inline, names, source
 from hdrlab.course.plan import Homework
 
-ABOUT = ("TASK", "MISCONCEPTION")  # what a wrong file says of itself
 FENCE = "\n\n\n# %%\n"
 
 
@@ -68,8 +67,8 @@ def mistake(name: str) -> Mistake:
     for node in body:
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith(source.HOUSE):
             house |= {one.asname or one.name: f"{node.module}.{one.name}" for one in node.names}
-        elif isinstance(node, ast.Assign) and set(names.bound(node)) <= set(ABOUT):
-            task = ast.literal_eval(node.value) if names.bound(node) == ["TASK"] else task
+        elif isinstance(node, ast.Assign) and names.bound(node) == ["TASK"]:
+            task = ast.literal_eval(node.value)
         else:
             kept.append(node)
     calls = {}

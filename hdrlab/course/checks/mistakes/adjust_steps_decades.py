@@ -1,14 +1,11 @@
-"""A wrong adjust_steps: decades."""
+"""The display's range is a natural logarithm, like db; you took it for decades, and the ceiling is 2.3
+times too high or too low."""
 
 import numpy as np
 
 from hdrlab.tonemap import ward
 
 TASK = "adjust_steps"
-MISCONCEPTION = (
-    "The display's range is a natural logarithm, like db; you took it for decades, and the ceiling is 2.3 "
-    "times too high or too low."
-)
 
 
 def adjust_steps(f, db, D, *, tolerance=0.025):

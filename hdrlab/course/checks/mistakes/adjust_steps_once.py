@@ -1,12 +1,9 @@
-"""A wrong adjust_steps: once."""
+"""You applied the ceiling once. The trim made T less, and the ceiling with it: trim again until hardly
+anything is cut."""
 
 from hdrlab.tonemap import ward
 
 TASK = "adjust_steps"
-MISCONCEPTION = (
-    "You applied the ceiling once. The trim made T less, and the ceiling with it: trim again until hardly "
-    "anything is cut."
-)
 
 
 def adjust_steps(f, db, D, *, tolerance=0.025):

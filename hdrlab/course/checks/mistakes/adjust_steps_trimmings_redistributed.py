@@ -1,13 +1,10 @@
-"""A wrong adjust_steps: trimmings redistributed."""
+"""You put the trimmings back into other bins: that raises their slopes above 1. What is cut off is gone."""
 
 import numpy as np
 
 from hdrlab.tonemap import ward
 
 TASK = "adjust_steps"
-MISCONCEPTION = (
-    "You put the trimmings back into other bins: that raises their slopes above 1. What is cut off is gone."
-)
 
 
 def adjust_steps(f, db, D, *, tolerance=0.025):

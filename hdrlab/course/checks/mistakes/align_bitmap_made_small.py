@@ -1,4 +1,5 @@
-"""A wrong align: bitmap made small."""
+"""You make the bitmap of the whole picture small, instead of the picture: at the coarse levels fine texture
+is noise then."""
 
 import numpy as np
 
@@ -6,10 +7,6 @@ from hdrlab.align import mtb, pairs
 from hdrlab.align.bitmaps import pack
 
 TASK = "align"
-MISCONCEPTION = (
-    "You make the bitmap of the whole picture small, instead of the picture: at the coarse levels fine "
-    "texture is noise then."
-)
 
 
 def align(images, *, bits=6, luma=False):

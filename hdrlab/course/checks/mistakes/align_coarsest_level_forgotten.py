@@ -1,11 +1,10 @@
-"""A wrong align: coarsest level forgotten."""
+"""Your pyramid has a level too few: with `bits` levels an offset reaches 2^bits - 1 pixels."""
 
 import numpy as np
 
 from hdrlab.align import mtb
 
 TASK = "align"
-MISCONCEPTION = "Your pyramid has a level too few: with `bits` levels an offset reaches 2^bits - 1 pixels."
 
 
 def align(images, *, bits=6, luma=False):

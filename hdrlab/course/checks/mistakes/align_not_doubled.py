@@ -1,11 +1,8 @@
-"""A wrong align: not doubled."""
+"""A pixel of a level is two of the next finer one: double the offset before you look around it."""
 
 from hdrlab.align import mtb, pairs
 
 TASK = "align"
-MISCONCEPTION = (
-    "A pixel of a level is two of the next finer one: double the offset before you look around it."
-)
 
 
 def align(images, *, bits=6, luma=False):

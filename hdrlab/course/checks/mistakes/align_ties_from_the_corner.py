@@ -1,4 +1,5 @@
-"""A wrong align: ties from the corner."""
+"""Where all nine candidates are equally good you take the first, in the corner, and walk off a pixel a
+level: begin with the centre."""
 
 import numpy as np
 
@@ -6,10 +7,6 @@ from hdrlab.align import mtb, pairs
 from hdrlab.align.bitmaps import around, error
 
 TASK = "align"
-MISCONCEPTION = (
-    "Where all nine candidates are equally good you take the first, in the corner, and walk off a pixel a "
-    "level: begin with the centre."
-)
 
 
 def align(images, *, bits=6, luma=False):

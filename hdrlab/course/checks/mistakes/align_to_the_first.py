@@ -1,11 +1,8 @@
-"""A wrong align: to the first."""
+"""Your offsets lay the images on the first one; the one in the middle of their brightness is to stay."""
 
 from hdrlab.align import mtb
 
 TASK = "align"
-MISCONCEPTION = (
-    "Your offsets lay the images on the first one; the one in the middle of their brightness is to stay."
-)
 
 
 def align(images, *, bits=6, luma=False):

@@ -1,12 +1,9 @@
-"""A wrong align: wrong way."""
+"""Your offsets say where the images have moved to; asked is where they must move to lie on the one in the
+middle: change the sign."""
 
 from hdrlab.align import mtb
 
 TASK = "align"
-MISCONCEPTION = (
-    "Your offsets say where the images have moved to; asked is where they must move to lie on the one in "
-    "the middle: change the sign."
-)
 
 
 def align(images, *, bits=6, luma=False):

@@ -1,13 +1,10 @@
-"""A wrong attenuation_steps: finest alone."""
+"""You attenuate by the finest level alone: a soft edge of a large contrast has gentle slopes there, and
+comes through."""
 
 from hdrlab.core import pyramid
 from hdrlab.tonemap import fattal
 
 TASK = "attenuation_steps"
-MISCONCEPTION = (
-    "You attenuate by the finest level alone: a soft edge of a large contrast has gentle slopes there, "
-    "and comes through."
-)
 
 
 def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):

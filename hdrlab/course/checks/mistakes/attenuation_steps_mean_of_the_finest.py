@@ -1,4 +1,4 @@
-"""A wrong attenuation_steps: mean of the finest."""
+"""alpha is a tenth of the mean slope at each level; you took the mean of the finest level for all."""
 
 import numpy as np
 
@@ -6,9 +6,6 @@ from hdrlab.core import pyramid
 from hdrlab.tonemap import fattal
 
 TASK = "attenuation_steps"
-MISCONCEPTION = (
-    "alpha is a tenth of the mean slope at each level; you took the mean of the finest level for all."
-)
 
 
 def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):

@@ -1,4 +1,5 @@
-"""A wrong attenuation_steps: phi of the coarser."""
+"""Your phi comes from the wrong level: Phi_k takes the phi of level k itself, and you took that of the next
+coarser one again."""
 
 import numpy as np
 
@@ -6,10 +7,6 @@ from hdrlab.core import pyramid
 from hdrlab.tonemap import fattal
 
 TASK = "attenuation_steps"
-MISCONCEPTION = (
-    "Your phi comes from the wrong level: Phi_k takes the phi of level k itself, and you took that of the "
-    "next coarser one again."
-)
 
 
 def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):

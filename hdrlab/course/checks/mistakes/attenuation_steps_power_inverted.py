@@ -1,4 +1,4 @@
-"""A wrong attenuation_steps: power inverted."""
+"""Your phi grows with the slope: steep slopes are made steeper. The power is beta - 1, which is negative."""
 
 import numpy as np
 
@@ -6,9 +6,6 @@ from hdrlab.core import pyramid
 from hdrlab.tonemap import fattal
 
 TASK = "attenuation_steps"
-MISCONCEPTION = (
-    "Your phi grows with the slope: steep slopes are made steeper. The power is beta - 1, which is negative."
-)
 
 
 def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):

@@ -1,12 +1,9 @@
-"""A wrong bound: clipped alone."""
+"""You think of clipped pixels alone: one that is dark in all frames is bounded from above, by the longest
+of them."""
 
 import numpy as np
 
 TASK = "bound"
-MISCONCEPTION = (
-    "You think of clipped pixels alone: one that is dark in all frames is bounded from above, by the "
-    "longest of them."
-)
 
 
 def bound(Z, B, g, top, shown):

@@ -1,11 +1,10 @@
-"""A wrong bound: flags swapped."""
+"""Your flags are swapped: CLIPPED is 1, and DARK is 2."""
 
 import numpy as np
 
 from hdrlab.radiance import merge as merging
 
 TASK = "bound"
-MISCONCEPTION = "Your flags are swapped: CLIPPED is 1, and DARK is 2."
 
 
 def bound(Z, B, g, top, shown):

@@ -1,9 +1,8 @@
-"""A wrong bound: hidden frames count."""
+"""You ask frames that do not show the pixel: `shown` says which do."""
 
 from hdrlab.radiance import merge as merging
 
 TASK = "bound"
-MISCONCEPTION = "You ask frames that do not show the pixel: `shown` says which do."
 
 
 def bound(Z, B, g, top, shown):

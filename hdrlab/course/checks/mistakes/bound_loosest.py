@@ -1,12 +1,9 @@
-"""A wrong bound: loosest."""
+"""Several frames bound the pixel, and you take the loosest bound: the shortest clipped frame says most, and
+the longest dark one."""
 
 import numpy as np
 
 TASK = "bound"
-MISCONCEPTION = (
-    "Several frames bound the pixel, and you take the loosest bound: the shortest clipped frame says "
-    "most, and the longest dark one."
-)
 
 
 def bound(Z, B, g, top, shown):

@@ -1,12 +1,9 @@
-"""A wrong bound: middle of radiance."""
+"""Between two bounds you take the mean of the radiances, which is nearly the upper one: take the middle of
+their logarithms."""
 
 import numpy as np
 
 TASK = "bound"
-MISCONCEPTION = (
-    "Between two bounds you take the mean of the radiances, which is nearly the upper one: take the "
-    "middle of their logarithms."
-)
 
 
 def bound(Z, B, g, top, shown):

@@ -1,12 +1,9 @@
-"""A wrong compressed: dark end at white."""
+"""You anchor the dark end: everything is brighter than white then. The bright end is the one that becomes
+1."""
 
 import numpy as np
 
 TASK = "compressed"
-MISCONCEPTION = (
-    "You anchor the dark end: everything is brighter than white then. The bright end is the one that "
-    "becomes 1."
-)
 
 
 def compressed(base, low, high, *, contrast=50.0):

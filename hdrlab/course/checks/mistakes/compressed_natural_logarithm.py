@@ -1,12 +1,9 @@
-"""A wrong compressed: natural logarithm."""
+"""c is a natural logarithm in your code and the base is in decades: the picture keeps 2.3 times too much
+contrast."""
 
 import numpy as np
 
 TASK = "compressed"
-MISCONCEPTION = (
-    "c is a natural logarithm in your code and the base is in decades: the picture keeps 2.3 times too "
-    "much contrast."
-)
 
 
 def compressed(base, low, high, *, contrast=50.0):

@@ -1,9 +1,8 @@
-"""A wrong compressed: stretches."""
+"""A scene of less contrast than the display has is stretched: m is at most 1."""
 
 import numpy as np
 
 TASK = "compressed"
-MISCONCEPTION = "A scene of less contrast than the display has is stretched: m is at most 1."
 
 
 def compressed(base, low, high, *, contrast=50.0):

@@ -1,11 +1,8 @@
-"""A wrong count: first forgotten."""
+"""The first photograph holds its whole usable range; only what is beyond that is divided by the step."""
 
 import math
 
 TASK = "count"
-MISCONCEPTION = (
-    "The first photograph holds its whole usable range; only what is beyond that is divided by the step."
-)
 
 
 def count(scene, usable, overlap):

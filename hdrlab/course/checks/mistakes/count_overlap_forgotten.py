@@ -1,11 +1,8 @@
-"""A wrong count: overlap forgotten."""
+"""Each further photograph adds only what it does not share with its neighbour: usable less overlap."""
 
 import math
 
 TASK = "count"
-MISCONCEPTION = (
-    "Each further photograph adds only what it does not share with its neighbour: usable less overlap."
-)
 
 
 def count(scene, usable, overlap):

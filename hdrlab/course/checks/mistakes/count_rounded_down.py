@@ -1,9 +1,8 @@
-"""A wrong count: rounded down."""
+"""What is left after the last whole step needs a photograph too: round up, not down."""
 
 import math
 
 TASK = "count"
-MISCONCEPTION = "What is left after the last whole step needs a photograph too: round up, not down."
 
 
 def count(scene, usable, overlap):

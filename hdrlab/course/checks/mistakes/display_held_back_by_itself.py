@@ -1,11 +1,8 @@
-"""A wrong display: held back by itself."""
+"""You hold each pixel back by its own luminance; the second argument is what to hold it back by."""
 
 from hdrlab.tonemap import reinhard
 
 TASK = "display"
-MISCONCEPTION = (
-    "You hold each pixel back by its own luminance; the second argument is what to hold it back by."
-)
 
 
 def display(Lm, adaptation, white=float("inf")):

@@ -1,9 +1,8 @@
-"""A wrong display: not clipped."""
+"""What is brighter than white stays white: clip at 1."""
 
 import numpy as np
 
 TASK = "display"
-MISCONCEPTION = "What is brighter than white stays white: clip at 1."
 
 
 def display(Lm, adaptation, white=np.inf):

@@ -1,12 +1,9 @@
-"""A wrong display: white not squared."""
+"""White is squared: Lm / white^2. As you have it, Lm = white comes out above 1, and is clipped long
+before."""
 
 import numpy as np
 
 TASK = "display"
-MISCONCEPTION = (
-    "White is squared: Lm / white^2. As you have it, Lm = white comes out above 1, and is clipped long "
-    "before."
-)
 
 
 def display(Lm, adaptation, white=np.inf):

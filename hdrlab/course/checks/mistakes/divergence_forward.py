@@ -1,12 +1,9 @@
-"""A wrong divergence: forward."""
+"""Your differences look forward, like those of the gradient: the divergence looks back, or the picture
+drifts by a pixel."""
 
 import numpy as np
 
 TASK = "divergence"
-MISCONCEPTION = (
-    "Your differences look forward, like those of the gradient: the divergence looks back, or the picture "
-    "drifts by a pixel."
-)
 
 
 def divergence(G):

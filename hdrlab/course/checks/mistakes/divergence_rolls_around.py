@@ -1,12 +1,9 @@
-"""A wrong divergence: rolls around."""
+"""np.roll lets light flow from one edge of the picture into the other: before the first row and column
+there is nothing."""
 
 import numpy as np
 
 TASK = "divergence"
-MISCONCEPTION = (
-    "np.roll lets light flow from one edge of the picture into the other: before the first row and column "
-    "there is nothing."
-)
 
 
 def divergence(G):

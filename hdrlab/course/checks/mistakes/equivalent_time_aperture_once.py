@@ -1,9 +1,6 @@
-"""A wrong equivalent_time: aperture once."""
+"""Twice the f-number is a quarter of the light, not a half: the ratio of the f-numbers is squared."""
 
 TASK = "equivalent_time"
-MISCONCEPTION = (
-    "Twice the f-number is a quarter of the light, not a half: the ratio of the f-numbers is squared."
-)
 
 
 def equivalent_time(T, F, F_new, *, S=100, S_new=100):

@@ -1,9 +1,6 @@
-"""A wrong equivalent_time: inverted."""
+"""A larger f-number lets less light through, so the time must become longer: your ratio is upside down."""
 
 TASK = "equivalent_time"
-MISCONCEPTION = (
-    "A larger f-number lets less light through, so the time must become longer: your ratio is upside down."
-)
 
 
 def equivalent_time(T, F, F_new, *, S=100, S_new=100):

@@ -1,7 +1,6 @@
-"""A wrong equivalent_time: speed inverted."""
+"""A higher speed needs a shorter time: multiply by the old speed over the new one."""
 
 TASK = "equivalent_time"
-MISCONCEPTION = "A higher speed needs a shorter time: multiply by the old speed over the new one."
 
 
 def equivalent_time(T, F, F_new, *, S=100, S_new=100):

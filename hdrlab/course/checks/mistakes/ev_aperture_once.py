@@ -1,12 +1,9 @@
-"""A wrong ev: aperture once."""
+"""The light goes with the area of the aperture, which is 1 / F squared: each f-number counts twice, 2
+log2 F."""
 
 import numpy as np
 
 TASK = "ev"
-MISCONCEPTION = (
-    "The light goes with the area of the aperture, which is 1 / F squared: each f-number counts twice, 2 "
-    "log2 F."
-)
 
 
 def ev(F, T, *, S=100.0):

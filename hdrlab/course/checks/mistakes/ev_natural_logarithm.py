@@ -1,9 +1,8 @@
-"""A wrong ev: natural logarithm."""
+"""Stops are powers of two: take the logarithm to the base 2, where you took the natural one."""
 
 import numpy as np
 
 TASK = "ev"
-MISCONCEPTION = "Stops are powers of two: take the logarithm to the base 2, where you took the natural one."
 
 
 def ev(F, T, *, S=100.0):

@@ -1,11 +1,8 @@
-"""A wrong ev: speed added."""
+"""A higher ISO speed needs less light, so it lowers the exposure value: subtract log2(S / 100)."""
 
 import numpy as np
 
 TASK = "ev"
-MISCONCEPTION = (
-    "A higher ISO speed needs less light, so it lowers the exposure value: subtract log2(S / 100)."
-)
 
 
 def ev(F, T, *, S=100.0):

@@ -1,9 +1,8 @@
-"""A wrong exclusion: four kept."""
+"""The codes t - 4 and t + 4 are within the noise too: compare with > 4, not >= 4."""
 
 import numpy as np
 
 TASK = "exclusion"
-MISCONCEPTION = "The codes t - 4 and t + 4 are within the noise too: compare with > 4, not >= 4."
 
 
 def exclusion(Y, t):

@@ -1,11 +1,8 @@
-"""A wrong exclusion: inverted."""
+"""Your exclusion bitmap is inverted: it keeps just those pixels near the threshold that noise decides."""
 
 import numpy as np
 
 TASK = "exclusion"
-MISCONCEPTION = (
-    "Your exclusion bitmap is inverted: it keeps just those pixels near the threshold that noise decides."
-)
 
 
 def exclusion(Y, t):

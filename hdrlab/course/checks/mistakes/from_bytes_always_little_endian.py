@@ -1,12 +1,9 @@
-"""A wrong from_bytes: always little endian."""
+"""You read every file as little endian; the sign of the scale says which it is, and positive is big
+endian."""
 
 from hdrlab.io import pfm
 
 TASK = "from_bytes"
-MISCONCEPTION = (
-    "You read every file as little endian; the sign of the scale says which it is, and positive is big "
-    "endian."
-)
 
 
 def from_bytes(data):

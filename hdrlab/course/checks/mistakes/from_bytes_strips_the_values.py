@@ -1,9 +1,8 @@
-"""A wrong from_bytes: strips the values."""
+"""You strip white space before the values; a value's own bytes may look like white space."""
 
 import numpy as np
 
 TASK = "from_bytes"
-MISCONCEPTION = "You strip white space before the values; a value's own bytes may look like white space."
 
 
 def from_bytes(data):

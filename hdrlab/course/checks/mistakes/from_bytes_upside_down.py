@@ -1,9 +1,8 @@
-"""A wrong from_bytes: upside down."""
+"""Your picture is upside down: the first row in the file is the lowest one."""
 
 from hdrlab.io import pfm
 
 TASK = "from_bytes"
-MISCONCEPTION = "Your picture is upside down: the first row in the file is the lowest one."
 
 
 def from_bytes(data):

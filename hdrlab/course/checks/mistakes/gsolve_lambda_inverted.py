@@ -1,12 +1,9 @@
-"""A wrong gsolve: lambda inverted."""
+"""Your curve becomes rougher where lambda grows: the smoothness rows are multiplied by lambda, and you
+divide."""
 
 from hdrlab.response import debevec
 
 TASK = "gsolve"
-MISCONCEPTION = (
-    "Your curve becomes rougher where lambda grows: the smoothness rows are multiplied by lambda, and you "
-    "divide."
-)
 
 
 def gsolve(Z, B, smoothness, w):

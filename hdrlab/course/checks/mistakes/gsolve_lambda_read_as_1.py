@@ -1,12 +1,9 @@
-"""A wrong gsolve: lambda read as 1."""
+"""The listing's digit 1 is a letter: lambda. Your smoothness rows do not hold it, so the knob does
+nothing."""
 
 from hdrlab.response import debevec
 
 TASK = "gsolve"
-MISCONCEPTION = (
-    "The listing's digit 1 is a letter: lambda. Your smoothness rows do not hold it, so the knob does "
-    "nothing."
-)
 
 
 def gsolve(Z, B, smoothness, w):

@@ -1,14 +1,11 @@
-"""A wrong gsolve: log2 of the times."""
+"""B is the natural logarithm of the times; you took the one to the base 2, and every stop is 1.44 times
+too long."""
 
 import numpy as np
 
 from hdrlab.response import debevec
 
 TASK = "gsolve"
-MISCONCEPTION = (
-    "B is the natural logarithm of the times; you took the one to the base 2, and every stop is 1.44 "
-    "times too long."
-)
 
 
 def gsolve(Z, B, smoothness, w):

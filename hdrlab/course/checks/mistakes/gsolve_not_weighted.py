@@ -1,13 +1,10 @@
-"""A wrong gsolve: not weighted."""
+"""The data rows have no weight: clipped pixels, which say only at least or at most, bend your curve."""
 
 import numpy as np
 
 from hdrlab.response import debevec
 
 TASK = "gsolve"
-MISCONCEPTION = (
-    "The data rows have no weight: clipped pixels, which say only at least or at most, bend your curve."
-)
 
 
 def gsolve(Z, B, smoothness, w):

@@ -1,11 +1,10 @@
-"""A wrong gsolve: right side not weighted."""
+"""The weight multiplies the whole row: w (g - lE) = w B. Your right-hand side has no weight."""
 
 import numpy as np
 
 from hdrlab.response import debevec
 
 TASK = "gsolve"
-MISCONCEPTION = "The weight multiplies the whole row: w (g - lE) = w B. Your right-hand side has no weight."
 
 
 def gsolve(Z, B, smoothness, w):

@@ -1,14 +1,11 @@
-"""A wrong gsolve: smoothness not weighted."""
+"""The smoothness rows have a weight too: lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)). Without w(z) the
+ends are as stiff as the middle."""
 
 import numpy as np
 
 from hdrlab.response import debevec
 
 TASK = "gsolve"
-MISCONCEPTION = (
-    "The smoothness rows have a weight too: lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)). Without w(z) the "
-    "ends are as stiff as the middle."
-)
 
 
 def gsolve(Z, B, smoothness, w):

@@ -1,12 +1,9 @@
-"""A wrong hat: ends count."""
+"""You added 1, so that clipped levels still count: a pixel of level 255 says only that there was at least
+so much light."""
 
 import numpy as np
 
 TASK = "hat"
-MISCONCEPTION = (
-    "You added 1, so that clipped levels still count: a pixel of level 255 says only that there was at "
-    "least so much light."
-)
 
 
 def hat(n=256):

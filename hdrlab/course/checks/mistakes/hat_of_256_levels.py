@@ -1,9 +1,8 @@
-"""A wrong hat: of 256 levels."""
+"""Your table has 256 levels whatever n says; photographs of 16 bits have 65536."""
 
 import numpy as np
 
 TASK = "hat"
-MISCONCEPTION = "Your table has 256 levels whatever n says; photographs of 16 bits have 65536."
 
 
 def hat(n=256):

@@ -1,12 +1,9 @@
-"""A wrong hat: zero in the middle."""
+"""Your hat stands on its head: it is 0 in the middle, where a photograph tells most, and largest where it
+is clipped."""
 
 import numpy as np
 
 TASK = "hat"
-MISCONCEPTION = (
-    "Your hat stands on its head: it is 0 in the middle, where a photograph tells most, and largest where "
-    "it is clipped."
-)
 
 
 def hat(n=256):

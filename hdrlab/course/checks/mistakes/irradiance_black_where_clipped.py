@@ -1,12 +1,9 @@
-"""A wrong irradiance: black where clipped."""
+"""Where no frame saw the sample well nothing is known of it. You answer 0, which is the darkest there is:
+a dark sun."""
 
 import numpy as np
 
 TASK = "irradiance"
-MISCONCEPTION = (
-    "Where no frame saw the sample well nothing is known of it. You answer 0, which is the darkest there "
-    "is: a dark sun."
-)
 
 
 def irradiance(Z, t, f, w):

@@ -1,7 +1,6 @@
-"""A wrong irradiance: not weighted."""
+"""Without weights clipped pixels count like all others, and pull bright irradiances down."""
 
 TASK = "irradiance"
-MISCONCEPTION = "Without weights clipped pixels count like all others, and pull bright irradiances down."
 
 
 def irradiance(Z, t, f, w):

@@ -1,7 +1,6 @@
-"""A wrong irradiance: time below alone."""
+"""The time belongs above the fraction as well: sum w f t over sum w t^2."""
 
 TASK = "irradiance"
-MISCONCEPTION = "The time belongs above the fraction as well: sum w f t over sum w t^2."
 
 
 def irradiance(Z, t, f, w):

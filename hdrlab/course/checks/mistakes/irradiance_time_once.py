@@ -1,10 +1,7 @@
-"""A wrong irradiance: time once."""
+"""Below the fraction the time is squared: sum w t^2. Yours weights frames as if all light were counted in
+one bin."""
 
 TASK = "irradiance"
-MISCONCEPTION = (
-    "Below the fraction the time is squared: sum w t^2. Yours weights frames as if all light were counted "
-    "in one bin."
-)
 
 
 def irradiance(Z, t, f, w):

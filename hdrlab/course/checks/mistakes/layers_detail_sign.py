@@ -1,12 +1,9 @@
-"""A wrong layers: detail sign."""
+"""Your detail has the sign reversed, as the overview prints it: detail = lL - base, so that both add up
+to the picture."""
 
 from hdrlab.tonemap import durand
 
 TASK = "layers"
-MISCONCEPTION = (
-    "Your detail has the sign reversed, as the overview prints it: detail = lL - base, so that both add "
-    "up to the picture."
-)
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):

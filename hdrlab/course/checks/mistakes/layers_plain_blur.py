@@ -1,12 +1,9 @@
-"""A wrong layers: plain blur."""
+"""Your base is a plain blur: it crosses the edges, and leaves halos. Weight each neighbour by its
+difference in lL too."""
 
 from scipy.ndimage import gaussian_filter
 
 TASK = "layers"
-MISCONCEPTION = (
-    "Your base is a plain blur: it crosses the edges, and leaves halos. Weight each neighbour by its "
-    "difference in lL too."
-)
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):

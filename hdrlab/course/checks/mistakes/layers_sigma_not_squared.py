@@ -1,12 +1,9 @@
-"""A wrong layers: sigma not squared."""
+"""The exponent of a Gaussian is -d^2 / (2 sigma^2); yours has sigma where its square belongs, so the
+widths are not those asked for."""
 
 from hdrlab.core.bilateral import bilateral
 
 TASK = "layers"
-MISCONCEPTION = (
-    "The exponent of a Gaussian is -d^2 / (2 sigma^2); yours has sigma where its square belongs, so the "
-    "widths are not those asked for."
-)
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):

@@ -1,13 +1,10 @@
-"""A wrong layers: weights not divided."""
+"""You did not divide by the sum of the weights: where few neighbours are alike the base is too small."""
 
 import numpy as np
 
 from hdrlab.core.bilateral import bilateral
 
 TASK = "layers"
-MISCONCEPTION = (
-    "You did not divide by the sum of the weights: where few neighbours are alike the base is too small."
-)
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):

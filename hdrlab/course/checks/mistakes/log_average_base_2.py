@@ -1,11 +1,8 @@
-"""A wrong log_average: base 2."""
+"""You took the logarithm to one base and the power of another: exp belongs to the natural logarithm."""
 
 import numpy as np
 
 TASK = "log_average"
-MISCONCEPTION = (
-    "You took the logarithm to one base and the power of another: exp belongs to the natural logarithm."
-)
 
 
 def log_average(L, *, delta=1e-6):

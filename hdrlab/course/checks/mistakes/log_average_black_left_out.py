@@ -1,12 +1,9 @@
-"""A wrong log_average: black left out."""
+"""You take the mean of log L where L is above 0 alone: black pixels are part of the scene, and the delta
+is there for them."""
 
 import numpy as np
 
 TASK = "log_average"
-MISCONCEPTION = (
-    "You take the mean of log L where L is above 0 alone: black pixels are part of the scene, and the "
-    "delta is there for them."
-)
 
 
 def log_average(L, *, delta=1e-6):

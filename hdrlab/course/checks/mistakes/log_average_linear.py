@@ -1,12 +1,9 @@
-"""A wrong log_average: linear."""
+"""This is the mean of L itself: one lamp decides how bright the whole scene counts. Take the mean of the
+logarithms."""
 
 import numpy as np
 
 TASK = "log_average"
-MISCONCEPTION = (
-    "This is the mean of L itself: one lamp decides how bright the whole scene counts. Take the mean of "
-    "the logarithms."
-)
 
 
 def log_average(L, *, delta=1e-6):

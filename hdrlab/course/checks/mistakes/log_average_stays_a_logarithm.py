@@ -1,9 +1,8 @@
-"""A wrong log_average: stays a logarithm."""
+"""You stopped at the mean of the logarithms: take exp of it, so that Lav has the unit of L."""
 
 import numpy as np
 
 TASK = "log_average"
-MISCONCEPTION = "You stopped at the mean of the logarithms: take exp of it, so that Lav has the unit of L."
 
 
 def log_average(L, *, delta=1e-6):

@@ -1,11 +1,8 @@
-"""A wrong merge: always the hat."""
+"""You use the hat whatever w is given; look the weights up in w, and take the hat where it is None."""
 
 from hdrlab.radiance import merge as merging
 
 TASK = "merge"
-MISCONCEPTION = (
-    "You use the hat whatever w is given; look the weights up in w, and take the hat where it is None."
-)
 
 
 def merge(images, times, g, w=None):

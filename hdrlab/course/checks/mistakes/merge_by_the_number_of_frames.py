@@ -1,14 +1,11 @@
-"""A wrong merge: by the number of frames."""
+"""You divide by the number of frames. Divide by the sum of the weights: a pixel that is trusted in one
+frame alone has its value from that one."""
 
 import numpy as np
 
 from hdrlab.core import weights
 
 TASK = "merge"
-MISCONCEPTION = (
-    "You divide by the number of frames. Divide by the sum of the weights: a pixel that is trusted in one "
-    "frame alone has its value from that one."
-)
 
 
 def merge(images, times, g, w=None):

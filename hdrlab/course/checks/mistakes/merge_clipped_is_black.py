@@ -1,14 +1,11 @@
-"""A wrong merge: clipped is black."""
+"""Where all weights are 0 your map says 0: the sun is black. The shortest frame knows that it is at least
+as bright as its top level."""
 
 import numpy as np
 
 from hdrlab.core import weights
 
 TASK = "merge"
-MISCONCEPTION = (
-    "Where all weights are 0 your map says 0: the sun is black. The shortest frame knows that it is at "
-    "least as bright as its top level."
-)
 
 
 def merge(images, times, g, w=None):

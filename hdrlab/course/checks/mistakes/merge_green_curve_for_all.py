@@ -1,9 +1,8 @@
-"""A wrong merge: green curve for all."""
+"""You read every channel by the curve of green; g[:, c] belongs to channel c."""
 
 from hdrlab.radiance import merge as merging
 
 TASK = "merge"
-MISCONCEPTION = "You read every channel by the curve of green; g[:, c] belongs to channel c."
 
 
 def merge(images, times, g, w=None):

@@ -1,13 +1,10 @@
-"""A wrong merge: log2 of the times."""
+"""g holds natural logarithms, and you subtract the logarithm to the base 2 of the times: take ln of both."""
 
 import numpy as np
 
 from hdrlab.radiance import merge as merging
 
 TASK = "merge"
-MISCONCEPTION = (
-    "g holds natural logarithms, and you subtract the logarithm to the base 2 of the times: take ln of both."
-)
 
 
 def merge(images, times, g, w=None):

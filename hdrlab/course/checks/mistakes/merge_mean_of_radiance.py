@@ -1,11 +1,8 @@
-"""A wrong merge: mean of radiance."""
+"""You average the radiances; asked is the mean of their logarithms, which one bright outlier moves less."""
 
 from hdrlab.radiance import merge as merging
 
 TASK = "merge"
-MISCONCEPTION = (
-    "You average the radiances; asked is the mean of their logarithms, which one bright outlier moves less."
-)
 
 
 def merge(images, times, g, w=None):

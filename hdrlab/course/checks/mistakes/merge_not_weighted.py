@@ -1,13 +1,10 @@
-"""A wrong merge: not weighted."""
+"""All frames count the same in your mean: noise of dark levels, and levels that are nearly clipped, enter
+in full."""
 
 from hdrlab.core import weights
 from hdrlab.radiance import merge as merging
 
 TASK = "merge"
-MISCONCEPTION = (
-    "All frames count the same in your mean: noise of dark levels, and levels that are nearly clipped, "
-    "enter in full."
-)
 
 
 def merge(images, times, g, w=None):

@@ -1,14 +1,11 @@
-"""A wrong merge: small weights for clipped."""
+"""A small number added to the weights lets clipped pixels vote where nobody else does: the sun becomes
+the mean of what cannot be known, darker than the sky."""
 
 import numpy as np
 
 from hdrlab.core import weights
 
 TASK = "merge"
-MISCONCEPTION = (
-    "A small number added to the weights lets clipped pixels vote where nobody else does: the sun becomes "
-    "the mean of what cannot be known, darker than the sky."
-)
 
 
 def merge(images, times, g, w=None):

@@ -1,14 +1,11 @@
-"""A wrong merge: times forgotten."""
+"""exp(g) is the exposure, light times time: you forgot to divide by each frame's time, so frames of one
+scene disagree."""
 
 import numpy as np
 
 from hdrlab.radiance import merge as merging
 
 TASK = "merge"
-MISCONCEPTION = (
-    "exp(g) is the exposure, light times time: you forgot to divide by each frame's time, so frames of "
-    "one scene disagree."
-)
 
 
 def merge(images, times, g, w=None):

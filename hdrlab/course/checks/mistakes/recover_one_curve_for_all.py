@@ -1,12 +1,9 @@
-"""A wrong recover: one curve for all."""
+"""Each channel has a curve of its own: g of colour photographs is (256, 3), and yours is that of green
+alone."""
 
 from hdrlab.response import mitsunaga
 
 TASK = "recover"
-MISCONCEPTION = (
-    "Each channel has a curve of its own: g of colour photographs is (256, 3), and yours is that of green "
-    "alone."
-)
 
 
 def recover(images, times, *, order=5, eps=1e-3):

@@ -1,11 +1,10 @@
-"""A wrong recover: response not inverse."""
+"""You answer f, the exposure of each level; asked is its logarithm, g = ln f."""
 
 import numpy as np
 
 from hdrlab.response import mitsunaga
 
 TASK = "recover"
-MISCONCEPTION = "You answer f, the exposure of each level; asked is its logarithm, g = ln f."
 
 
 def recover(images, times, *, order=5, eps=1e-3):

@@ -1,14 +1,11 @@
-"""A wrong recover_steps: empty left at 0."""
+"""Levels without pixels stay 0 in your response. They lie between their neighbours: fill them, or later
+turns read 0 there."""
 
 import numpy as np
 
 from hdrlab.response import robertson
 
 TASK = "recover_steps"
-MISCONCEPTION = (
-    "Levels without pixels stay 0 in your response. They lie between their neighbours: fill them, or "
-    "later turns read 0 there."
-)
 
 
 def recover_steps(Z, times, w, *, smoothness=0.0, tolerance=1e-4, turns=200):

@@ -1,14 +1,11 @@
-"""A wrong recover_steps: exponential start."""
+"""The turns begin with a linear camera. You begin with an exponential, and what the photographs leave
+open stays bent like it."""
 
 import numpy as np
 
 from hdrlab.response import robertson
 
 TASK = "recover_steps"
-MISCONCEPTION = (
-    "The turns begin with a linear camera. You begin with an exponential, and what the photographs leave "
-    "open stays bent like it."
-)
 
 
 def recover_steps(Z, times, w, *, smoothness=0.0, tolerance=1e-4, turns=200):

@@ -1,13 +1,10 @@
-"""A wrong recover_steps: one turn."""
+"""One turn is not the end: the new f gives a better E, and that a better f. Go on until f hardly changes."""
 
 import numpy as np
 
 from hdrlab.response import robertson
 
 TASK = "recover_steps"
-MISCONCEPTION = (
-    "One turn is not the end: the new f gives a better E, and that a better f. Go on until f hardly changes."
-)
 
 
 def recover_steps(Z, times, w, *, smoothness=0.0, tolerance=1e-4, turns=200):

@@ -1,14 +1,11 @@
-"""A wrong recover_steps: weighted update."""
+"""You weight the update of f. It is a plain mean over the pixels of a level; weights of time and level
+bias it."""
 
 import numpy as np
 
 from hdrlab.response import robertson
 
 TASK = "recover_steps"
-MISCONCEPTION = (
-    "You weight the update of f. It is a plain mean over the pixels of a level; weights of time and level "
-    "bias it."
-)
 
 
 def recover_steps(Z, times, w, *, smoothness=0.0, tolerance=1e-4, turns=200):

@@ -1,4 +1,5 @@
-"""A wrong recover: times believed."""
+"""You believe the times that were given: after each fit the ratios are to be taken anew from the curve, R
+= sum f(M_q) / sum f(M_q+1)."""
 
 import numpy as np
 
@@ -6,10 +7,6 @@ from hdrlab.response import mitsunaga
 from hdrlab.response.polynomial import curve
 
 TASK = "recover"
-MISCONCEPTION = (
-    "You believe the times that were given: after each fit the ratios are to be taken anew from the "
-    "curve, R = sum f(M_q) / sum f(M_q+1)."
-)
 
 
 def recover(images, times, *, order=5, eps=1e-3):

@@ -1,9 +1,8 @@
-"""A wrong scale: blur of the inverse."""
+"""You blurred 1 / L: dark pixels count most in that mean. Blur L, and divide then."""
 
 from scipy.ndimage import gaussian_filter
 
 TASK = "scale"
-MISCONCEPTION = "You blurred 1 / L: dark pixels count most in that mean. Blur L, and divide then."
 
 
 def scale(L, *, headroom=8.0, sigma=None):

@@ -1,12 +1,9 @@
-"""A wrong scale: headroom above."""
+"""k belongs below the fraction: with more headroom the picture becomes darker, so that bright pixels find
+room."""
 
 from hdrlab.tonemap import chiu
 
 TASK = "scale"
-MISCONCEPTION = (
-    "k belongs below the fraction: with more headroom the picture becomes darker, so that bright pixels "
-    "find room."
-)
 
 
 def scale(L, *, headroom=8.0, sigma=None):

@@ -1,10 +1,7 @@
-"""A wrong scale: not blurred."""
+"""You divided by L itself: every pixel of the picture becomes 1 / k. The scale follows the neighbourhood,
+not the pixel."""
 
 TASK = "scale"
-MISCONCEPTION = (
-    "You divided by L itself: every pixel of the picture becomes 1 / k. The scale follows the "
-    "neighbourhood, not the pixel."
-)
 
 
 def scale(L, *, headroom=8.0, sigma=None):

@@ -1,12 +1,9 @@
-"""A wrong scale_steps: does not stop."""
+"""A pixel stops at the first width that is not even. Yours goes on, and takes a larger one that happens
+to be even again, across the edge."""
 
 import numpy as np
 
 TASK = "scale_steps"
-MISCONCEPTION = (
-    "A pixel stops at the first width that is not even. Yours goes on, and takes a larger one that "
-    "happens to be even again, across the edge."
-)
 
 
 WIDTHS = 1.6 ** np.arange(9)

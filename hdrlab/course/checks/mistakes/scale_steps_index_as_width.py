@@ -1,9 +1,8 @@
-"""A wrong scale_steps: index as width."""
+"""s is the width in pixels, 1, 1.6, 2.56 ... 26.8. You used the number of the step."""
 
 import numpy as np
 
 TASK = "scale_steps"
-MISCONCEPTION = "s is the width in pixels, 1, 1.6, 2.56 ... 26.8. You used the number of the step."
 
 
 WIDTHS = 1.6 ** np.arange(9)

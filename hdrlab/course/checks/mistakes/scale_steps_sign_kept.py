@@ -1,12 +1,9 @@
-"""A wrong scale_steps: sign kept."""
+"""You compare V itself with the threshold: a dark pixel beside a lamp has a negative V, which is always
+below. Take |V|."""
 
 import numpy as np
 
 TASK = "scale_steps"
-MISCONCEPTION = (
-    "You compare V itself with the threshold: a dark pixel beside a lamp has a negative V, which is "
-    "always below. Take |V|."
-)
 
 
 WIDTHS = 1.6 ** np.arange(9)

@@ -1,12 +1,9 @@
-"""A wrong scale_steps: surround kept."""
+"""You never update the surround: at each width the centre is compared with the next larger blur, not with
+the same one."""
 
 import numpy as np
 
 TASK = "scale_steps"
-MISCONCEPTION = (
-    "You never update the surround: at each width the centre is compared with the next larger blur, not "
-    "with the same one."
-)
 
 
 WIDTHS = 1.6 ** np.arange(9)

@@ -1,12 +1,9 @@
-"""A wrong scale: times luminance."""
+"""You multiplied by L already: s = 1 / (k blur(L)) is the scale alone. The overview's further factor L is
+a misprint, and makes L^2 of the picture."""
 
 from hdrlab.tonemap import chiu
 
 TASK = "scale"
-MISCONCEPTION = (
-    "You multiplied by L already: s = 1 / (k blur(L)) is the scale alone. The overview's further factor L "
-    "is a misprint, and makes L^2 of the picture."
-)
 
 
 def scale(L, *, headroom=8.0, sigma=None):

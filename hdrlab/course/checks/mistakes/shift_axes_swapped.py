@@ -1,9 +1,8 @@
-"""A wrong shift: axes swapped."""
+"""You took dx for dy: an offset is (dy, dx), rows first, like the axes of the array."""
 
 from hdrlab.align import shift as moving
 
 TASK = "shift"
-MISCONCEPTION = "You took dx for dy: an offset is (dy, dx), rows first, like the axes of the array."
 
 
 def shift(images, offsets):

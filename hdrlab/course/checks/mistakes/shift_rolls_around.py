@@ -1,11 +1,8 @@
-"""A wrong shift: rolls around."""
+"""np.roll brings in at one side what left at the other: cut the images to what all of them show."""
 
 import numpy as np
 
 TASK = "shift"
-MISCONCEPTION = (
-    "np.roll brings in at one side what left at the other: cut the images to what all of them show."
-)
 
 
 def shift(images, offsets):

@@ -1,9 +1,8 @@
-"""A wrong shift: wrong way."""
+"""Your images move the wrong way: (dy, dx) is where an image must go, down and to the right."""
 
 from hdrlab.align import shift as moving
 
 TASK = "shift"
-MISCONCEPTION = "Your images move the wrong way: (dy, dx) is where an image must go, down and to the right."
 
 
 def shift(images, offsets):

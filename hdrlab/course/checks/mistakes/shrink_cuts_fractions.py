@@ -1,9 +1,6 @@
-"""A wrong shrink: cuts fractions."""
+"""Cutting off the fraction makes every level three eighths of a code darker on the average: round instead."""
 
 TASK = "shrink"
-MISCONCEPTION = (
-    "Cutting off the fraction makes every level three eighths of a code darker on the average: round instead."
-)
 
 
 def shrink(Y):

@@ -1,12 +1,9 @@
-"""A wrong shrink: overflows."""
+"""The sum of four bytes does not fit into a byte, and wraps around: bright places turn dark. Use a wider
+type."""
 
 import numpy as np
 
 TASK = "shrink"
-MISCONCEPTION = (
-    "The sum of four bytes does not fit into a byte, and wraps around: bright places turn dark. Use a "
-    "wider type."
-)
 
 
 def shrink(Y):

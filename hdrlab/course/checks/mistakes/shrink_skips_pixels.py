@@ -1,10 +1,7 @@
-"""A wrong shrink: skips pixels."""
+"""You take every second pixel and drop the others: noise stays, and fine texture turns into patterns.
+Average four."""
 
 TASK = "shrink"
-MISCONCEPTION = (
-    "You take every second pixel and drop the others: noise stays, and fine texture turns into patterns. "
-    "Average four."
-)
 
 
 def shrink(Y):

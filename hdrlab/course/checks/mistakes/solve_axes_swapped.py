@@ -1,13 +1,10 @@
-"""A wrong solve: axes swapped."""
+"""Rows have the eigenvalues of the columns in your solution: on a square nobody sees it, elsewhere it is
+wrong."""
 
 import numpy as np
 from scipy.fft import dctn, idctn
 
 TASK = "solve"
-MISCONCEPTION = (
-    "Rows have the eigenvalues of the columns in your solution: on a square nobody sees it, elsewhere it "
-    "is wrong."
-)
 
 
 def solve(f):

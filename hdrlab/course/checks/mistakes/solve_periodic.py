@@ -1,12 +1,9 @@
-"""A wrong solve: periodic."""
+"""You solved with a Fourier transform, as if the picture went on at the other side: its edges bend to
+each other. Use cosines."""
 
 import numpy as np
 
 TASK = "solve"
-MISCONCEPTION = (
-    "You solved with a Fourier transform, as if the picture went on at the other side: its edges bend to "
-    "each other. Use cosines."
-)
 
 
 def solve(f):

@@ -1,9 +1,8 @@
-"""A wrong solve: wrong sign."""
+"""Your picture is a negative: the eigenvalues of the Laplacian are negative, 2 cos(...) - 2."""
 
 from hdrlab.core import poisson
 
 TASK = "solve"
-MISCONCEPTION = "Your picture is a negative: the eigenvalues of the Laplacian are negative, 2 cos(...) - 2."
 
 
 def solve(f):

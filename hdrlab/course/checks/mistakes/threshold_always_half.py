@@ -1,9 +1,8 @@
-"""A wrong threshold: always half."""
+"""You always take the median; q says which percentile is asked for."""
 
 import numpy as np
 
 TASK = "threshold"
-MISCONCEPTION = "You always take the median; q says which percentile is asked for."
 
 
 def threshold(h, q):

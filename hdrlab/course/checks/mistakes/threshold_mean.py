@@ -1,12 +1,9 @@
-"""A wrong threshold: mean."""
+"""This is the mean, not the median: a few bright pixels pull it up, and no longer are half of the pixels
+above it."""
 
 import numpy as np
 
 TASK = "threshold"
-MISCONCEPTION = (
-    "This is the mean, not the median: a few bright pixels pull it up, and no longer are half of the "
-    "pixels above it."
-)
 
 
 def threshold(h, q):

@@ -1,7 +1,6 @@
-"""A wrong to_bytes: float64."""
+"""The values of a PFM file are float32, of 4 bytes; you wrote float64, of 8."""
 
 TASK = "to_bytes"
-MISCONCEPTION = "The values of a PFM file are float32, of 4 bytes; you wrote float64, of 8."
 
 
 def to_bytes(E):

@@ -1,7 +1,6 @@
-"""A wrong to_bytes: height first."""
+"""The second line is the width and then the height; arrays have it the other way round."""
 
 TASK = "to_bytes"
-MISCONCEPTION = "The second line is the width and then the height; arrays have it the other way round."
 
 
 def to_bytes(E):

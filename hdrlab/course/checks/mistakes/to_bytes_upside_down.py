@@ -1,9 +1,8 @@
-"""A wrong to_bytes: upside down."""
+"""Your picture is upside down: the rows of a PFM file run from the bottom to the top."""
 
 from hdrlab.io import pfm
 
 TASK = "to_bytes"
-MISCONCEPTION = "Your picture is upside down: the rows of a PFM file run from the bottom to the top."
 
 
 def to_bytes(E):

@@ -1,10 +1,7 @@
-"""A wrong to_bytes: wrong order of bytes."""
+"""Your header says little endian (-1.0), and your values are big endian: all of them will be read as
+nonsense."""
 
 TASK = "to_bytes"
-MISCONCEPTION = (
-    "Your header says little endian (-1.0), and your values are big endian: all of them will be read as "
-    "nonsense."
-)
 
 
 def to_bytes(E):

@@ -1,11 +1,8 @@
-"""A wrong to_pixels: exponent of red."""
+"""You take the exponent of the red channel; it must be that of the brightest one, or the others overflow."""
 
 import numpy as np
 
 TASK = "to_pixels"
-MISCONCEPTION = (
-    "You take the exponent of the red channel; it must be that of the brightest one, or the others overflow."
-)
 
 
 def to_pixels(E):

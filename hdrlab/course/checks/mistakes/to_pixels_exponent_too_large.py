@@ -1,12 +1,9 @@
-"""A wrong to_pixels: exponent too large."""
+"""Your exponent is one too large, as from ceil(log2 E) + 1: the largest mantissa is below 128, and half
+of the precision is gone."""
 
 import numpy as np
 
 TASK = "to_pixels"
-MISCONCEPTION = (
-    "Your exponent is one too large, as from ceil(log2 E) + 1: the largest mantissa is below 128, and "
-    "half of the precision is gone."
-)
 
 
 def to_pixels(E):

@@ -1,9 +1,8 @@
-"""A wrong to_pixels: not times 256."""
+"""Your mantissas are fractions cut to 0: multiply them by 256 before you make bytes of them."""
 
 import numpy as np
 
 TASK = "to_pixels"
-MISCONCEPTION = "Your mantissas are fractions cut to 0: multiply them by 256 before you make bytes of them."
 
 
 def to_pixels(E):

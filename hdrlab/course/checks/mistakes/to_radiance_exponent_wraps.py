@@ -1,9 +1,8 @@
-"""A wrong to_radiance: exponent wraps."""
+"""The exponent is a byte: below 128, e - 128 wraps around. Turn it into int first."""
 
 import numpy as np
 
 TASK = "to_radiance"
-MISCONCEPTION = "The exponent is a byte: below 128, e - 128 wraps around. Turn it into int first."
 
 
 def to_radiance(pixels):

@@ -1,9 +1,8 @@
-"""A wrong to_radiance: mantissa from 1."""
+"""You read the mantissa like that of a float, 1 + m / 256; here it is m / 256 itself."""
 
 import numpy as np
 
 TASK = "to_radiance"
-MISCONCEPTION = "You read the mantissa like that of a float, 1 + m / 256; here it is m / 256 itself."
 
 
 def to_radiance(pixels):

@@ -1,12 +1,9 @@
-"""A wrong to_radiance: not over 256."""
+"""A mantissa is a fraction of 256, and you did not divide: your radiance is 256 times too large, like the
+slide's second triple."""
 
 import numpy as np
 
 TASK = "to_radiance"
-MISCONCEPTION = (
-    "A mantissa is a fraction of 256, and you did not divide: your radiance is 256 times too large, like "
-    "the slide's second triple."
-)
 
 
 def to_radiance(pixels):

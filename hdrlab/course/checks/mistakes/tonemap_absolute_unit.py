@@ -1,12 +1,9 @@
-"""A wrong tonemap: absolute unit."""
+"""Your curve takes L for a number without a unit: the same scene in other units gives another picture.
+Scale it by its log average first."""
 
 import numpy as np
 
 TASK = "tonemap"
-MISCONCEPTION = (
-    "Your curve takes L for a number without a unit: the same scene in other units gives another picture. "
-    "Scale it by its log average first."
-)
 
 
 def tonemap(L):

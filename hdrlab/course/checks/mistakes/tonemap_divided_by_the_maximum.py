@@ -1,12 +1,9 @@
-"""A wrong tonemap: divided by the maximum."""
+"""You divide by the brightest pixel: one hot pixel darkens the whole picture. Take a percentile, or a
+curve."""
 
 import numpy as np
 
 TASK = "tonemap"
-MISCONCEPTION = (
-    "You divide by the brightest pixel: one hot pixel darkens the whole picture. Take a percentile, or a "
-    "curve."
-)
 
 
 def tonemap(L):

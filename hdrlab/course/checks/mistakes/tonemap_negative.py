@@ -1,9 +1,8 @@
-"""A wrong tonemap: negative."""
+"""Bright places come out dark: somewhere a sign or a quotient is upside down."""
 
 from hdrlab.tonemap import reinhard
 
 TASK = "tonemap"
-MISCONCEPTION = "Bright places come out dark: somewhere a sign or a quotient is upside down."
 
 
 def tonemap(L):

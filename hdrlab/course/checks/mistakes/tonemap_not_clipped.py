@@ -1,11 +1,10 @@
-"""A wrong tonemap: not clipped."""
+"""Your picture leaves 0 ... 1: a display cannot show that, and files wrap around. Clip it."""
 
 import numpy as np
 
 from hdrlab.tonemap import reinhard
 
 TASK = "tonemap"
-MISCONCEPTION = "Your picture leaves 0 ... 1: a display cannot show that, and files wrap around. Clip it."
 
 
 def tonemap(L):

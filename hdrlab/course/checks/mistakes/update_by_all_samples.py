@@ -1,11 +1,8 @@
-"""A wrong update: by all samples."""
+"""Divide each level's sum by how many pixels have that level, not by the number of all samples."""
 
 import numpy as np
 
 TASK = "update"
-MISCONCEPTION = (
-    "Divide each level's sum by how many pixels have that level, not by the number of all samples."
-)
 
 
 def update(Z, t, E, n=256):

@@ -1,11 +1,8 @@
-"""A wrong update: nan taken for 0."""
+"""A sample whose irradiance is not known is left out; you count it as 0, and draw its levels down."""
 
 import numpy as np
 
 TASK = "update"
-MISCONCEPTION = (
-    "A sample whose irradiance is not known is left out; you count it as 0, and draw its levels down."
-)
 
 
 def update(Z, t, E, n=256):

@@ -1,9 +1,8 @@
-"""A wrong update: time forgotten."""
+"""What a pixel of level m received is E t: the exposure time is missing from your mean."""
 
 import numpy as np
 
 TASK = "update"
-MISCONCEPTION = "What a pixel of level m received is E t: the exposure time is missing from your mean."
 
 
 def update(Z, t, E, n=256):

@@ -1,12 +1,9 @@
-"""A wrong update: weighted."""
+"""The update of f is a plain mean over the pixels of a level; with the times as weights it rests on
+another curve."""
 
 import numpy as np
 
 TASK = "update"
-MISCONCEPTION = (
-    "The update of f is a plain mean over the pixels of a level; with the times as weights it rests on "
-    "another curve."
-)
 
 
 def update(Z, t, E, n=256):
