@@ -24,6 +24,8 @@ from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.errors import response_rmse
 from hdrlab.core.sampling import by_grid
+from hdrlab.core.transfer import histograms
+from hdrlab.core.weights import make_monotone
 from hdrlab.fast import debevec
 from hdrlab.io.radiance import read_radiance
 from hdrlab.radiance import ratios
@@ -55,17 +57,26 @@ def irradiance(E: ArrayLike | None = None) -> NDArray[np.float32]:
 def pixels_polynomial(bracket: Bracket, w: Array, order: int) -> Array:
     """Return g from pairs of levels of single pixels, as Mitsunaga and Nayar have it, exposures known."""
     Z = by_grid(bracket.images, 10_000)
-    return curve(grossberg.polynomial(grossberg.pixel_equations(Z, bracket.times, w), order=order))
+    return curve(
+        grossberg.solve_polynomial(grossberg.build_pixel_equations(Z, bracket.times, w), order=order)
+    )
+
+
+def histogram_equations(bracket: Bracket, w: Array) -> grossberg.Equations:
+    """Return the equations of the gray photographs' histograms."""
+    return grossberg.build_equations(histograms(bracket.images)[0], bracket.times, w)
 
 
 METHODS: dict[str, Callable[[Bracket, Array, int], Array]] = {
     "Debevec, pixels": lambda b, w, order: debevec.recover(
         b.images, b.times, smoothness=SMOOTHNESS, samples=SAMPLES, w=w, choose=by_grid
     ),
-    "Debevec, histograms": lambda b, w, order: grossberg.recover(b.images, b.times, w=w),
+    "Debevec, histograms": lambda b, w, order: make_monotone(
+        grossberg.solve_table(histogram_equations(b, w), w)
+    ),
     "polynomial, pixels": pixels_polynomial,
-    "polynomial, histograms": lambda b, w, order: grossberg.recover(
-        b.images, b.times, model="polynomial", order=order, w=w
+    "polynomial, histograms": lambda b, w, order: curve(
+        grossberg.solve_polynomial(histogram_equations(b, w), order=order)
     ),
 }
 

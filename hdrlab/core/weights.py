@@ -9,12 +9,12 @@ much, validity says whether.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-Table = NDArray[np.float64]
+from hdrlab.core.types import F64
 
 
-def hat(n: int = 256) -> Table:
+def hat(n: int = 256) -> F64:
     """Return w(z) = z below the middle, n - 1 - z above it [Debevec97 eq. 4], scaled to 1 in the middle.
 
     Examples
@@ -26,21 +26,21 @@ def hat(n: int = 256) -> Table:
     return np.minimum(z, n - 1 - z) / ((n - 2) // 2)
 
 
-def gaussian(n: int = 256) -> Table:
+def gaussian(n: int = 256) -> F64:
     """Return w(z) = exp(-4 (z - m)^2 / m^2), m the middle, brought to 0 at both ends [Robertson03 sec. 3]."""
     m = (n - 1) / 2
     bell = np.exp(-4 * ((np.arange(n) - m) / m) ** 2)
     return (bell - bell[0]) / (1 - bell[0])
 
 
-def flat(n: int = 256) -> Table:
+def flat(n: int = 256) -> F64:
     """Return w(z) = 1, and 0 at both ends: every value that is not clipped counts the same."""
     w = np.ones(n)
     w[[0, -1]] = 0
     return w
 
 
-def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> Table:
+def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> F64:
     """Return w with 0 above and below these fractions of the top level [Cerman06 sec. 4.2 cuts above 0.98].
 
     Noise turns clipped pixels into nearly clipped ones, so a photograph lies a little below its top level
@@ -53,7 +53,7 @@ def cut(w: ArrayLike, *, above: float = 0.98, below: float = 0.0) -> Table:
     return np.where((z > above) | (z < below), 0.0, w)
 
 
-def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> Table:
+def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> F64:
     """Return w = f / f', the signal over a noise that has one size at all levels [Mitsunaga99 eq. 14].
 
     f = exp g is the exposure of each level, of the channels' mean where g is (n, 3). Its slope f' is taken
@@ -75,7 +75,7 @@ def snr(g: ArrayLike, *, least: float = 0.01, span: int = 4) -> Table:
     return w / w[len(g) // 2]
 
 
-def second_differences(w: Table, smoothness: float) -> Table:
+def second_differences(w: F64, smoothness: float) -> F64:
     """Return the rows (n - 2, n) of lambda w(z) g''(z), which gsolve keeps small [Debevec97 eq. 3].
 
     Examples
@@ -86,7 +86,7 @@ def second_differences(w: Table, smoothness: float) -> Table:
     return smoothness * w[1:-1, None] * np.diff(np.eye(len(w)), 2, axis=0)
 
 
-def make_monotone(g: Table) -> Table:
+def make_monotone(g: F64) -> F64:
     """Return g (n, ...) with every fall levelled, outward from the middle, which keeps its value.
 
     Examples

@@ -16,16 +16,16 @@ corrected one takes the middle of each step, stays away from the noise of the da
 equations: a limit of 3 V drops good ones.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import transfer
-from hdrlab.core.arrays import Array, as_mask, as_stack, levels
+from hdrlab.core.arrays import Array, as_stack
 from hdrlab.core.steps import last
+from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
 
 Float = NDArray[np.float64]
 SATURATED = 0.98  # of the top level: above, noise hides clipped pixels
@@ -35,15 +35,15 @@ FEWEST = 8  # levels of the darker frame that the brighter one must show, too
 class Scheme(NamedTuple):
     """How ranks become equations: the transfer, the lowest levels (of 256), and outliers beyond limit V."""
 
-    transfer: transfer.Transfer
+    transfer: Callable[[ArrayLike, ArrayLike], NDArray[np.float64]]
     dark: float
     bright: float
     limit: float
 
 
 SCHEMES = {
-    "paper": Scheme(transfer.literal, 1, 1, 3.0),
-    "mid-step": Scheme(transfer.mid_step, 16, 64, 9.0),
+    "paper": Scheme(literal_transfer, 1, 1, 3.0),
+    "mid-step": Scheme(brightness_transfer, 16, 64, 9.0),
 }
 
 
@@ -154,16 +154,11 @@ def ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | No
     stack = as_stack(images)
     if len(stack) < 2:
         raise ValueError(f"expected at least two photographs, got {len(stack)}")
-    mask = as_mask(valid, stack)
-    shown = slice(None) if mask is None else mask.all(axis=0)
-    h = [
-        [transfer.histogram(Z, levels(stack)) for Z in frame[shown].reshape(-1, stack[0, 0, 0].size).T]
-        for frame in stack
-    ]
+    h = histograms(stack, valid).swapaxes(0, 1)
     return np.array([_between(a, b, scheme) for a, b in pairwise(h)])
 
 
-def _between(h_A: list[Array], h_B: list[Array], scheme: str) -> float:
+def _between(h_A: Array, h_B: Array, scheme: str) -> float:
     """Return k of two frames from their channels' histograms: all channels have the same one."""
     if _mean(h_A) > _mean(h_B):
         return 1 / _between(h_B, h_A, scheme)
@@ -177,7 +172,7 @@ def _between(h_A: list[Array], h_B: list[Array], scheme: str) -> float:
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k
 
 
-def _mean(h: list[Array]) -> float:
+def _mean(h: Array) -> float:
     """Return the mean level of a frame."""
     return float(np.sum(h, axis=0) @ np.arange(len(h[0])))
 

@@ -1,148 +1,114 @@
 """The response from histograms alone (Grossberg and Nayar, PAMI 2003; Cerman and Hlavac 2006, sec. 4).
 
-h   histogram                     (n,) of a frame
+h   histogram                     (P, n) of each frame
 J   comparagram                   (n, n), pixels with level m in frame A and z in frame B: frames aligned
 T   brightness transfer function  (n,), the level in B of what has level m in A: see `core.transfer`
-R   ratio of exposures            t_A / t_B < 1
-f   f^-1                          (n,), exposure of each level;  g = ln f
+R   exposure ratio                t_A / t_B < 1
+f   response                      light -> level
+g   ln f^-1                       (n,), ln exposure of each level
 
-All that two frames say of the response is T, for f(m) = R f(T(m)): the ridge of their comparagram. And T is
-found without comparing pixels, since it takes ranks to ranks; so the frames need not be aligned, and noise
-averages out. Two models of f take these equations: a table, as Debevec and Malik's, and a polynomial,
-Mitsunaga and Nayar's. From noisy pixels a polynomial of high order fails; from histograms, without the levels
-above the cut, it does not.
+All that two frames indicate about the response is T, for f^-1(m) = R f^-1(T(m)): the ridge of their
+comparagram. And T is found without comparing pixels, since it takes ranks to ranks; so the frames need not be
+aligned, and noise averages out. Two models take these equations: a table g, as Debevec and Malik's, and a
+polynomial f^-1, Mitsunaga and Nayar's. From noisy pixels a polynomial of high order fails; from histograms,
+without the levels above the cut, it does not.
 """
 
 from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_mask, as_stack, as_table, as_times, to_256
-from hdrlab.core.transfer import histogram, mid_step
+from hdrlab.core.arrays import Array, as_stack, as_times, to_256
+from hdrlab.core.transfer import brightness_transfer, histograms
+from hdrlab.core.types import F64, Indices
 from hdrlab.core.weights import make_monotone, second_differences
-from hdrlab.response import linear
 from hdrlab.response.polynomial import basis, curve
-
-Float = NDArray[np.float64]
-WEIGHTS = {
-    "table": lambda: weights.cut(weights.gaussian(), below=0.02),
-    "polynomial": lambda: weights.cut(weights.hat()),
-}
 
 
 class Equations(NamedTuple):
-    """f(m) = R f(T), each with a weight; m (K,) whole levels, T (K,) between levels, R and weight (K,)."""
+    """f^-1(m) = R f^-1(T), each with a weight; m (K,) levels, T (K,) between levels, R and weight (K,)."""
 
-    m: NDArray[np.intp]
-    T: Float
-    R: Float
-    weight: Float
+    m: Indices
+    T: F64
+    R: F64
+    weight: F64
 
 
-def comparagram(A: ArrayLike, B: ArrayLike) -> NDArray[np.int64]:
+def comparagram(A: ArrayLike, B: ArrayLike) -> Array:
     """Return J (256, 256), how many pixels have level m in A and z in B [Mann02]; frames (H, W), aligned."""
     a, b = to_256(as_stack([A, B])).reshape(2, -1).astype(np.intp)
     return np.bincount(a * 256 + b, minlength=65536).reshape(256, 256)
 
 
-def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> list[NDArray[np.int64]]:
-    """Return h (P, 256) of each channel, over the pixels that hold a picture in every frame."""
-    stack = as_stack(images)
-    mask = as_mask(valid, stack)
-    shown = slice(None) if mask is None else mask.all(axis=0).ravel()
-    pixels = to_256(stack).reshape(len(stack), stack.shape[1] * stack.shape[2], -1)[:, shown]
-    return [np.stack([histogram(Z, 256) for Z in pixels[..., c]]) for c in range(pixels.shape[-1])]
+def build_equations(h: Array, times: F64, w: F64) -> Equations:
+    """Return f^-1(m) = R f^-1(T(m)) of each two neighbours in exposure, from histograms h (P, n).
 
-
-def equations(h: ArrayLike, times: ArrayLike, w: ArrayLike) -> Equations:
-    """Return what each two frames next to each other in exposure say, from histograms h (P, n).
-
-    An equation weighs as much as the lighter of its two levels, and as many pixels as stand at level m.
+    An equation weighs as much as the lighter of its two levels, and as many pixels as lie at level m.
     """
-    h, t, w = np.asarray(h), np.asarray(times, np.float64), np.asarray(w, np.float64)
-    if len(np.unique(t)) < 2:
-        raise ValueError(f"expected photographs with at least two different times, got {t.tolist()} s")
-    found = []
-    for a, b in pairwise(np.argsort(t, kind="stable")):
-        T = mid_step(h[a], h[b])
-        m = np.flatnonzero(np.isfinite(T) & (h[a] > 0) & (t[a] < t[b]))
-        least = np.minimum(w[m], np.interp(T[m], np.arange(len(w)), w))
-        weight = least * np.sqrt(h[a][m] / h[a].sum())
-        found.append(Equations(m, T[m], np.full(len(m), t[a] / t[b]), weight))
-    together = Equations._make(np.concatenate(column) for column in zip(*found, strict=True))
-    return weighing(together)
+    rows = []
+    for a, b in pairwise(np.argsort(times, kind="stable")):
+        T = brightness_transfer(h[a], h[b])
+        m = np.flatnonzero(np.isfinite(T) & (h[a] > 0) & (times[a] < times[b]))
+        weight = np.minimum(w[m], np.interp(T[m], np.arange(len(w)), w)) * np.sqrt(h[a][m] / h[a].sum())
+        rows.append((m, T[m], np.full(len(m), times[a] / times[b]), weight))
+    return Equations(*(np.concatenate(column) for column in zip(*rows, strict=True)))
 
 
-def pixel_equations(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> Equations:
+def build_pixel_equations(Z: Array, times: F64, w: F64) -> Equations:
     """Return the same from samples Z (N, P) of aligned frames, as both methods have it at first."""
-    Z, t, w = np.asarray(Z), np.asarray(times, np.float64), np.asarray(w, np.float64)
-    a, b = np.transpose([pair for pair in pairwise(np.argsort(t, kind="stable")) if t[pair[0]] < t[pair[1]]])
+    a, b = np.transpose([ab for ab in pairwise(np.argsort(times)) if times[ab[0]] < times[ab[1]]])
     m, T = Z[:, a].ravel(), Z[:, b].ravel()
     weight = np.minimum(w[m], w[T]) / np.sqrt(len(Z))
-    found = Equations(m, T.astype(np.float64), np.tile(t[a] / t[b], len(Z)), weight)
-    return weighing(found)
+    return Equations(m, T.astype(np.float64), np.tile(times[a] / times[b], len(Z)), weight)
 
 
-def weighing(found: Equations) -> Equations:
-    """Return those of the equations that have a weight."""
-    return Equations._make(column[found.weight > 0] for column in found)
-
-
-def rows_at(T: ArrayLike, n: int = 256) -> Float:
+def interpolate_levels(T: F64, n: int = 256) -> F64:
     """Return A (K, n), A @ g = g(T) for levels T between whole ones."""
-    T = np.asarray(T, np.float64)
-    below = np.minimum(T.astype(np.intp), n - 2)
-    A, k = np.zeros((len(T), n)), np.arange(len(T))
-    A[k, below], A[k, below + 1] = below + 1 - T, T - below
-    return A
+    return np.maximum(1 - np.abs(T[:, None] - np.arange(n)), 0)
 
 
-def table(found: Equations, w: ArrayLike, *, smoothness: float = 2.0) -> Float:
+def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
     """Return g (n,), the least of sum weight^2 (g(T) - g(m) + ln R)^2 + sum (lambda w(z) (g - ln z)''(z))^2.
 
-    g(n // 2) = 0. The bends are those away from a linear camera, for a logarithm has bends of its own.
+    g(n // 2) = 0. The curvature is that away from a linear camera, for a logarithm has one of its own. Levels
+    that no row constrains take the value of the nearest one that is.
     """
-    w = np.asarray(w, np.float64)
-    n = len(w)
-    data = found.weight[:, None] * (rows_at(found.T, n) - np.eye(n)[found.m])
-    bends = second_differences(w, smoothness)
-    A, b = (
-        np.concatenate([data, bends]),
-        np.concatenate([-found.weight * np.log(found.R), bends @ linear.curve(n)]),
-    )
-    reached = np.any(A != 0, axis=0) | (np.arange(n) == n // 2)
-    free = np.flatnonzero(reached & (np.arange(n) != n // 2))
-    g = np.zeros(n)
-    g[free] = np.linalg.lstsq(A[:, free], b, rcond=None)[0]
-    return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
+    if not np.any(found.weight > 0) or not 0 < smoothness < np.inf:
+        raise ValueError(
+            f"expected a smoothness > 0 and levels measured well in two exposures, got {smoothness}"
+        )
+    z = np.arange(len(w))
+    data = found.weight[:, None] * (interpolate_levels(found.T, len(w)) - np.eye(len(w))[found.m])
+    penalty = second_differences(w, smoothness)
+    A = np.vstack([data, penalty, z == len(w) // 2])
+    b = np.concatenate([-found.weight * np.log(found.R), penalty @ np.log(np.maximum(z, 0.25)), [0]])
+    g, constrained = np.linalg.lstsq(A, b)[0], A.any(axis=0)
+    g = np.interp(z, z[constrained], g[constrained])
+    return g - g[len(w) // 2]
 
 
-def polynomial(found: Equations, *, order: int = 10, n: int = 256) -> Float:
-    """Return c (N - 1,) that minimises sum weight^2 (f(m) - R f(T))^2, f(M) = M + sum c b(M) [Grossberg03].
+def solve_polynomial(found: Equations, *, order: int = 10, n: int = 256) -> F64:
+    """Return c (N - 1,), the least of sum weight^2 (f^-1(m) - R f^-1(T))^2 [Grossberg03].
 
-    The basis is that of `response.polynomial`: f(0) = 0 and f(1) = 1 hold whatever c.
+    f^-1(M) = M + sum_k c_k b_k(M) in the basis of `response.polynomial`: f^-1(0) = 0 and f^-1(1) = 1.
     """
+    if not np.any(found.weight > 0) or not 1 <= order <= 20:
+        raise ValueError(f"expected an order to 20 and levels measured well in two exposures, got {order}")
     M, MT = found.m / (n - 1), found.T / (n - 1)
     A = basis(M, order) - found.R[:, None] * basis(MT, order)
-    return np.asarray(
-        np.linalg.lstsq(found.weight[:, None] * A, found.weight * (found.R * MT - M), rcond=None)[0]
-    )
+    return np.linalg.lstsq(found.weight[:, None] * A, found.weight * (found.R * MT - M))[0]
 
 
 def recover(
-    images: ArrayLike,
-    times: ArrayLike,
-    *,
-    model: str = "table",
-    smoothness: float = 2.0,
-    order: int = 10,
-    w: ArrayLike | None = None,
-    valid: ArrayLike | None = None,
-) -> Float:
-    """Return the response g recovered from the frames' histograms, each channel by itself.
+    images: ArrayLike, times: ArrayLike, *, smoothness: float = 2.0, valid: ArrayLike | None = None
+) -> F64:
+    """Return the response g as a table, recovered from the frames' histograms, each channel by itself.
+
+    The weights are the Gaussian without the levels above 0.98 of the top one, where noise hides clipped
+    pixels, and those below 0.02; for others call `build_equations` and `solve_table`.
 
     Parameters
     ----------
@@ -150,15 +116,8 @@ def recover(
         Photographs of the same light, not necessarily aligned; 16 bits are read at 256 levels.
     times : (P,) float
         Exposure times in seconds, at least two different ones.
-    model : {"table", "polynomial"}
-        The histogram version of Debevec and Malik's method, or that of Mitsunaga and Nayar's.
     smoothness : float
-        lambda of the table.
-    order : int
-        N of the polynomial, 1 to 20.
-    w : (256,) float, optional
-        Weights; for the table the Gaussian, for the polynomial, which needs the ends, the hat; both without
-        the levels above 0.98 of the top one, where noise hides clipped pixels.
+        lambda.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
 
@@ -187,21 +146,26 @@ def recover(
     True
     """
     stack = as_stack(images)
-    times = as_times(times, len(stack))
-    if model not in WEIGHTS or not 0 < smoothness < np.inf or not 1 <= order <= 20:
-        got = f"{model!r}, {smoothness} and {order}"
-        raise ValueError(
-            f"expected a model table or polynomial, positive smoothness and an order to 20, got {got}"
-        )
-    w = WEIGHTS[model]() if w is None else as_table(w, 256)
-    curves = []
-    for h in histograms(stack, valid):
-        found = equations(h, times, w)
-        if len(found.m) == 0:
-            raise ValueError("expected levels seen well in two exposures; the histograms have none")
-        curves.append(
-            table(found, w, smoothness=smoothness)
-            if model == "table"
-            else curve(polynomial(found, order=order))
-        )
-    return make_monotone(np.stack(curves, axis=-1)).reshape(256, *stack.shape[3:])
+    times, w = as_times(times, len(stack), distinct=2), weights.cut(weights.gaussian(), below=0.02)
+    channels = [build_equations(h, times, w) for h in histograms(to_256(stack), valid)]
+    g = np.stack([solve_table(found, w, smoothness=smoothness) for found in channels], axis=-1)
+    return make_monotone(g).reshape(256, *stack.shape[3:])
+
+
+def recover_polynomial(
+    images: ArrayLike, times: ArrayLike, *, order: int = 10, valid: ArrayLike | None = None
+) -> F64:
+    """Return the response g as the logarithm of a polynomial of an order 1 to 20; see `recover`.
+
+    The weights are the hat, for a polynomial needs the ends, without the levels above 0.98 of the top one.
+
+    Raises
+    ------
+    ValueError
+        As `recover`.
+    """
+    stack = as_stack(images)
+    times, w = as_times(times, len(stack), distinct=2), weights.cut(weights.hat())
+    channels = [build_equations(h, times, w) for h in histograms(to_256(stack), valid)]
+    g = np.stack([curve(solve_polynomial(found, order=order)) for found in channels], axis=-1)
+    return g.reshape(256, *stack.shape[3:])

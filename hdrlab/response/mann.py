@@ -3,7 +3,7 @@
 M       level                     alpha ... n - 1
 alpha   level without light       of a photograph with the lens covered
 gamma   exponent                  M = alpha + beta I^gamma: gamma 1 is a linear camera, 1 / 2.2 a television's
-R       ratio of two exposures    dark over bright, < 1
+R       exposure ratio            dark over bright, < 1
 T       bright to dark frame      (n,), the level in the dark frame of what has level M in the bright one
 series  M(I), M(R I), M(R^2 I) .. (K,) levels, each R times the exposure of the one before
 
@@ -13,68 +13,66 @@ whatever the scene. On logarithmic paper, ln(M - alpha) against the logarithm of
 straight line of slope gamma. Few cameras are so simple, and on others the line is a compromise.
 """
 
-from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_stack, as_times
-from hdrlab.core.transfer import mid_step
-from hdrlab.response.grossberg import histograms
+from hdrlab.core.arrays import Array, as_stack, as_times, to_256
+from hdrlab.core.transfer import brightness_transfer, histograms
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
-LOW = 12.0  # of 256 levels: below, rounding and noise bend a logarithm
-HIGH = 249.0  # above, a level is clipped
-LEAST = 0.5  # levels: a lower rung is no rung, but the rounding of two frames of one exposure
+# Of 256 levels: below the first, rounding and noise bend a logarithm; above the second, a level is clipped.
+MIN_LEVEL, MAX_LEVEL = 12.0, 249.0
+# Levels: a smaller step is the rounding of two frames of one exposure.
+MIN_STEP = 0.5
 
 
-def series(T: Float, start: float, *, low: float = LOW) -> Float:
-    """Return the levels start, T(start), T(T(start)) ..., down to `low` or to where T knows no answer."""
-    known = np.isfinite(T)
-    levels, found = np.flatnonzero(known), [float(start)]
-    while len(levels) and levels[0] <= found[-1] <= levels[-1]:
-        below = float(np.interp(found[-1], levels, T[known]))
-        if not low <= below <= found[-1] - LEAST:
+def descend(T: F64, start: float, *, low: float = MIN_LEVEL) -> F64:
+    """Return the series start, T(start), T(T(start)) ..., down to `low` or to where T is not known."""
+    known, series = np.flatnonzero(np.isfinite(T)), [float(start)]
+    while len(known) and known[0] <= series[-1] <= known[-1]:
+        below = float(np.interp(series[-1], known, T[known]))
+        if not low <= below <= series[-1] - MIN_STEP:
             break
-        found.append(below)
-    return np.array(found)
+        series.append(below)
+    return np.array(series)
 
 
-def exponent(ladders: list[tuple[Float, float]], *, alpha: float = 0.0) -> float:
-    """Return gamma, the slope that all ladders (series, R) share, ln(M - alpha) over k ln R, at best."""
-    above = slope = 0.0
-    for levels, R in ladders:
-        x, y = np.arange(len(levels)) * np.log(R), np.log(levels - alpha)
-        above += float((x - x.mean()) @ y)
-        slope += float((x - x.mean()) @ x)
-    if slope == 0:
-        raise ValueError("expected levels seen well in two exposures; no series has a second member")
-    return above / slope
-
-
-def curve(gamma: float, *, alpha: float = 0.0, n: int = 256) -> Float:
-    """Return g = ln(M - alpha) / gamma, g(n // 2) = 0; below half a level above alpha, the middle of that."""
-    g = np.log(np.maximum(np.arange(n) - alpha, 0.25)) / gamma
-    return g - g[n // 2]
-
-
-def ladders(
-    h: ArrayLike, times: ArrayLike, *, starts: int = 8, low: float = LOW
-) -> Iterator[tuple[Float, float]]:
-    """Yield (series, R) from histograms h (P, 256), for each two exposures next to each other.
+def build_ladders(
+    h: Array, times: F64, *, starts: int = 8, low: float = MIN_LEVEL
+) -> list[tuple[F64, float]]:
+    """Return (series, R) of each two neighbours in exposure, from histograms h (P, 256).
 
     The paper goes down once; from other starts on the first step it goes down between those rungs.
     """
-    h, t = np.asarray(h), np.asarray(times, np.float64)
-    for a, b in pairwise(np.argsort(t, kind="stable")):
-        T = mid_step(h[b], h[a])
-        top = min(HIGH, float(np.max(np.flatnonzero(np.isfinite(T)), initial=0)))
-        if t[a] == t[b] or top < low:
-            continue
-        first = series(T, top, low=low)
-        for start in np.linspace(top, first[min(1, len(first) - 1)], starts, endpoint=False):
-            yield series(T, start, low=low), float(t[a] / t[b])
+    ladders = []
+    for a, b in pairwise(np.argsort(times, kind="stable")):
+        T = brightness_transfer(h[b], h[a])
+        top = min(MAX_LEVEL, float(np.max(np.flatnonzero(np.isfinite(T)), initial=0)))
+        if times[a] < times[b] and top >= low:
+            second = descend(T, top, low=low)[:2][-1]
+            for start in np.linspace(top, second, starts, endpoint=False):
+                ladders.append((descend(T, start, low=low), float(times[a] / times[b])))
+    return ladders
+
+
+def fit_exponent(ladders: list[tuple[F64, float]], *, alpha: float = 0.0) -> float:
+    """Return gamma, the slope that all ladders (series, R) share: ln(M - alpha) over k ln R."""
+    xy = xx = 0.0
+    for series, R in ladders:
+        x, y = np.arange(len(series)) * np.log(R), np.log(series - alpha)
+        xy += float((x - x.mean()) @ y)
+        xx += float((x - x.mean()) @ x)
+    if xx == 0:
+        raise ValueError("expected levels measured well in two exposures; no series has a second member")
+    return xy / xx
+
+
+def power_law(gamma: float, *, alpha: float = 0.0, n: int = 256) -> F64:
+    """Return g = ln(M - alpha) / gamma, g(n // 2) = 0; below half a level above alpha, the middle of that."""
+    g = np.log(np.maximum(np.arange(n) - alpha, 0.25)) / gamma
+    return g - g[n // 2]
 
 
 def recover(
@@ -84,7 +82,7 @@ def recover(
     alpha: float = 0.0,
     starts: int = 8,
     valid: ArrayLike | None = None,
-) -> Float:
+) -> F64:
     """Return the response g of a camera that follows a power law, each channel by itself.
 
     Parameters
@@ -124,12 +122,11 @@ def recover(
     True
     """
     stack = as_stack(images)
-    times = as_times(times, len(stack))
+    times = as_times(times, len(stack), distinct=2)
     if not 0 <= alpha <= 64 or starts < 1:
         raise ValueError(f"expected alpha from 0 to 64 and at least one start, got {alpha} and {starts}")
-    low = LOW + alpha
-    gammas = [
-        exponent(list(ladders(h, times, starts=starts, low=low)), alpha=alpha)
-        for h in histograms(stack, valid)
-    ]
-    return np.stack([curve(gamma, alpha=alpha) for gamma in gammas], axis=-1).reshape(256, *stack.shape[3:])
+    curves = []
+    for h in histograms(to_256(stack), valid):
+        ladders = build_ladders(h, times, starts=starts, low=MIN_LEVEL + alpha)
+        curves.append(power_law(fit_exponent(ladders, alpha=alpha), alpha=alpha))
+    return np.stack(curves, axis=-1).reshape(256, *stack.shape[3:])

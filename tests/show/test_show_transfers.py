@@ -59,7 +59,7 @@ def test_what_is_no_comparagram_is_refused(J):
 
 def test_ranks_go_up_across_and_down_to_the_level_of_the_other_frame():
     h = two()
-    ax = transfers.ranks(*h, 40, transfer.mid_step(*h))
+    ax = transfers.ranks(*h, 40, transfer.brightness_transfer(*h))
     way = ax.lines[2]
     assert np.allclose(way.get_xdata(), [40, 40, 80, 80], atol=0.01)
     height = way.get_ydata()[1]
@@ -70,7 +70,7 @@ def test_ranks_go_up_across_and_down_to_the_level_of_the_other_frame():
 def test_a_level_that_the_other_frame_clips_has_no_way_down():
     h = two(4)
     clipped = np.concatenate([h[1][:200], [h[1][200:].sum()], np.zeros(55, int)])
-    T = np.where(LEVELS < 50, transfer.mid_step(h[0], clipped), np.nan)
+    T = np.where(LEVELS < 50, transfer.brightness_transfer(h[0], clipped), np.nan)
     ax = transfers.ranks(h[0], clipped, 90, T)
     assert legend(ax)[2] == "level 90 of A is clipped in B" and set(ax.lines[2].get_xdata()) == {90}
 
@@ -104,7 +104,7 @@ def test_equations_are_drawn_less_a_multiple_and_those_thrown_out_are_told_apart
 
 def test_every_drawing_becomes_a_picture():
     h = two()
-    T = transfer.mid_step(*h)
+    T = transfer.brightness_transfer(*h)
     for ax in (
         transfers.comparagram(np.eye(256)),
         transfers.ranks(*h, 40, T),
