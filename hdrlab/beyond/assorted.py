@@ -14,13 +14,12 @@ bright end, and loses a quarter of a decade at the dark one, where every fourth 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.arrays import Array, as_radiance, describe, levels
+from hdrlab.core.arrays import as_radiance, describe, levels
 from hdrlab.core.mosaic import BAYER, as_channels, sample
-
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64, Array
 
 FOUR = np.array([[1.0, 1 / 4], [1 / 64, 1 / 16]])  # four exposures, two stops apart, in a square
 FULL = 0.995  # of the highest level: from here a pixel may have been full
@@ -95,7 +94,7 @@ def shoot(
     return np.floor(np.clip(X, 0, 1) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-def weight(Z: Array, e: Float, *, full_well: float = np.inf, read_noise: float = 0.0) -> Float:
+def weight(Z: Array, e: F64, *, full_well: float = np.inf, read_noise: float = 0.0) -> F64:
     """Return w = 1 / var(Z / e) = e^2 / (X / well + (read / well)^2 + 1 / (12 top^2)); 0 for a full pixel."""
     top = levels(Z) - 1
     X = Z / top
@@ -103,7 +102,7 @@ def weight(Z: Array, e: Float, *, full_well: float = np.inf, read_noise: float =
     return np.where(X < FULL, e**2 / noise, 0)
 
 
-def normalised_convolution(values: Float, w: Float, sigma: float) -> tuple[Float, Float]:
+def normalised_convolution(values: F64, w: F64, sigma: float) -> tuple[F64, F64]:
     """Return (G w values) / (G w), and G w: normalised convolution."""
     total = gaussian_filter(w, sigma)
     return gaussian_filter(w * values, sigma) / np.maximum(total, 1e-300), total
@@ -117,7 +116,7 @@ def reconstruct(
     sigma: float = 0.5,
     full_well: float = np.inf,
     read_noise: float = 0.0,
-) -> Float:
+) -> F64:
     """Reconstruct radiance from a photograph of assorted pixels.
 
     Parameters
@@ -163,7 +162,7 @@ def reconstruct(
     return np.stack([_fill(values, w * m, e, sigma, m) for m in seen], axis=-1)
 
 
-def _fill(values: Float, w: Float, e: Float, sigma: float, seen: Array | bool = True) -> Float:
+def _fill(values: F64, w: F64, e: F64, sigma: float, seen: Array | bool = True) -> F64:
     """Return E^ from the pixels in reach, from farther ones where none knows, at last the bound 1 / min e."""
     E, total = normalised_convolution(values, w, sigma)
     for wider in (2 * sigma, 4 * sigma):
@@ -175,7 +174,7 @@ def _fill(values: Float, w: Float, e: Float, sigma: float, seen: Array | bool = 
     return np.where(total > 0, E, 1 / e[np.broadcast_to(seen, e.shape)].min())
 
 
-def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> Float:
+def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> F64:
     checked = np.asarray(e, np.float64)
     if checked.shape != shape or not np.all((checked > 0) & (checked <= 1)):
         raise ValueError(f"expected transparencies {shape} above 0 and at most 1, got {describe(checked)}")

@@ -14,13 +14,11 @@ where T has nothing that the sources have not.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.beyond import patchmatch
-from hdrlab.beyond.patchmatch import Field, Index, Sources
+from hdrlab.beyond.patchmatch import Field, Sources
 from hdrlab.core.steps import last
-
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32, Indices
 
 
 class Matches(NamedTuple):
@@ -38,7 +36,7 @@ class Search(NamedTuple):
     radius: int
 
 
-def similarity(w: Float, matches: Matches) -> float:
+def similarity(w: F32, matches: Matches) -> float:
     """Return MBDS(T | S) [Sen12 sec. 3]."""
     completeness = sum(
         float((each * field.d).mean()) for each, field in zip(w, matches.completeness, strict=True)
@@ -47,10 +45,10 @@ def similarity(w: Float, matches: Matches) -> float:
 
 
 def search(
-    T: Float,
-    S: Float,
-    price: Float,
-    begun: tuple[Index, tuple[Index, ...]],
+    T: F32,
+    S: F32,
+    price: F32,
+    begun: tuple[Indices, tuple[Indices, ...]],
     knobs: Search,
     rng: np.random.Generator,
 ) -> Matches:
@@ -64,7 +62,7 @@ def search(
     )
 
 
-def search_one_way(P: Float, Q: Sources, at: Index, knobs: Search, rng: np.random.Generator) -> Field:
+def search_one_way(P: F32, Q: Sources, at: Indices, knobs: Search, rng: np.random.Generator) -> Field:
     """Return the field after some rounds of PatchMatch from `at`, of this scale or of a coarser one."""
     at = at if at.shape[:2] == P.shape[:2] else patchmatch.upscale_field(at, (P.shape[0], P.shape[1]))
     begun = patchmatch.start_field(P, Q, at)
@@ -72,7 +70,7 @@ def search_one_way(P: Float, Q: Sources, at: Index, knobs: Search, rng: np.rando
     return last(field for _, field in zip(range(knobs.rounds), steps, strict=False))
 
 
-def vote(S: Float, w: Float, matches: Matches, side: int) -> Float:
+def vote(S: F32, w: F32, matches: Matches, side: int) -> F32:
     """Return the T that is best for these matches: the mean of all that they say [Simakov08 eq. 4].
 
     Every patch of T brings the pixels of its match; every patch of S its own pixels to its match, with the

@@ -11,15 +11,15 @@ level. The paper fits a global motion first and lets each region deviate from it
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 from skimage.registration import optical_flow_tvl1
 
-Float = NDArray[np.float32]
-Flow = Callable[[Float, Float], Float]
+from hdrlab.core.types import F32, Mask
+
+Flow = Callable[[F32, F32], F32]
 
 
-def tvl1(a: Float, b: Float) -> Float:
+def tvl1(a: F32, b: F32) -> F32:
     """Return u for which a(p) is b(p + u(p)); 0 where a picture is too small to tell.
 
     Examples
@@ -33,7 +33,7 @@ def tvl1(a: Float, b: Float) -> Float:
     return optical_flow_tvl1(a, b).astype(np.float32)
 
 
-def warp(f: Float, u: Float) -> Float:
+def warp(f: F32, u: F32) -> F32:
     """Return f(p + u(p)), linear between pixels; beyond the edge it is the edge's."""
     places = np.indices(u.shape[1:]) + u
     planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
@@ -43,14 +43,14 @@ def warp(f: Float, u: Float) -> Float:
     return np.stack(found, axis=-1).reshape(f.shape)
 
 
-def lands_inside(u: Float) -> NDArray[np.bool_]:
+def lands_inside(u: F32) -> Mask:
     """Return where p + u(p) lies in the picture, (H, W)."""
     places = np.indices(u.shape[1:]) + u
     ends = np.array(u.shape[1:]).reshape(2, 1, 1) - 1
     return np.all((places >= 0) & (places <= ends), axis=0)
 
 
-def halve_flow(u: Float) -> tuple[Float, Float]:
+def halve_flow(u: F32) -> tuple[F32, F32]:
     """Return the flows from the moment between a and b to either: half the way, back and forth.
 
     u belongs to the pixels of a; the pixel that is half-way is reached by two rounds of u(p - u / 2).

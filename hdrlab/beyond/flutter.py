@@ -12,18 +12,17 @@ them back. A code of open and shut that looks random has no such zeros. It lets 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.linalg import solve
 
 from hdrlab.core.arrays import describe
-
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64
 
 RASKAR = np.array([int(chop) for chop in "1010000111000001010000110011110111010111001001100111"])  # 52 chops
 FREQUENCIES = 4096
 
 
-def as_code(h: ArrayLike) -> Float:
+def as_code(h: ArrayLike) -> F64:
     """Return a shutter's chops (m,) as 0.0 and 1.0, at least one of them open."""
     code = np.asarray(h, np.float64)
     if code.ndim != 1 or not np.all((code == 0) | (code == 1)) or not code.any():
@@ -31,12 +30,12 @@ def as_code(h: ArrayLike) -> Float:
     return code
 
 
-def box(m: int) -> Float:
+def box(m: int) -> F64:
     """Return the shutter of an ordinary camera: open for all of its m chops."""
     return np.ones(m)
 
 
-def transfer(h: ArrayLike, count: int = FREQUENCIES) -> Float:
+def transfer(h: ArrayLike, count: int = FREQUENCIES) -> F64:
     """Return |H(w)| at `count` frequencies from 0 to pi (half a cycle per pixel)."""
     code = as_code(h)
     return np.asarray(np.abs(np.fft.rfft(code / len(code), 2 * (count - 1))), np.float64)
@@ -58,7 +57,7 @@ def equivalent_pictures(h: ArrayLike) -> float:
     return (amplification(one) / amplification(h)) ** 2
 
 
-def smear(x: ArrayLike, h: ArrayLike) -> Float:
+def smear(x: ArrayLike, h: ArrayLike) -> F64:
     """Return y = h * x / m along the first axis: each open chop adds the thing where it is by then."""
     x, code = np.asarray(x, np.float64), as_code(h)
     y = np.zeros((len(x) + len(code) - 1, *x.shape[1:]))
@@ -67,12 +66,12 @@ def smear(x: ArrayLike, h: ArrayLike) -> Float:
     return y
 
 
-def matrix(h: ArrayLike, n: int) -> Float:
+def matrix(h: ArrayLike, n: int) -> F64:
     """Return A (n + m - 1, n), for which smear(x, h) = A x."""
     return smear(np.eye(n), h)
 
 
-def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> Float:
+def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> F64:
     """Return the thing at rest, by least squares: A' A x = A' (y - background).
 
     Parameters
@@ -107,7 +106,7 @@ def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> Float
         raise ValueError(f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}")
     lit = y - background
     A = matrix(code, n)
-    x: Float = solve(A.T @ A, A.T @ lit.reshape(len(lit), -1), assume_a="pos")
+    x: F64 = solve(A.T @ A, A.T @ lit.reshape(len(lit), -1), assume_a="pos")
     return x.reshape(n, *y.shape[1:])
 
 
@@ -119,15 +118,15 @@ def expose(
     sigma: float = 0.0,
     bits: int = 8,
     rng: int | np.random.Generator = 0,
-) -> Float:
+) -> F64:
     """Return one photograph of the moving thing, 1 = full: smeared, noisy, clipped, rounded to levels."""
-    X: Float = gain * smear(x, h)
+    X: F64 = gain * smear(x, h)
     X = X + np.random.default_rng(rng).normal(0, sigma, X.shape)
     top = 2**bits - 1
     return np.round(np.clip(X, 0, 1) * top) / top
 
 
-def combine(photographs: ArrayLike, gains: ArrayLike) -> Float:
+def combine(photographs: ArrayLike, gains: ArrayLike) -> F64:
     """Return y of several photographs with different gains: each pixel from those in which it is not full.
 
     The weight is gain^2, for noise of the sensor alone; a pixel that is full in all takes the smallest gain's

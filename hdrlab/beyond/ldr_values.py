@@ -11,13 +11,11 @@ noise  (H, W, C)           what one level more would add to the value
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from skimage.transform import resize
 
-from hdrlab.core.arrays import Array, as_stack, as_table, as_times, levels
-
-Float = NDArray[np.float32]
-Mask = NDArray[np.bool_]
+from hdrlab.core.arrays import as_stack, as_table, as_times, levels
+from hdrlab.core.types import F32, F64, Array, Mask
 
 GAMMA = 2.2
 WITHIN = 3  # levels
@@ -37,25 +35,25 @@ class Values(NamedTuple):
     full : (C,)
     """
 
-    v: Float
-    z: Float
-    noise: Float
+    v: F32
+    z: F32
+    noise: F32
     clipped: Mask
-    t: NDArray[np.float64]
-    full: Float
+    t: F64
+    full: F32
 
 
-def radiance(v: Float, t: float, full: Float) -> Float:
+def radiance(v: F32, t: float, full: F32) -> F32:
     """Return h(v) = v^2.2 full / t."""
     return v ** np.float32(GAMMA) * full / np.float32(t)
 
 
-def expose(H: Float, t: float, full: Float) -> Float:
+def expose(H: F32, t: float, full: F32) -> F32:
     """Return l(H) = min(H t / full, 1)^(1 / 2.2)."""
     return np.minimum(H * (np.float32(t) / full), 1) ** np.float32(1 / GAMMA)
 
 
-def boost(v: Float, ratio: float) -> Float:
+def boost(v: F32, ratio: float) -> F32:
     """Return l(h(v)) for an exposure `ratio` times as long, min(ratio^(1 / 2.2) v, 1) [Kang03 sec. 4].
 
     Examples
@@ -66,7 +64,7 @@ def boost(v: Float, ratio: float) -> Float:
     return np.minimum(v * np.float32(ratio ** (1 / GAMMA)), 1)
 
 
-def consistent_range(v: Float, noise: Float, clipped: Mask, t: float, full: Float) -> tuple[Float, Float]:
+def consistent_range(v: F32, noise: F32, clipped: Mask, t: float, full: F32) -> tuple[F32, F32]:
     """Return the least and the most radiance that fits a photograph: within WITHIN levels of what it shows.
 
     Where it is clipped it says "at least", and nothing of the most.
@@ -76,14 +74,14 @@ def consistent_range(v: Float, noise: Float, clipped: Mask, t: float, full: Floa
     return least, np.where(clipped, np.float32(np.inf), radiance(v + few, t, full))
 
 
-def resize_picture(picture: Array, shape: tuple[int, int]) -> Float:
+def resize_picture(picture: Array, shape: tuple[int, int]) -> F32:
     """Return a picture (h, w, C) at another size: blurred first, where it is made smaller."""
     if picture.shape[:2] == shape:
         return picture.astype(np.float32)
     return resize(picture.astype(np.float32), shape, order=1, anti_aliasing=shape[0] < picture.shape[0])
 
 
-def look_up_levels(table: Float, Z: Array) -> Float:
+def look_up_levels(table: F32, Z: Array) -> F32:
     """Return table[Z] (P, H, W, C), each channel by its own column where there are several."""
     return np.stack([table[Z[..., c], c % table.shape[1]] for c in range(Z.shape[-1])], axis=-1)
 

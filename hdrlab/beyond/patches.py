@@ -22,11 +22,11 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.beyond.bidirectional import Search, search, similarity, vote
-from hdrlab.beyond.ldr_values import Float, as_values, resize_picture
-from hdrlab.beyond.patchmatch import Index, identity_field
+from hdrlab.beyond.ldr_values import as_values, resize_picture
+from hdrlab.beyond.patchmatch import identity_field
 from hdrlab.beyond.synthesis import (
     Ramp,
     Scene,
@@ -39,11 +39,11 @@ from hdrlab.beyond.synthesis import (
     trapezoid,
     weigh_patches,
 )
-from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.steps import last
+from hdrlab.core.types import F32, F64, Array, Indices
 
-Begun = tuple[Index, tuple[Index, ...]]  # where the search of both ways begins
+Begun = tuple[Indices, tuple[Indices, ...]]  # where the search of both ways begins
 
 RATIO = 2**0.5  # of the sides of a scale to those of the next coarser one
 
@@ -61,9 +61,9 @@ class State(NamedTuple):
 
     scale: int
     round: int
-    H: Float
-    I: Float  # noqa: E741  the paper's letter
-    mbds: NDArray[np.float64]
+    H: F32
+    I: F32  # noqa: E741  the paper's letter
+    mbds: F64
 
 
 def improve(

@@ -17,10 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import NDArray
 
-Float = NDArray[np.float32]
-Index = NDArray[np.intp]
+from hdrlab.core.types import F32, Indices
 
 NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 LARGE = (1 << 30, 1 << 30)
@@ -30,19 +28,19 @@ CHUNK = 2048  # patches at a time, which stay in the processor's cache
 class Field(NamedTuple):
     """Where the match of each patch is, `at` (h, w, 3), and how far from it, `d` (h, w)."""
 
-    at: Index
-    d: Float
+    at: Indices
+    d: F32
 
 
 class Sources(NamedTuple):
     """Patches to choose among: `rows` (N h w, side^2 C), their `price` (N h w), and (N, h, w)."""
 
-    rows: Float
-    price: Float
+    rows: F32
+    price: F32
     shape: tuple[int, int, int]
 
 
-def cut_patches(picture: Float, side: int) -> Float:
+def cut_patches(picture: F32, side: int) -> F32:
     """Return the patches of a picture (H, W, C) or of several, (..., h, w, side^2 C).
 
     Examples
@@ -54,7 +52,7 @@ def cut_patches(picture: Float, side: int) -> Float:
     return np.ascontiguousarray(windows.reshape(*windows.shape[:-3], -1))
 
 
-def make_sources(S: Float, side: int, price: Float | None = None) -> Sources:
+def make_sources(S: F32, side: int, price: F32 | None = None) -> Sources:
     """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
     rows = cut_patches(S, side)
     each = (
@@ -65,7 +63,7 @@ def make_sources(S: Float, side: int, price: Float | None = None) -> Sources:
     return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
 
 
-def distance(P: Float, Q: Sources, at: Index) -> Float:
+def distance(P: F32, Q: Sources, at: Indices) -> F32:
     """Return d = ||P - Q(at)||^2 + price of Q(at), (h, w)."""
     _, h, w = Q.shape
     index = ((at[..., 0] * h + at[..., 1]) * w + at[..., 2]).ravel()
@@ -77,18 +75,18 @@ def distance(P: Float, Q: Sources, at: Index) -> Float:
     return (d + Q.price[index]).reshape(at.shape[:2])
 
 
-def start_field(P: Float, Q: Sources, at: Index) -> Field:
+def start_field(P: F32, Q: Sources, at: Indices) -> Field:
     """Return the Field that begins with these places."""
     at = clip_places(at, Q.shape)
     return Field(at, distance(P, Q, at))
 
 
-def clip_places(at: Index, shape: tuple[int, int, int]) -> Index:
+def clip_places(at: Indices, shape: tuple[int, int, int]) -> Indices:
     """Return places brought into the sources."""
     return np.clip(at, 0, np.array(shape) - 1)
 
 
-def keep_nearer(field: Field, P: Float, Q: Sources, at: Index) -> Field:
+def keep_nearer(field: Field, P: F32, Q: Sources, at: Indices) -> Field:
     """Return the field with these places instead, where they are nearer."""
     at = clip_places(at, Q.shape)
     d = distance(P, Q, at)
@@ -96,7 +94,7 @@ def keep_nearer(field: Field, P: Float, Q: Sources, at: Index) -> Field:
     return Field(np.where(nearer[..., None], at, field.at), np.where(nearer, d, field.d))
 
 
-def propagate(at: Index, step: tuple[int, int]) -> Index:
+def propagate(at: Indices, step: tuple[int, int]) -> Indices:
     """Return at(p - step) + step: the places beside the neighbours' matches [Barnes09 sec. 3.2, propagation].
 
     At the edge, where there is no neighbour, it is the nearest one's.
@@ -106,7 +104,7 @@ def propagate(at: Index, step: tuple[int, int]) -> Index:
     return at[np.ix_(y, x)] + np.array([0, *step])
 
 
-def random_places(at: Index, radius: int, count: int, rng: np.random.Generator) -> Index:
+def random_places(at: Indices, radius: int, count: int, rng: np.random.Generator) -> Indices:
     """Return places at random within `radius` of the field's, in any source [Barnes09 sec. 3.2, search]."""
     moves = rng.integers(-radius, radius, (*at.shape[:2], 2), endpoint=True)
     source = at[..., :1] if count == 1 else rng.integers(0, count, (*at.shape[:2], 1))
@@ -114,7 +112,7 @@ def random_places(at: Index, radius: int, count: int, rng: np.random.Generator) 
 
 
 def search_steps(
-    P: Float, Q: Sources, field: Field, *, radius: int, rng: np.random.Generator
+    P: F32, Q: Sources, field: Field, *, radius: int, rng: np.random.Generator
 ) -> Iterator[Field]:
     """Yield the field after each round: every neighbour's match, then chance, from `radius` down to 1."""
     while True:
@@ -129,13 +127,13 @@ def search_steps(
         yield field
 
 
-def identity_field(h: int, w: int, source: int = 0) -> Index:
+def identity_field(h: int, w: int, source: int = 0) -> Indices:
     """Return the field that looks for each patch where it stands, in one source."""
     y, x = np.indices((h, w))
     return np.stack([np.full((h, w), source), y, x], axis=-1)
 
 
-def upscale_field(at: Index, shape: tuple[int, int]) -> Index:
+def upscale_field(at: Indices, shape: tuple[int, int]) -> Indices:
     """Return a field for (h, w) patches of a finer scale, from that of a coarser one."""
     ratios = [fine / coarse for fine, coarse in zip(shape, at.shape[:2], strict=True)]
     own = [
@@ -147,7 +145,7 @@ def upscale_field(at: Index, shape: tuple[int, int]) -> Index:
     return identity_field(*shape) + np.rint(apart * np.array([1, *ratios])).astype(int)
 
 
-def sum_votes(S: Float, at: Index, shape: tuple[int, int], side: int) -> tuple[Float, Float]:
+def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F32, F32]:
     """Return the sums (H, W, C) of what the matches in S say of each pixel, and how many say it (H, W).
 
     Each patch of the target has a match; all its pixels vote, so that a pixel has side^2 votes inside.
@@ -161,9 +159,7 @@ def sum_votes(S: Float, at: Index, shape: tuple[int, int], side: int) -> tuple[F
     return total, count
 
 
-def sum_given_votes(
-    S: Float, at: Index, weight: Float, shape: tuple[int, int], side: int
-) -> tuple[Float, Float]:
+def sum_given_votes(S: F32, at: Indices, weight: F32, shape: tuple[int, int], side: int) -> tuple[F32, F32]:
     """Return the same sums, of the votes that patches of one source S (H, W, C) give to their matches.
 
     `at` leads from the source to the target, and `weight` (h, w) says what each patch is worth.

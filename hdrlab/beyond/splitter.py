@@ -23,11 +23,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import uniform_filter
 
 from hdrlab.beyond import assorted
-from hdrlab.core.arrays import Array, as_radiance, describe, levels
+from hdrlab.core.arrays import as_radiance, describe, levels
 from hdrlab.core.mosaic import as_channels, demosaic
 from hdrlab.core.steps import last
-
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64, Array, Mask
 
 REFLECTED = (0.08, 0.055)  # by the first pellicle, and by the second of what the first reflected
 FULL = 0.9  # of the top level: from here on a pixel counts as full
@@ -45,11 +44,11 @@ class State(NamedTuple):
     """
 
     sensor: int
-    E: Float
+    E: F64
     case: NDArray[np.uint8]
 
 
-def shares(reflected: ArrayLike = REFLECTED) -> Float:
+def shares(reflected: ArrayLike = REFLECTED) -> F64:
     """Return e (3,): 1 - r1, r1 (1 - r2), r1 r2; the third is what the second reflects  [Tocci11 sec. 3].
 
     Examples
@@ -105,12 +104,12 @@ def shoot(
     return np.round(np.round(Z / step) * step).astype(np.uint16)
 
 
-def full_share(full: NDArray[np.bool_]) -> Float:
+def full_share(full: Mask) -> F64:
     """Return u, the share of the window's pixels that are full."""
     return uniform_filter(full.astype(np.float64), WINDOW, mode="nearest")
 
 
-def predict_full(B: Float, D: Float, full: NDArray[np.bool_]) -> Float:
+def predict_full(B: F64, D: F64, full: Mask) -> F64:
     """Return P = D sum B / sum D over the window's pixels that are not full [Tocci11 sec. 5].
 
     The paper takes the mean of the quotients B / D; that of the sums does not suffer from a D near zero.
@@ -119,7 +118,7 @@ def predict_full(B: Float, D: Float, full: NDArray[np.bool_]) -> Float:
     return np.where(d > 0, D * b / np.where(d > 0, d, 1), D)
 
 
-def join_sensors(B: Float, D: Float, full: NDArray[np.bool_]) -> tuple[Float, NDArray[np.uint8]]:
+def join_sensors(B: F64, D: F64, full: Mask) -> tuple[F64, NDArray[np.uint8]]:
     """Return the radiance of two sensors, and which of four cases each pixel is [Tocci11 sec. 5].
 
     1  nothing around is full          B
@@ -188,7 +187,7 @@ def merge(Z: ArrayLike, e: ArrayLike, c: ArrayLike | None = None, *, full: float
     return E if c is None else demosaic(E, as_channels(c, E.shape))
 
 
-def as_shares(e: ArrayLike) -> Float:
+def as_shares(e: ArrayLike) -> F64:
     """Return shares (N,), falling, at most 1 in all, or raise a ValueError."""
     each = np.asarray(e, np.float64)
     if (

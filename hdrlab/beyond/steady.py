@@ -18,14 +18,14 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.core.extremes import robust_maximum
+from hdrlab.core.types import F32
 
-Float = NDArray[np.float32]
 TINY = float(np.finfo(np.float32).tiny)
 
 
@@ -41,8 +41,8 @@ class State(NamedTuple):
     white : scaled luminance that became white
     """
 
-    E: Float
-    Ld: Float
+    E: F32
+    Ld: F32
     own: float
     average: float
     white: float
@@ -51,8 +51,8 @@ class State(NamedTuple):
 class Measured(NamedTuple):
     """A frame, its luminance, the mean of ln(delta + L), and its brightest luminance."""
 
-    E: Float
-    L: Float
+    E: F32
+    L: F32
     log: float
     high: float
 
@@ -74,7 +74,7 @@ def adapt(around: Sequence[Measured], *, key: float) -> tuple[float, float]:
 
 def tonemap_steps(
     frames: Iterable[ArrayLike],
-    operator: Callable[..., Float],
+    operator: Callable[..., F32],
     *,
     key: float = 0.18,
     span: int = 1,

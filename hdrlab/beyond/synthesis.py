@@ -14,10 +14,10 @@ Lambda (P, H, W, C)          how far to trust a value
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hdrlab.beyond.ldr_values import Float, Mask, boost, consistent_range, expose, radiance, resize_picture
+from hdrlab.beyond.ldr_values import boost, consistent_range, expose, radiance, resize_picture
 from hdrlab.beyond.patchmatch import cut_patches
+from hdrlab.core.types import F32, F64, Mask
 
 Ramp = tuple[float, float]
 
@@ -39,16 +39,16 @@ class Scene(NamedTuple):
     alpha : (h, w, 1)
     """
 
-    L: Float
-    noise: Float
+    L: F32
+    noise: F32
     clipped: Mask
-    t: NDArray[np.float64]
-    full: Float
+    t: F64
+    full: F32
     reference: int
-    alpha: Float
+    alpha: F32
 
 
-def trapezoid(z: Float, low: Ramp, high: Ramp) -> Float:
+def trapezoid(z: F32, low: Ramp, high: Ramp) -> F32:
     """Return alpha (H, W, 1) of levels z, 0 to 1: up over `low`, 1, down over `high`; the least channel's.
 
     Examples
@@ -60,12 +60,12 @@ def trapezoid(z: Float, low: Ramp, high: Ramp) -> Float:
     return np.clip(np.minimum(rising, falling), 0, 1).min(axis=-1, keepdims=True).astype(np.float32)
 
 
-def triangle(v: Float) -> Float:
+def triangle(v: F32) -> F32:
     """Return Lambda(v), 1 in the middle and 0 at both ends [Debevec97 eq. 4]."""
     return np.minimum(2 * v, 2 - 2 * v)
 
 
-def trust_weights(I: Float) -> Float:  # noqa: E741
+def trust_weights(I: F32) -> F32:  # noqa: E741
     """Return Lambda(I_k), the triangle; but 1 in the shortest's highlights and the longest's shadows.
 
     Nobody knows better there.
@@ -75,14 +75,14 @@ def trust_weights(I: Float) -> Float:  # noqa: E741
     return np.maximum(w, LEAST)
 
 
-def merge_exposures(I: Float, scene: Scene) -> Float:  # noqa: E741
+def merge_exposures(I: F32, scene: Scene) -> F32:  # noqa: E741
     """Return H~ = sum_k Lambda(I_k) h(I_k) / sum_k Lambda(I_k)  [Sen12 sec. 3]."""
     w = trust_weights(I)
     h = np.stack([radiance(v, t, scene.full) for v, t in zip(I, scene.t, strict=True)])
     return (w * h).sum(axis=0) / w.sum(axis=0)
 
 
-def blend_reference(H: Float, scene: Scene) -> Float:
+def blend_reference(H: F32, scene: Scene) -> F32:
     """Return alpha h(L_ref) + (1 - alpha) H~, the H of least energy for given I_k [Sen12 sec. 3].
 
     H~ is kept within what the reference allows: at least h(L_ref) where that is clipped, and elsewhere what
@@ -94,7 +94,7 @@ def blend_reference(H: Float, scene: Scene) -> Float:
     return scene.alpha * radiance(v, t, scene.full) + (1 - scene.alpha) * within
 
 
-def guess_radiance(scene: Scene) -> Float:
+def guess_radiance(scene: Scene) -> F32:
     """Return what to begin with: h(L_ref), or where it is clipped what a shorter exposure has, if more.
 
     The paper begins with the reference alone. But a flat, clipped region is like any other flat thing, and
@@ -105,12 +105,12 @@ def guess_radiance(scene: Scene) -> Float:
     return np.where(scene.clipped[k], np.max(seen, axis=0), seen[k])
 
 
-def extract_exposures(H: Float, scene: Scene) -> Float:
+def extract_exposures(H: F32, scene: Scene) -> F32:
     """Return I_k = l_k(H) of every exposure."""
     return np.stack([expose(H, t, scene.full) for t in scene.t])
 
 
-def boost_photographs(k: int, scene: Scene) -> tuple[Float, Float]:
+def boost_photographs(k: int, scene: Scene) -> tuple[F32, F32]:
     """Return g_k(L_q) of all photographs (P, h, w, C), and the price of each of their pixels (P, h, w).
 
     The price is the squared noise that a photograph has in exposure k: of two patches that look alike the
@@ -125,7 +125,7 @@ def boost_photographs(k: int, scene: Scene) -> tuple[Float, Float]:
     return g, np.where(unknown, np.float32(np.inf), PRICE * (noise**2).sum(axis=-1))
 
 
-def weigh_patches(k: int, scene: Scene, price: Float, side: int) -> Float:
+def weigh_patches(k: int, scene: Scene, price: F32, side: int) -> F32:
     """Return w (P, h', w'): how much the patches of each photograph have to be found again in I_k.
 
     As much as they are well exposed, where they are usable; and only those of the neighbouring exposures, for

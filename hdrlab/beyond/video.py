@@ -24,8 +24,6 @@ from numpy.typing import ArrayLike
 
 from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
 from hdrlab.beyond.ldr_values import (
-    Float,
-    Mask,
     as_values,
     boost,
     consistent_range,
@@ -36,7 +34,8 @@ from hdrlab.beyond.ldr_values import (
 from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array, as_table, as_times, levels
+from hdrlab.core.arrays import as_table, as_times, levels
+from hdrlab.core.types import F32, Array, Mask
 
 APART = np.float32(16 / 255)  # of values: a neighbour that is farther off counts for nothing
 LEAST = np.float32(1e-4)  # weight of B at least: where all are clipped, the shorter one knows more
@@ -45,21 +44,21 @@ LEAST = np.float32(1e-4)  # weight of B at least: where all are clipped, the sho
 class Frame(NamedTuple):
     """One frame: v, its noise, where it is clipped, R, f_W, all (H, W, C), alpha, t, and full (C,)."""
 
-    v: Float
-    noise: Float
+    v: F32
+    noise: F32
     clipped: Mask
-    R: Float
-    w: Float
-    alpha: Float
+    R: F32
+    w: F32
+    alpha: F32
     t: float
-    full: Float
+    full: F32
 
 
 class Term(NamedTuple):
     """What a neighbour brings to frame i: radiance R and weight w, (H, W, C)."""
 
-    R: Float
-    w: Float
+    R: F32
+    w: F32
 
 
 class State(NamedTuple):
@@ -76,25 +75,25 @@ class State(NamedTuple):
     """
 
     frame: int
-    E: Float
-    alone: Float
+    E: F32
+    alone: F32
     along: tuple[Term, ...]
     between: tuple[Term, ...]
-    alpha: Float
+    alpha: F32
 
 
-def estimate_motion(a: Frame, b: Frame, flow: Flow) -> Float:
+def estimate_motion(a: Frame, b: Frame, flow: Flow) -> F32:
     """Return the flow from a to b, the shorter exposure boosted to the longer one [Kang03 sec. 4]."""
     longer = max(a.t, b.t)
     return flow(*(boost(one.v, longer / one.t).mean(axis=-1) for one in (a, b)))
 
 
-def warp_frame(frame: Frame, u: Float) -> Term:
+def warp_frame(frame: Frame, u: F32) -> Term:
     """Return a frame brought along a flow; it has no weight where that leads out of the picture."""
     return Term(warp(frame.R, u), warp(frame.w, u) * lands_inside(u)[..., None])
 
 
-def consistency(v: Float, v_: Float) -> Float:
+def consistency(v: F32, v_: F32) -> F32:
     """Return f_MW = 2 d^3 - 3 d^2 + 1, d the channels' greatest difference over APART, at most 1 [Kang03]."""
     d = np.minimum(np.abs(v - v_).max(axis=-1, keepdims=True) / APART, 1)
     return (2 * d - 3) * d * d + 1
@@ -113,7 +112,7 @@ def warp_half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
     return tuple(term._replace(w=term.w * np.maximum(agree, 0.01)) for term in terms)
 
 
-def clip_to_frame(i: Frame, R: Float) -> tuple[Float, Float]:
+def clip_to_frame(i: Frame, R: F32) -> tuple[F32, F32]:
     """Return R kept within what frame i allows, and f_MW (H, W, 1) of how far it had to be moved for that.
 
     Frame i allows at least R_i where it is clipped, and what lies within a few levels of R_i elsewhere.
@@ -122,7 +121,7 @@ def clip_to_frame(i: Frame, R: Float) -> tuple[Float, Float]:
     return kept, consistency(expose(kept, i.t, i.full), expose(R, i.t, i.full))
 
 
-def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> Float:
+def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> F32:
     """Return (f_W R_i + sum U + (1 - alpha) sum B) / (f_W + ...), each R times its weight [Kang03 sec. 4].
 
     B is asked whether frame i allows it: a badly exposed pixel still says "at least" or "at most".

@@ -14,12 +14,13 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.capture import camera, exposure
-from hdrlab.capture.metering import GRAY, At, Weight, correction, reading, weights
+from hdrlab.capture.metering import GRAY, At, correction, reading, weights
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
+from hdrlab.core.types import F32, F64
 
 # stops: the loop ends when it asks for less than this
 STOP_TOLERANCE = 1 / 12
@@ -29,8 +30,8 @@ class State(NamedTuple):
     """One shot of the loop."""
 
     EV: float  # stops, what it was taken with
-    B: NDArray[np.float32]  # (H, W), on the sensor
-    w: Weight  # (H, W), of the mode
+    B: F32  # (H, W), on the sensor
+    w: F64  # (H, W), of the mode
     B_pre: float  # the reading
     EV_opt: float  # stops, what to take the next one with
 
@@ -44,7 +45,7 @@ def measure_brightness(
     full_well: float = np.inf,
     read_noise: float = 0.0,
     rng: camera.Seed = 0,
-) -> NDArray[np.float32]:
+) -> F32:
     """Return B (H, W), the luminance of one linear photograph with T = F^2 / 2^EV, where 1 is full."""
     s = 1 / float(exposure.saturating_luminance(1.0, F=aperture, S=iso))
     linear = camera.Camera(
@@ -62,7 +63,7 @@ def expose_steps(
     start: float = 12.0,
     target: float = GRAY,
     max_shots: int = 8,
-    photograph: Callable[[ArrayLike, float], NDArray[np.float32]] = measure_brightness,
+    photograph: Callable[[ArrayLike, float], F32] = measure_brightness,
 ) -> Iterator[State]:
     """Yield the State of each shot, until the next one would differ by less than 1/12 stop."""
     EV = start

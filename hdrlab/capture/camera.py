@@ -23,7 +23,6 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.capture.hand_motion import views
 from hdrlab.capture.responses import Curve, Response, as_response
 from hdrlab.capture.sensor import (
-    Float,
     Seed,
     Sensor,
     develop,
@@ -36,9 +35,10 @@ from hdrlab.capture.sensor import (
     readout,
 )
 from hdrlab.core import mosaic
-from hdrlab.core.arrays import Array, as_radiance, as_times, describe
+from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
+from hdrlab.core.types import F32, F64, Array, Mask
 
 
 def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:
@@ -52,7 +52,7 @@ def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:
 
 def times_around(
     E: ArrayLike, count: int = 7, *, stops: float = 2.0, middle: float = 0.1, sensitivity: float = 1.0
-) -> NDArray[np.float64]:
+) -> F64:
     """Return `count` times (P,), seconds, `stops` apart, around the one that suits the scene.
 
     That one brings the log-average luminance, exp(mean ln L), to X = `middle`: a little below half the levels
@@ -198,9 +198,7 @@ def shoot(
     return bracket(np.stack(images), times[order], linear=linear)
 
 
-def photograph(
-    E: Float, time: float, camera: Camera, stuck: NDArray[np.bool_], rng: np.random.Generator
-) -> Array:
+def photograph(E: F32, time: float, camera: Camera, stuck: Mask, rng: np.random.Generator) -> Array:
     """Return Z of one photograph, whose hot pixels are `stuck` at a full well."""
     bright = falloff(E.shape, camera.vignetting)
     X = exposure(E * (bright if E.ndim == 2 else bright[..., None]), time, sensitivity=camera.sensitivity)

@@ -17,6 +17,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from hdrlab.core.types import F64
+
 Real = float | NDArray[np.floating[Any]]
 
 # What dials say, from bright to dark in thirds of a stop; every third one is a full stop.
@@ -35,7 +37,7 @@ class Dial(NamedTuple):
     """A series of settings: what is written on the dial, and what it does."""
 
     names: tuple[str, ...]
-    values: NDArray[np.float64]
+    values: F64
 
 
 def shutter_series(per_stop: int = 1) -> Dial:

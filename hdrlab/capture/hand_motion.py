@@ -10,12 +10,12 @@ the pixels, not the photograph.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import warp
-from hdrlab.core.arrays import Array, describe
+from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64, Array
 
-Float = NDArray[np.float64]
 Seed = int | np.random.Generator | None
 
 
@@ -43,7 +43,7 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     return [E[y : y + h, x : x + w] for y, x in corners]
 
 
-def frame_homographies(moves: ArrayLike, shape: tuple[int, ...]) -> Float:
+def frame_homographies(moves: ArrayLike, shape: tuple[int, ...]) -> F64:
     """Return moves (P, 3, 3) of a scene of `shape` as they are in the smaller frames that `views` returns.
 
     These begin at pixel (left, top) of the scene, so H becomes T^-1 H T with the shift T by that much. A
@@ -69,7 +69,7 @@ def shake(
     zoom: float = 0.0,
     tilt: float = 0.0,
     rng: Seed = 0,
-) -> Float:
+) -> F64:
     """Return moves (P, 3, 3) of a shaking hand in front of a scene (H, W); frame P // 2 stays.
 
     Parameters
@@ -102,7 +102,7 @@ def shake(
     return np.array(moves)
 
 
-def _tilted(shape: tuple[int, ...], across: float, down: float) -> Float:
+def _tilted(shape: tuple[int, ...], across: float, down: float) -> F64:
     """Return the move that grows the right side by a share `across`, the bottom by `down`, not the middle."""
     y, x = (np.array(shape[:2]) - 1) / 2
     middle = np.array([[1, 0, -x], [0, 1, -y], [0, 0, 1]])
@@ -115,6 +115,6 @@ def _shown(moves: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     return warp.inside(np.linalg.inv(warp.as_moves(moves)), shape)
 
 
-def _from(shown: tuple[slice, slice]) -> Float:
+def _from(shown: tuple[slice, slice]) -> F64:
     """Return the shift T from a frame to the scene."""
     return warp.as_moves([[shown[0].start, shown[1].start]])[0]

@@ -10,17 +10,16 @@ reflected by two surfaces on its way comes to a focus elsewhere: discs in a row 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import affine_transform
 from scipy.signal import fftconvolve
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.scatter import Spread, checked, kernel, scattered
+from hdrlab.core.types import F32
 
-Float = NDArray[np.float32]
 
-
-def add_glare(E: ArrayLike, spread: Spread = Spread(0.05)) -> Float:  # noqa: B008  a NamedTuple of numbers
+def add_glare(E: ArrayLike, spread: Spread = Spread(0.05)) -> F32:  # noqa: B008  a NamedTuple of numbers
     """Return the radiance behind a lens that scatters, (1 - share) E + share (K * E).
 
     Parameters
@@ -52,7 +51,7 @@ def add_glare(E: ArrayLike, spread: Spread = Spread(0.05)) -> Float:  # noqa: B0
     return np.float32(1 - share) * E + np.float32(share) * scattered(E, kernel(E.shape, power, core))
 
 
-def reflect(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: float = 1e-4) -> Float:
+def reflect(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: float = 1e-4) -> F32:
     """Return the light of one reflection alone: the picture k times as large, as discs, a share of its light.
 
     Parameters
@@ -98,7 +97,7 @@ def add_flare(
     places: tuple[float, ...] = (-0.6, 0.35),
     radius: float = 12.0,
     share: float = 1e-4,
-) -> Float:
+) -> F32:
     """Return the radiance behind a lens that scatters and reflects: the veil, and a reflection at each place.
 
     Examples

@@ -16,9 +16,9 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_luminance, describe
+from hdrlab.core.arrays import as_luminance, describe
+from hdrlab.core.types import F64, Array
 
-Weight = NDArray[np.float64]
 At = tuple[float, float]
 
 GRAY = 0.18  # B_opt
@@ -37,7 +37,7 @@ def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
     return down[:, None], right[None, :]
 
 
-def _disc(shape: tuple[int, int], share: float, at: At) -> Weight:
+def _disc(shape: tuple[int, int], share: float, at: At) -> F64:
     """Return equal weight in a disc: the `share` of the pixels that are nearest to `at`."""
     if not 0 < share <= 1:
         raise ValueError(f"expected a share of the picture from 0 to 1, got {share}")
@@ -48,29 +48,27 @@ def _disc(shape: tuple[int, int], share: float, at: At) -> Weight:
     return _normal(distance <= reach)
 
 
-def _normal(w: ArrayLike) -> Weight:
+def _normal(w: ArrayLike) -> F64:
     w = np.asarray(w, np.float64)
     return w / w.sum()
 
 
-def average(shape: tuple[int, int]) -> Weight:
+def average(shape: tuple[int, int]) -> F64:
     """Return w = 1 / (H W): every pixel has the same say."""
     return _normal(np.ones(shape))
 
 
-def spot(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.03) -> Weight:
+def spot(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.03) -> F64:
     """Return equal weight in a disc of 1 to 5 % of the picture, and none elsewhere."""
     return _disc(shape, share, at)
 
 
-def partial(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.12) -> Weight:
+def partial(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.12) -> F64:
     """Return equal weight in a disc of 10 to 15 % of the picture, and none elsewhere."""
     return _disc(shape, share, at)
 
 
-def centre(
-    shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, at: At = (0.5, 0.5)
-) -> Weight:
+def centre(shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, at: At = (0.5, 0.5)) -> F64:
     """Return weight of which `inside`, 60 to 80 %, lies in the central `share`, feathered toward the edges.
 
     It falls as a Gaussian of the distance, whose width is found by halving.
@@ -89,7 +87,7 @@ def centre(
     return _feather(squared, sigma)
 
 
-def _feather(squared: Array, sigma: float) -> Weight:
+def _feather(squared: Array, sigma: float) -> F64:
     return _normal(np.exp(-squared / (2 * sigma**2)))
 
 
@@ -133,7 +131,7 @@ def zones(shape: tuple[int, int], layout: str = "honeycomb") -> NDArray[np.int64
 
 def matrix(
     B: ArrayLike, *, at: At = (0.5, 0.5), layout: str = "honeycomb", near: float = 0.2, tolerance: float = 2.0
-) -> Weight:
+) -> F64:
     """Return a matrix meter's weights: zones near the focus point count more, zones far from the others less.
 
     A zone's weight is exp(-d^2 / (2 near^2)) exp(-e^2 / (2 tolerance^2)): d is its distance from the focus
@@ -157,7 +155,7 @@ def matrix(
 MODES = ("spot", "partial", "centre", "average", "matrix")
 
 
-def weights(B: ArrayLike, mode: str, *, at: At = (0.5, 0.5)) -> Weight:
+def weights(B: ArrayLike, mode: str, *, at: At = (0.5, 0.5)) -> F64:
     """Return the weights (H, W) of a mode, of MODES, for a picture of brightness B."""
     B = as_luminance(B)
     if mode not in MODES:
@@ -197,13 +195,13 @@ def optimum(EV_pre: float, B_pre: float, B_opt: float = GRAY) -> float:
     return EV_pre + np.log2(B_pre) - np.log2(B_opt)
 
 
-def predict_reading(B: ArrayLike, w: Weight, stops: float) -> float:
+def predict_reading(B: ArrayLike, w: F64, stops: float) -> float:
     """Return the reading after `stops` more light, sum w min(2^stops B, 1), where a full B counts as FULL."""
     B = np.asarray(B, np.float64)
     return float((w * np.minimum(np.where(B < 1, B, FULL) * 2.0**stops, 1)).sum())
 
 
-def correction(B: ArrayLike, w: Weight, B_opt: float = GRAY, *, most: float = 8.0) -> float:
+def correction(B: ArrayLike, w: F64, B_opt: float = GRAY, *, most: float = 8.0) -> float:
     """Return the stops after which the reading will be B_opt, at most `most` either way, found by halving.
 
     Where nothing is full, and nothing will be, this is log2 B_opt - log2 B_pre, eq. 1.2.

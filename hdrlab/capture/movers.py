@@ -17,16 +17,16 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.capture import camera
 from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
+from hdrlab.core.types import F32, Mask
 
-Float = NDArray[np.float32]
 SUN = np.array([-0.5, -0.5, 0.7])  # (y, x, z), where a ball is lit from: above, left and the camera's side
 
 
 class Figure(NamedTuple):
     """What moves: its light (H, W[, 3]), multiplied by its mask (H, W)."""
 
-    light: Float
-    mask: Float
+    light: F32
+    mask: F32
 
 
 class Moving(NamedTuple):
@@ -41,12 +41,12 @@ class Moving(NamedTuple):
     """
 
     bracket: Bracket
-    still: Float
-    moments: Float
-    hidden: NDArray[np.bool_]
+    still: F32
+    moments: F32
+    hidden: Mask
 
     @property
-    def region(self) -> NDArray[np.bool_]:
+    def region(self) -> Mask:
         """Where the figure stands in any of the photographs, (h, w): of a camera that stood still."""
         return np.any(self.hidden, axis=0)
 
@@ -105,7 +105,7 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
     return np.rint(np.arange(count)[:, None] * stride - (count - 1) / 2 * stride).astype(np.int64)
 
 
-def shift_layer(layer: Float, at: ArrayLike) -> Float:
+def shift_layer(layer: F32, at: ArrayLike) -> F32:
     """Return a layer moved by (dy, dx) whole pixels; what leaves the frame is lost, what enters is 0."""
     out, parts = np.zeros_like(layer), []
     for n, d in zip(layer.shape, np.asarray(at).tolist(), strict=False):
@@ -115,7 +115,7 @@ def shift_layer(layer: Float, at: ArrayLike) -> Float:
     return out
 
 
-def compose_moment(E: Float, figure: Figure, at: ArrayLike) -> tuple[Float, Float]:
+def compose_moment(E: F32, figure: Figure, at: ArrayLike) -> tuple[F32, F32]:
     """Return E_j = light + (1 - mask) E with the figure at (dy, dx), and its mask there [Porter84 sec. 4]."""
     light, mask = shift_layer(figure.light, at), shift_layer(figure.mask, at)
     return light + (1 - (mask if E.ndim == 2 else mask[..., None])) * E, mask
@@ -187,7 +187,7 @@ def shoot(
     return Moving(photographs, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
 
 
-def as_figure(figure: Figure, E: Float) -> Figure:
+def as_figure(figure: Figure, E: F32) -> Figure:
     """Return the layers of a figure as float32, or raise a ValueError where they do not fit the scene."""
     light, mask = (np.asarray(layer) for layer in figure)
     if light.shape != E.shape or mask.shape != E.shape[:2]:

@@ -16,11 +16,10 @@ photographs is taken because dust, vignetting and unlike pixels are the same in 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, describe
-
-Float = NDArray[np.float64]
+from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64, Array, Mask
 
 ROUNDING = 1 / 12  # levels^2, the variance that rounding to whole levels adds
 SAFE = 0.8  # of the highest signal: above it the well may have begun to cut the noise off
@@ -43,9 +42,9 @@ class Transfer(NamedTuple):
     read_noise: float
     black: float
     full_well: float
-    S: Float
-    V: Float
-    used: NDArray[np.bool_]
+    S: F64
+    V: F64
+    used: Mask
 
 
 def variance(pair: Array) -> float:
@@ -53,7 +52,7 @@ def variance(pair: Array) -> float:
     return float((pair[0].astype(np.float64) - pair[1]).var() / 2)
 
 
-def line(S: Float, V: Float) -> float:
+def line(S: F64, V: F64) -> float:
     """Return the slope 1 / K of V - V_0 = S / K, V_0 that of the dark pair, by weighted least squares.
 
     A variance of n pixels errs by V sqrt(2 / n), so the weights are 1 / V^2; the first pair is the dark one.

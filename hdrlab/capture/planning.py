@@ -14,17 +14,17 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.capture import exposure
+from hdrlab.core.types import F64
 
 
 class Plan(NamedTuple):
     """Photographs to take, from the shortest: what the dial says, what it does, and what each holds."""
 
     names: tuple[str, ...]  # (n,) as on the dial; a time beyond it is in seconds
-    times: NDArray[np.float64]  # (n,) s, true
-    holds: NDArray[np.float64]  # (n, 2) cd/m^2, lowest and highest luminance of each photograph
+    times: F64  # (n,) s, true
+    holds: F64  # (n, 2) cd/m^2, lowest and highest luminance of each photograph
     step: float  # stops from one to the next
 
 

@@ -17,8 +17,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture.sensor import Sensor, as_sensor, full_electrons
 from hdrlab.core.arrays import describe
-
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64, Mask
 
 
 class Range(NamedTuple):
@@ -33,9 +32,9 @@ class Held(NamedTuple):
     """What one exposure makes of each luminance (K,): its level, the signal over noise, and what is lost."""
 
     Z: NDArray[np.int64]
-    snr: Float
-    full: NDArray[np.bool_]
-    noise: NDArray[np.bool_]
+    snr: F64
+    full: Mask
+    noise: Mask
 
 
 def dynamic_range(high: float, low: float) -> Range:
@@ -69,7 +68,7 @@ def sensor_range(sensor: Sensor) -> Range:
     return dynamic_range(full_electrons(as_sensor(sensor)), noise_floor(sensor))
 
 
-def snr(X: ArrayLike, sensor: Sensor) -> Float:
+def snr(X: ArrayLike, sensor: Sensor) -> F64:
     """Return N / sqrt(N + NF^2), N = full_well X: photons, which come by chance, and the noise floor."""
     N = sensor.full_well * np.asarray(X, np.float64)
     return N / np.sqrt(N + noise_floor(sensor) ** 2)

@@ -10,10 +10,9 @@ from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hdrlab.core.arrays import Array
 from hdrlab.core.colour import decode_srgb, encode_srgb
+from hdrlab.core.types import F64, Array
 
 Curve = Callable[[Array], Array]
 
@@ -81,7 +80,7 @@ def as_response(response: str | Curve | Response | None) -> Response:
     return made
 
 
-def true_g(response: str | Curve | Response | None = "film", n: int = 256) -> NDArray[np.float64]:
+def true_g(response: str | Curve | Response | None = "film", n: int = 256) -> F64:
     """Return g = ln f^-1, what a calibration of this camera should find.
 
     Parameters

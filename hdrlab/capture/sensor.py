@@ -21,9 +21,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core import mosaic
-from hdrlab.core.arrays import Array, as_radiance, describe
+from hdrlab.core.arrays import as_radiance, describe
+from hdrlab.core.types import F32, F64, Array
 
-Float = NDArray[np.float32]
 Seed = int | np.random.Generator
 
 
@@ -37,30 +37,30 @@ class Sensor(NamedTuple):
     black: int = 64  # level of no light
 
 
-def falloff(shape: tuple[int, ...], loss: float) -> Float:
+def falloff(shape: tuple[int, ...], loss: float) -> F32:
     """Return 1 - loss r^2 (H, W), r the distance from the middle, 1 in the corners: vignetting."""
     y, x = (np.linspace(-1, 1, n) if n > 1 else np.zeros(1) for n in shape[:2])
     return (1 - loss * (y[:, None] ** 2 + x**2) / 2).astype(np.float32)
 
 
-def exposure(E: Float, time: float, *, sensitivity: float = 1.0) -> Float:
+def exposure(E: F32, time: float, *, sensitivity: float = 1.0) -> F32:
     """Return X = s E t: light, times how long it was let in, times how strongly the sensor answers."""
     with np.errstate(over="ignore"):  # an infinite exposure fills the well like any other too long one
         return np.float32(sensitivity) * (E * np.float32(time))
 
 
-def photons(X: Float, *, full_well: float, rng: np.random.Generator) -> Float:
+def photons(X: F32, *, full_well: float, rng: np.random.Generator) -> F32:
     """Return N ~ Poisson(full_well X), at most full_well: light comes in photons, and a full well spills."""
     arriving = full_well * np.minimum(X, 4.0)  # what would fill it four times over fills it surely
     return np.minimum(rng.poisson(arriving), full_well).astype(np.float32)
 
 
-def readout(N: Float, *, read_noise: float, rng: np.random.Generator) -> Float:
+def readout(N: F32, *, read_noise: float, rng: np.random.Generator) -> F32:
     """Return N + Normal(0, read_noise), electrons: what the amplifier adds, in the dark too."""
     return N + np.float32(read_noise) * rng.standard_normal(N.shape, np.float32)
 
 
-def digitise(N: Float, sensor: Sensor) -> NDArray[np.uint16]:
+def digitise(N: F32, sensor: Sensor) -> NDArray[np.uint16]:
     """Return Z = round(N / K) + black, clamped to the converter's levels."""
     Z = np.floor(N / np.float32(sensor.gain) + np.float32(sensor.black + 0.5))
     return np.clip(Z, 0, 2**sensor.bits - 1).astype(np.uint16)
@@ -71,7 +71,7 @@ def full_electrons(sensor: Sensor) -> float:
     return min(sensor.full_well, sensor.gain * (2**sensor.bits - 1 - sensor.black))
 
 
-def balance(gray: ArrayLike) -> NDArray[np.float64]:
+def balance(gray: ArrayLike) -> F64:
     """Return gains (3,), the least of them 1, that make a gray card of these channels (3,) gray."""
     gray = np.asarray(gray, np.float64)
     if gray.shape != (3,) or not np.all((gray > 0) & np.isfinite(gray)):
@@ -90,7 +90,7 @@ def quantise(M: Array, *, bits: int = 8) -> Array:
     return np.floor(np.clip(M, 0, 1) * top + 0.5).astype(np.uint8 if bits == 8 else np.uint16)
 
 
-def read(X: Float, sensor: Sensor, *, rng: np.random.Generator) -> NDArray[np.uint16]:
+def read(X: F32, sensor: Sensor, *, rng: np.random.Generator) -> NDArray[np.uint16]:
     """Return the RAW levels Z of exposures X: photons counted, amplified and digitised."""
     N = photons(X, full_well=sensor.full_well, rng=rng)
     return digitise(readout(N, read_noise=sensor.read_noise, rng=rng), sensor)
@@ -149,7 +149,7 @@ def develop(
     *,
     white: ArrayLike = (1.0, 1.0, 1.0),
     bayer: bool = False,
-) -> Float:
+) -> F32:
     """Return the exposure X of RAW levels, 0 to 1 where 1 is full, in three channels of balanced white.
 
     The gains are divided by the least of them, and what exceeds 1 is cut off: a pixel that is full in all

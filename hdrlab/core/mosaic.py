@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import correlate
 
 from hdrlab.core.arrays import Array, describe
+from hdrlab.core.types import Indices
 
 BAYER = np.array([[0, 1], [1, 2]])  # R G / G B
 TENT = np.array([[1.0, 2, 1], [2, 4, 2], [1, 2, 1]]) / 4  # falls to 0 at a distance of two pixels
@@ -40,7 +41,7 @@ def sample(E: ArrayLike, c: ArrayLike) -> Array:
     return np.take_along_axis(E, c[..., None], axis=-1)[..., 0]
 
 
-def as_channels(c: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.intp]:
+def as_channels(c: ArrayLike, shape: tuple[int, ...]) -> Indices:
     """Return the channels (H, W) of a sensor's pixels, 0 to 2, or raise a ValueError."""
     channels = np.asarray(c)
     if channels.shape != tuple(shape) or not np.all(np.isin(channels, (0, 1, 2))):

@@ -15,16 +15,15 @@ from typing import Any, NamedTuple
 import imagecodecs
 import numpy as np
 import tifffile
-from numpy.typing import NDArray
 from PIL import ExifTags, Image
 
+from hdrlab.core.types import Array
 from hdrlab.io import raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import check_size
 
 logging.getLogger("tifffile").addHandler(logging.NullHandler())  # what is wrong is said by our errors
 
-Array = NDArray[Any]
 Exif = tuple[int, Exposure]  # the orientation and the exposure
 Looks = tuple[str, tuple[int, ...], np.dtype[Any], Exif]  # kind, shape as it is stored, dtype
 

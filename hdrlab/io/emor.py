@@ -13,18 +13,18 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64
+
 LARGEST = 64 << 20  # bytes: far beyond any such file
 
 
 class Emor(NamedTuple):
     """axis (n,), mean (n,) and components (K, n)."""
 
-    axis: Float
-    mean: Float
-    components: Float
+    axis: F64
+    mean: F64
+    components: F64
 
 
 def _text(path: str | Path) -> str:
@@ -78,7 +78,7 @@ def read_emor(path: str | Path) -> Emor:
     return Emor(blocks[0], blocks[1], np.stack(blocks[2:]))
 
 
-def read_curves(path: str | Path) -> tuple[Float, Float]:
+def read_curves(path: str | Path) -> tuple[F64, F64]:
     """Read measured response curves from an NPZ file: `irradiance` and `brightness`, (C, n) each.
 
     Raises

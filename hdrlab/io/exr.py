@@ -15,11 +15,12 @@ import OpenEXR
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance
+from hdrlab.core.types import F32, Array
 from hdrlab.io.files import check_size, replacing
 
 LARGEST_HALF = 65504.0
 BEST_COMPRESSION = 1 << 16  # bytes of a picture in one of the file: more than any of the methods reaches
-Part = tuple[dict[str, Any], dict[str, NDArray[Any]]]
+Part = tuple[dict[str, Any], dict[str, Array]]
 COLOURS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
 
 
@@ -66,7 +67,7 @@ def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
     return Header(channels, data, display, attributes)
 
 
-def read(path: str | Path) -> NDArray[np.float32]:
+def read(path: str | Path) -> F32:
     """Read an OpenEXR file, with the values as they stand in it, NaN and infinity too.
 
     Parameters
@@ -181,7 +182,7 @@ def _window(path: str | Path, window: tuple[NDArray[np.int32], NDArray[np.int32]
     return Window(top, left, height, width)
 
 
-def _place(path: str | Path, E: NDArray[np.float32], header: Header) -> NDArray[np.float32]:
+def _place(path: str | Path, E: F32, header: Header) -> F32:
     """Return E, which fills the data window, on the display window."""
     data, display = header.data, header.display
     if E.shape[:2] != (data.height, data.width):

@@ -8,15 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import OpenEXR
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hdrlab.core.types import F32
 from hdrlab.io import exr
 from hdrlab.io.files import replacing
 
 CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth
 
 
-def read_layers(path: str | Path) -> dict[str, NDArray[np.float32]]:
+def read_layers(path: str | Path) -> dict[str, F32]:
     """Read all parts of an OpenEXR file.
 
     Parameters
@@ -41,7 +42,7 @@ def read_layers(path: str | Path) -> dict[str, NDArray[np.float32]]:
     {'radiance': (2, 4, 3), 'depth': (2, 4)}
     """
     exr.read_headers(path)  # which looks at the sizes that are claimed, before pixels are read
-    layers: dict[str, NDArray[np.float32]] = {}
+    layers: dict[str, F32] = {}
     for number, (header, planes) in enumerate(exr.parts(path)):
         name, channels = header.get("name", f"part {number}"), next(iter(planes))
         if len(planes) != 1 or channels not in CHANNELS.values():

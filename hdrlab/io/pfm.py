@@ -103,7 +103,7 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
     """
     read_header(path)
     with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        E = from_bytes(data)  # type: ignore[arg-type]  a map of a file is as good
+        E = from_bytes(data)  # type: ignore[arg-type]
     return E if flip else E[::-1]
 
 

@@ -12,12 +12,11 @@ import re
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.core.arrays import as_table, describe
+from hdrlab.core.types import F64
 from hdrlab.core.weights import gaussian
 
-Float = NDArray[np.float64]
 MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels
 BLOCK = re.compile(r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M)
 WEIGHTS = (
@@ -28,7 +27,7 @@ LUMINANCE = "log10(Ir),Ir,log10(Ig),Ig,log10(Ib),Ib"
 BINS = np.arange(256) * 4095 // 255  # where Luminance HDR looks up the 256 levels
 
 
-def write_pfstools(path: Path, g: Float) -> None:
+def write_pfstools(path: Path, g: F64) -> None:
     """Write g as pfstools does, with 10 digits."""
     columns = columns_of(g)
     names = MATRICES[columns.shape[1]]
@@ -37,7 +36,7 @@ def write_pfstools(path: Path, g: Float) -> None:
     path.write_text("".join(blocks), encoding="ascii")
 
 
-def _block(name: str, g: Float) -> str:
+def _block(name: str, g: F64) -> str:
     """Return a channel as a block of Octave's text format; pfstools goes by the lines of rows and columns."""
     head = (
         f"# Camera response curve, channel {name}\n"
@@ -48,7 +47,7 @@ def _block(name: str, g: Float) -> str:
     return head + "".join(lines) + "\n"
 
 
-def read_pfstools(path: Path) -> Float:
+def read_pfstools(path: Path) -> F64:
     """Return ln f of a file of pfstools, or raise a ValueError."""
     text = text_of(path).replace("\r\n", "\n")
     heads = list(BLOCK.finditer(text))
@@ -60,7 +59,7 @@ def read_pfstools(path: Path) -> Float:
     return squeeze_gray(ln_exposure(np.stack(f, axis=-1)))
 
 
-def _read_block(text: str, rows: int) -> Float:
+def _read_block(text: str, rows: int) -> F64:
     """Return f (rows,) of the block whose lines begin the text."""
     *lines, _ = text.split("\n", rows)
     table = numbers("\n".join([*lines, ""]), 3)
@@ -69,7 +68,7 @@ def _read_block(text: str, rows: int) -> Float:
     return table[:, 2]
 
 
-def write_luminance(path: Path, g: Float) -> None:
+def write_luminance(path: Path, g: F64) -> None:
     """Write g, read at 256 levels, as Luminance HDR does, with 9 decimals and lines between the levels."""
     columns = columns_of(as_table(g, 256))
     fine = np.stack([np.interp(np.arange(4096), BINS, one) for one in columns.T], axis=-1)
@@ -79,7 +78,7 @@ def write_luminance(path: Path, g: Float) -> None:
     path.write_text("\n".join([LUMINANCE, *lines, ""]), encoding="ascii")
 
 
-def from_luminance(body: str) -> Float:
+def from_luminance(body: str) -> F64:
     """Return g (256, 3): what the program finds for the 256 levels of a photograph."""
     table = numbers(body, 6, ",")
     if len(table) != 4096:
@@ -87,17 +86,17 @@ def from_luminance(body: str) -> Float:
     return ln_exposure(table[BINS, 1::2])
 
 
-def columns_of(g: Float) -> Float:
+def columns_of(g: F64) -> F64:
     """Return g as (n, channels)."""
     return g.reshape(len(g), -1)
 
 
-def squeeze_gray(columns: Float) -> Float:
+def squeeze_gray(columns: F64) -> F64:
     """Return (n, channels) as (n,) where there is one channel."""
     return columns[:, 0] if columns.shape[1] == 1 else columns
 
 
-def ln_exposure(f: Float) -> Float:
+def ln_exposure(f: F64) -> F64:
     """Return ln f (n, channels), with levels of no exposure on lines between those that have one.
 
     Examples
@@ -112,7 +111,7 @@ def ln_exposure(f: Float) -> Float:
     return np.stack(filled, axis=-1)
 
 
-def numbers(text: str, columns: int, separator: str | None = None) -> Float:
+def numbers(text: str, columns: int, separator: str | None = None) -> F64:
     """Return the numbers of a text (lines, columns), or raise a ValueError that names the line.
 
     The last line must end too: a number that was cut short is a number still.

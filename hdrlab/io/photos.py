@@ -11,11 +11,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from PIL import Image
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.bracket import Bracket, bracket
+from hdrlab.core.types import Array, Mask
 from hdrlab.io import raw
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing
@@ -33,7 +34,7 @@ PICTURES: dict[str, dict[str, Any]] = {
 Paths = str | Path | Sequence[str | Path]
 
 
-def read_photo(path: str | Path) -> NDArray[Any]:
+def read_photo(path: str | Path) -> Array:
     """Read one photograph, upright.
 
     Parameters
@@ -204,7 +205,7 @@ def _short(header: Header) -> str:
     )
 
 
-def _valid_like(images: NDArray[Any], mask: tuple[int, int, int] | None) -> NDArray[np.bool_] | None:
+def _valid_like(images: Array, mask: tuple[int, int, int] | None) -> Mask | None:
     if mask is None:
         return None
     if images.ndim != 4:

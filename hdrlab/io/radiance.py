@@ -4,16 +4,17 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
+from hdrlab.core.types import F32
 from hdrlab.io import exr, pfm, rgbe
 
 SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
 
 
-def read_radiance(path: str | Path, *, clean: bool = False) -> NDArray[np.float32]:
+def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
     """Read a radiance map, in the format that the file's suffix names.
 
     Parameters
@@ -52,7 +53,7 @@ def read_sanitized(path: str | Path) -> gamut.Mended:
     return mended._replace(E=gamut.to_srgb(mended.E, primaries))
 
 
-def read_valid(path: str | Path) -> NDArray[np.float32]:
+def read_valid(path: str | Path) -> F32:
     """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
     E = format_of(path).read(path)
     try:

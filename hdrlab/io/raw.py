@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hdrlab.core.types import F32
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 
@@ -71,7 +72,7 @@ def decode(path: str | Path, white_balance: Balance | None = None) -> NDArray[np
     return to_srgb(camera, matrix)
 
 
-def to_srgb(camera: NDArray[np.uint16], matrix: NDArray[np.float32]) -> NDArray[np.uint16]:
+def to_srgb(camera: NDArray[np.uint16], matrix: F32) -> NDArray[np.uint16]:
     """Return the camera's colours as sRGB's, Z = M camera, and white where any of them is clipped."""
     Z = np.empty_like(camera)
     for y in range(0, len(camera), ROWS):

@@ -18,9 +18,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64
 from hdrlab.io.files import replacing
 from hdrlab.io.pfscurves import (
     LUMINANCE,
@@ -34,7 +35,6 @@ from hdrlab.io.pfscurves import (
     write_pfstools,
 )
 
-Float = NDArray[np.float64]
 LARGEST = 32 << 20  # bytes: three channels of 65536 levels take 10 million
 FURTHEST = 80  # e^80 is near the end of float32, in which other programs keep exposures
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
@@ -44,8 +44,8 @@ UNIT = " (ln exposure)"
 class Form(NamedTuple):
     """How a kind of file is written, and how it is read; what was read is yet to be checked."""
 
-    write: Callable[[Path, Float], None]
-    read: Callable[[Path], Float]
+    write: Callable[[Path, F64], None]
+    read: Callable[[Path], F64]
 
 
 def write_curve(path: str | Path, g: ArrayLike) -> None:
@@ -75,7 +75,7 @@ def write_curve(path: str | Path, g: ArrayLike) -> None:
         form.write(temporary, g)
 
 
-def read_curve(path: str | Path) -> Float:
+def read_curve(path: str | Path) -> F64:
     """Read a response, in the format that the file's suffix names.
 
     Parameters
@@ -134,7 +134,7 @@ def insert_name(path: str | Path, name: str) -> Path:
     return path.with_name(f"{path.name[: -len(suffix)]}-{name}{path.name[-len(suffix) :]}")
 
 
-def as_curve(g: ArrayLike) -> Float:
+def as_curve(g: ArrayLike) -> F64:
     """Return g as float64 (n,) or (n, 3), n = 256 or 65536, within float32, or raise a ValueError."""
     curve = np.asarray(g)
     if curve.dtype.kind not in "iuf" or curve.ndim not in (1, 2) or curve.shape[1:] not in ((), (3,)):
@@ -146,14 +146,14 @@ def as_curve(g: ArrayLike) -> Float:
     return curve.astype(np.float64)
 
 
-def _write_csv(path: Path, g: Float) -> None:
+def _write_csv(path: Path, g: F64) -> None:
     columns = columns_of(g)
     header = ",".join(["level", *(name + UNIT for name in CHANNELS[columns.shape[1]])])
     lines = [",".join([str(z), *map(repr, row)]) for z, row in enumerate(columns.tolist())]
     path.write_text("\n".join([header, *lines, ""]), encoding="ascii")
 
 
-def _read_csv(path: Path) -> Float:
+def _read_csv(path: Path) -> F64:
     header, _, body = text_of(path).partition("\n")
     if header.replace(" ", "").strip() == LUMINANCE:
         return from_luminance(body)
@@ -166,12 +166,12 @@ def _read_csv(path: Path) -> Float:
     return squeeze_gray(table[:, 1:])
 
 
-def _write_npz(path: Path, g: Float) -> None:
+def _write_npz(path: Path, g: F64) -> None:
     with open(path, "wb") as file:
         np.savez(file, g=g)
 
 
-def _read_npz(path: Path) -> Float:
+def _read_npz(path: Path) -> F64:
     try:
         with zipfile.ZipFile(path) as archive:
             claimed = archive.getinfo("g.npy").file_size

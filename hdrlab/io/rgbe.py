@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance
+from hdrlab.core.types import F32
 from hdrlab.io.files import check_size, replacing
 from hdrlab.io.rgbe_header import read_header
 
@@ -25,7 +26,7 @@ RUN = 127  # the longest run that one code of two bytes stands for
 ROWS = 64
 
 
-def read(path: str | Path) -> NDArray[np.float32]:
+def read(path: str | Path) -> F32:
     """Read a Radiance RGBE file: flat, old or new run-length scanlines, in any of the eight orientations.
 
     Parameters
@@ -104,12 +105,12 @@ def write(path: str | Path, E: ArrayLike) -> None:
             file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))
 
 
-def to_radiance(pixels: NDArray[np.uint8]) -> NDArray[np.float32]:
+def to_radiance(pixels: NDArray[np.uint8]) -> F32:
     """Return E = m / 256 2^(e - 128) of pixels (H, W, 4), three mantissas m and the exponent e [Ward91]."""
     return pixels[..., :3] * SCALE[pixels[..., 3:]]
 
 
-def to_pixels(E: NDArray[np.float32]) -> NDArray[np.uint8]:
+def to_pixels(E: F32) -> NDArray[np.uint8]:
     """Return m = floor(256 E 2^(128 - e)) and e, so that the largest m is 128 or more [Ward91].
 
     Examples
@@ -124,7 +125,7 @@ def to_pixels(E: NDArray[np.float32]) -> NDArray[np.uint8]:
     return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
 
 
-def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArray[np.float32]:
+def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> F32:
     """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
     if data[2] * 256 + data[3] != length:
         raise ValueError(
@@ -160,7 +161,7 @@ def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArr
     return repeated.view(np.uint8).reshape(scanlines, length, 4)
 
 
-def _upright(E: NDArray[np.float32], axes: str) -> NDArray[np.float32]:
+def _upright(E: F32, axes: str) -> F32:
     """Return E with its first row at the top (-Y) and its first column at the left (+X)."""
     if axes[1] == "X":
         E = E.swapaxes(0, 1)

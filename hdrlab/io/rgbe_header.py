@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from hdrlab.core.types import F64
 from hdrlab.io.files import check_size
 
 RESOLUTION = re.compile(r"([-+])([XY]) +(\d{1,10}) +([-+])([XY]) +(\d{1,10})")
@@ -27,7 +27,7 @@ class Header(NamedTuple):
     height: int
     width: int
     axes: str
-    exposure: NDArray[np.float64]
+    exposure: F64
     lines: tuple[str, ...]
     start: int
 
@@ -69,7 +69,7 @@ def parse(path: str | Path, head: bytes) -> Header:
     return Header(height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start)
 
 
-def _exposure(path: str | Path, lines: list[str]) -> NDArray[np.float64]:
+def _exposure(path: str | Path, lines: list[str]) -> F64:
     """Return the product of the EXPOSURE and COLORCORR lines: each tool that changed the pixels adds one."""
     product = np.ones(3)
     for line in lines:

@@ -18,10 +18,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F32, Array
 from hdrlab.io import photos, radiance
 from hdrlab.io.files import MAX_PIXELS, replacing
-
-Frame = NDArray[Any]
 
 FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
 ANIMATIONS = {".gif"}
@@ -37,7 +36,7 @@ def is_film(path: str | Path) -> bool:
     return Path(path).suffix.lower() in SUFFIXES
 
 
-def read(path: str | Path) -> Iterator[Frame]:
+def read(path: str | Path) -> Iterator[Array]:
     """Yield the frames of a film, an animation, or a folder of photographs sorted by name.
 
     Parameters
@@ -91,13 +90,13 @@ def require_films(path: Path) -> None:
         raise ValueError(f"{path}: {MISSING}")
 
 
-def chained(first: Frame, frames: Iterator[Frame]) -> Iterator[Frame]:
+def chained(first: Array, frames: Iterator[Array]) -> Iterator[Array]:
     """Yield the first frame, and the others."""
     yield first
     yield from frames
 
 
-def decode_frames(path: Path) -> Iterator[Frame]:
+def decode_frames(path: Path) -> Iterator[Array]:
     """Yield the frames of a film or an animation, (H, W, 3) uint8."""
     film = path.suffix.lower() in FILMS
     try:
@@ -114,7 +113,7 @@ def decode_frames(path: Path) -> Iterator[Frame]:
         raise ValueError(f"{path}: it is cut short or damaged ({error})") from None
 
 
-def require_alike(frames: Iterable[Frame], path: Path) -> Iterator[Frame]:
+def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:
     """Yield the frames; raise a ValueError where there is none, or one that differs from the first."""
     first = None
     for number, frame in enumerate(frames, 1):
@@ -129,7 +128,7 @@ def require_alike(frames: Iterable[Frame], path: Path) -> Iterator[Frame]:
         raise ValueError(f"{path}: expected at least one frame, got none")
 
 
-def write(path: str | Path, frames: Iterable[Frame], *, rate: float = 25.0) -> int:
+def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> int:
     """Write frames as an animation or a film, whole or not at all, as they come.
 
     Parameters
@@ -166,7 +165,7 @@ def write(path: str | Path, frames: Iterable[Frame], *, rate: float = 25.0) -> i
         )
 
 
-def _write_film(path: Path, frames: Iterable[Frame], rate: float) -> int:
+def _write_film(path: Path, frames: Iterable[Array], rate: float) -> int:
     written, file = 0, None
     try:
         for frame in frames:
@@ -182,7 +181,7 @@ def _write_film(path: Path, frames: Iterable[Frame], rate: float) -> int:
     return written
 
 
-def _write_gif(path: Path, frames: Iterable[Frame], rate: float) -> int:
+def _write_gif(path: Path, frames: Iterable[Array], rate: float) -> int:
     """Write them all at once: of an animation the frames are small."""
     shown = np.stack(list(frames))
     with iio.imopen(path, "w", plugin="pillow") as file:
@@ -190,7 +189,7 @@ def _write_gif(path: Path, frames: Iterable[Frame], rate: float) -> int:
     return len(shown)
 
 
-def write_maps(folder: str | Path, maps: Iterable[NDArray[np.float32]], *, suffix: str = ".exr") -> int:
+def write_maps(folder: str | Path, maps: Iterable[F32], *, suffix: str = ".exr") -> int:
     """Write radiance maps as 0001.exr, 0002.exr, ... into a new folder, all of them or none.
 
     Raises
@@ -229,7 +228,7 @@ def require_writable(path: Path) -> None:
         require_films(path)
 
 
-def as_rgb(frame: Frame) -> NDArray[np.uint8]:
+def as_rgb(frame: Array) -> NDArray[np.uint8]:
     """Return a frame as (H, W, 3) uint8, or raise a ValueError."""
     array = np.asarray(frame)
     if (

@@ -12,12 +12,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F32, F64
 from hdrlab.io.layers import read_layers
 
-Float = NDArray[np.float32]
 Shape = tuple[int, int]
 FOLDER = Path(__file__).parent
 PLACES = ("chapel", "workshop", "street")
@@ -34,13 +34,13 @@ class Layers(NamedTuple):
     mask : (H, W), share of a pixel that the visitor hides or shades, 0 to 1
     """
 
-    radiance: Float
-    depth: Float
-    mover: Float
-    mask: Float
+    radiance: F32
+    depth: F32
+    mover: F32
+    mask: F32
 
 
-def chapel(shape: Shape | None = None) -> Float:
+def chapel(shape: Shape | None = None) -> F32:
     """Return the radiance of a dark chapel: stained glass with the sun behind it, candles, and pews.
 
     Parameters
@@ -64,7 +64,7 @@ def chapel(shape: Shape | None = None) -> Float:
     return layers("chapel", shape).radiance
 
 
-def workshop(shape: Shape | None = None) -> Float:
+def workshop(shape: Shape | None = None) -> F32:
     """Return the radiance of a workshop: a bench and its tools, before a window on a sunny yard.
 
     Parameters, what is returned and what is raised are those of `chapel`.
@@ -77,7 +77,7 @@ def workshop(shape: Shape | None = None) -> Float:
     return layers("workshop", shape).radiance
 
 
-def street(shape: Shape | None = None) -> Float:
+def street(shape: Shape | None = None) -> F32:
     """Return the radiance of a street at night: lamps, lit windows, wet stones, and an alley without a light.
 
     Parameters, what is returned and what is raised are those of `chapel`.
@@ -123,7 +123,7 @@ def layers(name: str, shape: Shape | None = None) -> Layers:
     return Layers(*(resample(layer, found.depth.shape if shape is None else shape) for layer in found))
 
 
-def compose(place: Layers, offset: ArrayLike = (0, 0)) -> Float:
+def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
     """Return E = mover + (1 - mask) radiance, the place with its visitor [Porter84 sec. 4].
 
     Parameters
@@ -170,7 +170,7 @@ def overlap(length: int, shift: int) -> tuple[slice, slice]:
     return slice(max(shift, 0), max(length + shift, 0)), slice(max(-shift, 0), max(length - shift, 0))
 
 
-def resample(layer: Float, shape: Shape) -> Float:
+def resample(layer: F32, shape: Shape) -> F32:
     """Return the means of a layer over the areas of a coarser grid of square pixels, the largest it holds."""
     if len(shape) != 2 or any(not 1 <= n <= full for n, full in zip(shape, layer.shape, strict=False)):
         raise ValueError(f"expected a shape (H, W) from (1, 1) to {layer.shape[:2]}, got {shape}")
@@ -181,7 +181,7 @@ def resample(layer: Float, shape: Shape) -> Float:
     return layer
 
 
-def mean_between(layer: Float, edges: NDArray[np.float64], axis: int) -> Float:
+def mean_between(layer: F32, edges: F64, axis: int) -> F32:
     """Return the mean of a layer along an axis between each two edges, which may lie inside a pixel."""
     total = np.cumsum(layer, axis=axis, dtype=np.float64)
     total = np.concatenate([np.zeros_like(total.take([0], axis)), total], axis)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from hdrlab.capture.room.garden import EYE_HEIGHT, SUN, SUN_RADIUS, outside, sky
 from hdrlab.capture.room.illumination import Box, facing, from_globe, from_walls, from_window, length
 from hdrlab.capture.room.textures import Points, cover, hang, look_up, margin, rgb, within
+from hdrlab.core.types import Mask
 
 LEFT, RIGHT, FLOOR, CEILING, FRONT, BACK = range(6)
 
@@ -159,7 +160,7 @@ def trace(d: Points, pixel: float, sun: float, lamp: float) -> Points:
     t, face = leave(EYE, d, ROOM)
     P, w = EYE + t * d, pixel * t
     window, door = ((face == BACK) & (inside(P, hole) > 0) for hole in (WINDOW, DOOR))
-    parts: list[tuple[NDArray[np.bool_], Callable[..., Points]]]
+    parts: list[tuple[Mask, Callable[..., Points]]]
     parts = [((face == k) & ~window & ~door, partial(wall, k, sun=sun, lamp=lamp)) for k in MATERIALS]
     parts += [(window, partial(through_window, pixel=pixel, sun=sun)), (door, through_door)]
     E = np.empty_like(d)

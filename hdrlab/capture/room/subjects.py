@@ -10,10 +10,10 @@ x, y  places (H, W), to the right and up, in heights of the picture, 0 in the mi
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.capture.room.textures import Points, cover, look_up, rgb, within
 from hdrlab.core.colour import luminance
+from hdrlab.core.types import F32, Mask
 
 SHAPE = (256, 384)
 
@@ -21,8 +21,8 @@ SHAPE = (256, 384)
 class Subject(NamedTuple):
     """A scene with the subject that its photographer meant."""
 
-    E: NDArray[np.float32]
-    mask: NDArray[np.bool_]
+    E: F32
+    mask: Mask
     rho: float
 
 

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.capture.room.interior import trace
 from hdrlab.capture.room.textures import Points
 from hdrlab.core.colour import luminance
+from hdrlab.core.types import F32
 
 BAND = 2**16  # lines of sight traced at a time: their arrays stay near the processor
 
@@ -26,7 +27,7 @@ def sight(shape: tuple[int, int], rows: NDArray[np.int_]) -> tuple[Points, float
 
 def room(
     shape: tuple[int, int] = (512, 768), *, sun: float = 10_000.0, lamp: float = 6_000.0, samples: int = 2
-) -> NDArray[np.float32]:
+) -> F32:
     """Return the radiance of a room with a bright window, five decades and a half from sun to dark corner.
 
     Late afternoon. Garden and sun stand in the window, whose bars cast shadows into the light on the tiles; a
