@@ -81,9 +81,7 @@ def shoot(
     if (c is None) != (E.ndim == 2) or bits not in (8, 16):
         raise ValueError(f"expected channels for RGB alone, and 8 or 16 bits, got {describe(E)} and {bits}")
     if not (full_well > 0 and 0 <= read_noise < np.inf):
-        raise ValueError(
-            f"expected a positive well and noise of at least 0, got {full_well} and {read_noise}"
-        )
+        raise ValueError(f"expected a positive well, noise of at least 0, got {full_well} and {read_noise}")
     light = E if c is None else sample(E, c)
     X = np.minimum(e * light, 4.0)
     rng = np.random.default_rng(rng)

@@ -38,9 +38,8 @@ class Search(NamedTuple):
 
 def similarity(w: F32, matches: Matches) -> float:
     """Return MBDS(T | S) [Sen12 sec. 3]."""
-    completeness = sum(
-        float((each * field.d).mean()) for each, field in zip(w, matches.completeness, strict=True)
-    )
+    pairs = zip(w, matches.completeness, strict=True)
+    completeness = sum(float((each * field.d).mean()) for each, field in pairs)
     return completeness / len(w) + float(matches.coherence.d.mean())
 
 
@@ -57,9 +56,8 @@ def search(
     back = patchmatch.make_sources(T[None], knobs.side)
     rows = Q.rows.reshape(*Q.shape, -1)
     coherence = search_one_way(P, Q, begun[0], knobs, rng)
-    return Matches(
-        coherence, tuple(search_one_way(rows[q], back, at, knobs, rng) for q, at in enumerate(begun[1]))
-    )
+    completeness = (search_one_way(rows[q], back, at, knobs, rng) for q, at in enumerate(begun[1]))
+    return Matches(coherence, tuple(completeness))
 
 
 def search_one_way(P: F32, Q: Sources, at: Indices, knobs: Search, rng: np.random.Generator) -> Field:

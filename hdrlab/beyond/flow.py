@@ -37,9 +37,8 @@ def warp(f: F32, u: F32) -> F32:
     """Return f(p + u(p)), linear between pixels; beyond the edge it is the edge's."""
     places = np.indices(u.shape[1:]) + u
     planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
-    found = [
-        map_coordinates(planes[..., c], places, order=1, mode="nearest") for c in range(planes.shape[-1])
-    ]
+    channels = np.moveaxis(planes, -1, 0)
+    found = [map_coordinates(one, places, order=1, mode="nearest") for one in channels]
     return np.stack(found, axis=-1).reshape(f.shape)
 
 

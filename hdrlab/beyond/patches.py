@@ -124,11 +124,8 @@ def synthesise_steps(
     generator, state, begun = np.random.default_rng(rng), None, None
     for scale, (shape, count) in enumerate(zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)):
         scene = resize_scene(finest, shape)
-        H = (
-            resize_picture(guess_radiance(finest), shape)
-            if state is None
-            else blend_reference(resize_picture(state.H, shape), scene)
-        )
+        H = resize_picture(guess_radiance(finest) if state is None else state.H, shape)
+        H = H if state is None else blend_reference(H, scene)
         state = State(scale, 0, H, extract_exposures(H, scene), np.full(len(scene.t), np.nan))
         yield state
         begun = start_fields(shape, len(scene.t), side) if begun is None else begun

@@ -54,12 +54,8 @@ def cut_patches(picture: F32, side: int) -> F32:
 
 def make_sources(S: F32, side: int, price: F32 | None = None) -> Sources:
     """Return the patches of S; the price of each is the sum of its pixels' prices (N, H, W), 0 by default."""
-    rows = cut_patches(S, side)
-    each = (
-        np.zeros(rows.shape[:-1], np.float32)
-        if price is None
-        else cut_patches(price[..., None], side).sum(axis=-1)
-    )
+    rows, price = cut_patches(S, side), np.zeros(S.shape[:-1], np.float32) if price is None else price
+    each = cut_patches(price[..., None], side).sum(axis=-1)
     return Sources(rows.reshape(-1, rows.shape[-1]), each.ravel(), rows.shape[:3])
 
 
@@ -135,11 +131,8 @@ def identity_field(h: int, w: int, source: int = 0) -> Indices:
 
 def upscale_field(at: Indices, shape: tuple[int, int]) -> Indices:
     """Return a field for (h, w) patches of a finer scale, from that of a coarser one."""
-    ratios = [fine / coarse for fine, coarse in zip(shape, at.shape[:2], strict=True)]
-    own = [
-        np.minimum((np.arange(n) / r).astype(int), m - 1)
-        for n, r, m in zip(shape, ratios, at.shape[:2], strict=True)
-    ]
+    ratios = np.divide(shape, at.shape[:2])
+    own = [(np.arange(n) / r).astype(int) for n, r in zip(shape, ratios, strict=True)]
     coarse = np.stack([np.zeros(shape, int), *np.meshgrid(*own, indexing="ij")], axis=-1)
     apart = at[np.ix_(*own)] - coarse  # which source, and how far away in pixels of the coarser scale
     return identity_field(*shape) + np.rint(apart * np.array([1, *ratios])).astype(int)

@@ -190,12 +190,7 @@ def merge(Z: ArrayLike, e: ArrayLike, c: ArrayLike | None = None, *, full: float
 def as_shares(e: ArrayLike) -> F64:
     """Return shares (N,), falling, at most 1 in all, or raise a ValueError."""
     each = np.asarray(e, np.float64)
-    if (
-        each.ndim != 1
-        or not len(each)
-        or not (np.all(each > 0) and np.all(np.diff(each) < 0) and each.sum() < 1.001)
-    ):
-        raise ValueError(
-            f"expected positive shares of the light, falling, at most 1 in all, got {each.tolist()}"
-        )
+    falling = each.ndim == 1 and len(each) and np.all(each > 0) and np.all(np.diff(each) < 0)
+    if not (falling and each.sum() < 1.001):
+        raise ValueError(f"expected positive, falling shares of the light, at most 1 in all, got {each}")
     return each

@@ -136,9 +136,8 @@ def flicker(Ld: Iterable[ArrayLike], still: ArrayLike | None = None) -> float:
     17.3
     """
     shown = [encode_srgb(np.asarray(one, np.float64)) for one in Ld]
-    y = np.array(
-        [255 * float(one[... if still is None else np.asarray(still, bool)].mean()) for one in shown]
-    )
+    part = ... if still is None else np.asarray(still, bool)
+    y = np.array([255 * float(one[part].mean()) for one in shown])
     if len(y) < 3:
         raise ValueError(f"expected at least three frames, got {len(y)}")
     return float(np.sqrt(np.mean((np.diff(y, 2) / 4) ** 2)))

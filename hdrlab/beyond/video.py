@@ -149,9 +149,8 @@ def merge_steps(
     """
     turn = np.atleast_1d(np.asarray(times, np.float64))
     turn = as_times(turn, max(turn.size, 1))
-    seen = require_one_size(
-        as_frame(Z, float(t), g, w, low, high) for Z, t in zip(frames, cycle(turn), strict=False)
-    )
+    pairs = zip(frames, cycle(turn), strict=False)
+    seen = require_one_size(as_frame(Z, float(t), g, w, low, high) for Z, t in pairs)
     for number, (place, around) in enumerate(slide_windows(seen, 1)):
         i, beside = around[place], [*around[:place], *around[place + 1 :]]
         there = [warp_frame(j, estimate_motion(i, j, flow)) for j in beside]
@@ -217,10 +216,8 @@ def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None, low: Ram
     stack = np.asarray(Z)[None]
     seen = as_values(stack, [t], g)
     n = levels(stack)
-    chosen = weights.cut(weights.snr(as_table(g, n))) if w is None else w
-    f_W = look_up_levels(as_table(chosen, n).reshape(n, -1).astype(np.float32), stack.reshape(seen.v.shape))[
-        0
-    ]
+    table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n).reshape(n, -1)
+    f_W = look_up_levels(table.astype(np.float32), stack.reshape(seen.v.shape))[0]
     R = radiance(seen.v[0], t, seen.full)
     alpha = trapezoid(seen.z[0], low, high)
     return Frame(seen.v[0], seen.noise[0], seen.clipped[0], R, f_W, alpha, t, seen.full)
@@ -232,7 +229,6 @@ def require_one_size(frames: Iterable[Frame]) -> Iterator[Frame]:
     for number, frame in enumerate(frames):
         first = frame if first is None else first
         if frame.v.shape != first.v.shape:
-            raise ValueError(
-                f"expected frames of one size, got {first.v.shape} and, number {number + 1}, {frame.v.shape}"
-            )
+            got = f"{first.v.shape} and, number {number + 1}, {frame.v.shape}"
+            raise ValueError(f"expected frames of one size, got {got}")
         yield frame

@@ -65,9 +65,7 @@ def times_around(
     """
     if count < 1 or not all(0 < knob < np.inf for knob in (stops, middle, sensitivity)):
         got = f"{count}, {stops}, {middle} and {sensitivity}"
-        raise ValueError(
-            f"expected at least one frame, and positive stops, middle and sensitivity; got {got}"
-        )
+        raise ValueError(f"expected at least one frame, positive stops, middle and sensitivity; got {got}")
     L = luminance(E).astype(np.float64)
     if not L.any():
         raise ValueError("expected radiance with a positive pixel, got zeros")
@@ -120,23 +118,22 @@ class Camera:
     white: ArrayLike = (1.0, 1.0, 1.0)
 
     def __post_init__(self) -> None:
-        if self.bits not in (8, 16):
-            raise ValueError(f"expected 8 or 16 bits, got {self.bits}")
-        if not (0 < self.sensitivity < np.inf and self.full_well > 0):
-            got = f"{self.sensitivity} and {self.full_well}"
-            raise ValueError(f"expected a positive sensitivity and full well, got {got}")
-        if not (0 <= self.read_noise < np.inf and 0 <= self.gray_noise < np.inf and 0 <= self.hot <= 1):
-            got = f"read_noise {self.read_noise}, gray_noise {self.gray_noise}, hot {self.hot}"
-            raise ValueError(f"expected noise of at least 0 and a share of hot pixels from 0 to 1, got {got}")
-        if not 0 <= self.vignetting <= 1:
-            raise ValueError(f"expected a vignetting from 0 to 1, got {self.vignetting}")
-        if self.read_noise > 0 and self.full_well == np.inf:
-            raise ValueError("expected a finite full_well for read_noise, which is in electrons; got inf")
-        if self.sensor is None and self.coloured:
-            got = f"{self.bayer} and {self.white!r}"
-            raise ValueError(f"expected a sensor for a mosaic and white balance, got {got}")
-        if self.sensor is not None and self.full_well < np.inf:
-            raise ValueError("expected the well and its noise in the sensor or beside it, got both")
+        electrons, levels = self.read_noise, self.gray_noise
+        for valid, expected in (
+            (self.bits in (8, 16), "8 or 16 bits"),
+            (0 < self.sensitivity < np.inf, "a positive sensitivity"),
+            (self.full_well > 0, "a positive full well"),
+            (0 <= electrons < np.inf and 0 <= levels < np.inf, "read_noise and gray_noise of at least 0"),
+            (0 <= self.hot <= 1 and 0 <= self.vignetting <= 1, "hot and vignetting from 0 to 1"),
+            (not electrons or self.full_well < np.inf, "a finite full_well for read_noise, in electrons"),
+            (self.sensor is not None or not self.coloured, "a sensor for a mosaic and white balance"),
+            (
+                self.sensor is None or self.full_well == np.inf,
+                "a full well in the sensor or beside it, not both",
+            ),
+        ):
+            if not valid:
+                raise ValueError(f"expected {expected}, got {self}")
 
     @property
     def coloured(self) -> bool:
@@ -191,9 +188,8 @@ def shoot(
     rng, order = np.random.default_rng(rng), np.argsort(times, kind="stable")
     light = views(E, moves[order])
     stuck = rng.random(light[0].shape) < camera.hot
-    images = [
-        photograph(view, time, camera, stuck, rng) for view, time in zip(light, times[order], strict=True)
-    ]
+    pairs = zip(light, times[order], strict=True)
+    images = [photograph(view, time, camera, stuck, rng) for view, time in pairs]
     linear = as_response(camera.response) is as_response("linear")
     return bracket(np.stack(images), times[order], linear=linear)
 

@@ -91,9 +91,7 @@ def shake(
     knobs = np.array([radius, degrees, zoom, tilt], float)
     if count < 1 or not np.all(np.isfinite(knobs) & (knobs >= 0)) or zoom >= 0.5 or tilt >= 0.5:
         got = f"{count} frames, radius {radius}, degrees {degrees}, zoom {zoom}, tilt {tilt}"
-        raise ValueError(
-            f"expected at least one frame and motion of at least 0, zoom and tilt < 0.5, got {got}"
-        )
+        raise ValueError(f"expected at least one frame, motion of at least 0, zoom and tilt < 0.5, got {got}")
     moves = []
     for dy, dx, phi, grown, across, down in rng.uniform(-1, 1, (count, 6)):
         about = warp.turn(shape, degrees * phi, (radius * dy, radius * dx), scale=1 + zoom * grown)

@@ -22,9 +22,8 @@ from hdrlab.core.types import F64, Array
 At = tuple[float, float]
 
 GRAY = 0.18  # B_opt
-FULL = (
-    16.0  # how bright a full pixel is taken to be: it says "at least 1"; too dark a next shot is soon mended
-)
+# how bright a full pixel is taken to be: it says "at least 1", and too dark a next shot is soon corrected
+FULL_PIXEL_BRIGHTNESS = 16.0
 
 
 def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
@@ -74,9 +73,7 @@ def centre(shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, 
     It falls as a Gaussian of the distance, whose width is found by halving.
     """
     if not share < inside < 1:
-        raise ValueError(
-            f"expected more than the share {share} of the weight inside, and less than 1, got {inside}"
-        )
+        raise ValueError(f"expected more than {share} of the weight inside, and less than 1, got {inside}")
     down, right = _places(shape, at)
     squared = down**2 + right**2
     core = _disc(shape, share, at) > 0
@@ -196,9 +193,9 @@ def optimum(EV_pre: float, B_pre: float, B_opt: float = GRAY) -> float:
 
 
 def predict_reading(B: ArrayLike, w: F64, stops: float) -> float:
-    """Return the reading after `stops` more light, sum w min(2^stops B, 1), where a full B counts as FULL."""
+    """Return the reading after `stops` more light, sum w min(2^stops B, 1), where a full B counts as 16."""
     B = np.asarray(B, np.float64)
-    return float((w * np.minimum(np.where(B < 1, B, FULL) * 2.0**stops, 1)).sum())
+    return float((w * np.minimum(np.where(B < 1, B, FULL_PIXEL_BRIGHTNESS) * 2.0**stops, 1)).sum())
 
 
 def correction(B: ArrayLike, w: F64, B_opt: float = GRAY, *, most: float = 8.0) -> float:

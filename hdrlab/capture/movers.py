@@ -192,7 +192,7 @@ def as_figure(figure: Figure, E: F32) -> Figure:
     light, mask = (np.asarray(layer) for layer in figure)
     if light.shape != E.shape or mask.shape != E.shape[:2]:
         raise ValueError(
-            f"expected a figure's light {E.shape} and mask {E.shape[:2]}, got {light.shape} and {mask.shape}"
+            f"expected light {E.shape} and a mask of its size, got {light.shape} and {mask.shape}"
         )
     if not (mask.min() >= 0 and mask.max() <= 1):
         raise ValueError(f"expected a mask from 0 to 1, got {describe(mask)}")

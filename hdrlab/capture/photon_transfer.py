@@ -99,9 +99,8 @@ def calibrate(Z: ArrayLike) -> Transfer:
     S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
     used = (S <= SAFE * S.max()) & (S >= 0)
     if used.sum() < 3 or not S.max() > 0:
-        raise ValueError(
-            f"expected two pairs between the dark and the brightest, got signals {S.round(1).tolist()}"
-        )
+        got = S.round(1).tolist()
+        raise ValueError(f"expected two pairs between the dark and the brightest, got signals {got}")
     slope = line(S[used], V[used])
     if not slope > 0:
         raise ValueError("expected noise that grows with the light, as of RAW levels; got one that does not")

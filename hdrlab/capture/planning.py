@@ -73,26 +73,17 @@ def plan(
     if not 0 < L_low <= L_high < math.inf:
         raise ValueError(f"expected luminances 0 < low <= high, got {L_low} and {L_high} cd/m^2")
     if not 0 <= overlap < usable < math.inf:
-        raise ValueError(
-            f"expected an overlap from 0 to below the usable range, got {overlap} of {usable} stops"
-        )
+        raise ValueError(f"expected an overlap from 0 to below the {usable} usable stops, got {overlap}")
     dial = exposure.shutter_series(per_stop)
     step = math.floor((usable - overlap) * per_stop + 1e-9) / per_stop
     if step <= 0:
         raise ValueError(f"expected a step of at least 1/{per_stop} stop, got {usable - overlap:.2f}")
-    longest_safe = (
-        exposure.saturating_luminance(1.0, F=aperture, S=iso) / L_high
-    )  # s: L_high just fills the levels
-    first = math.floor(math.log2(longest_safe) * per_stop + 1e-9) / per_stop
-    reach = math.log2(exposure.saturating_luminance(2.0**first, F=aperture, S=iso) / L_low)
+    fills = exposure.saturating_luminance(1.0, F=aperture, S=iso)  # cd/m^2, in one second
+    first = math.floor(math.log2(fills / L_high) * per_stop + 1e-9) / per_stop
+    reach = math.log2(fills / 2.0**first / L_low)
     times = np.exp2(first + step * np.arange(count(reach, usable, usable - step)))
-    top = exposure.saturating_luminance(times, F=aperture, S=iso)
-    return Plan(
-        tuple(_name(t, dial) for t in times),
-        times,
-        np.stack([top * 2.0**-usable, top], axis=1).astype(np.float64),
-        step,
-    )
+    holds = np.stack([fills / times * 2.0**-usable, fills / times], axis=1).astype(np.float64)
+    return Plan(tuple(_name(t, dial) for t in times), times, holds, step)
 
 
 def _name(time: float, dial: exposure.Dial) -> str:

@@ -45,9 +45,8 @@ RESPONSES = {
     "gamma": Response(lambda X: X ** (1 / 2.2), lambda M: M**2.2),
     "srgb": Response(encode_srgb, decode_srgb),
     "film": Response(film, film_inverse),
-    "cubic": Response(
-        cubic, lambda M: (M + 3 * M**3) / 4
-    ),  # a polynomial of order 3, as [Cerman06 sec. 4.2] uses
+    # a polynomial of order 3, as [Cerman06 sec. 4.2] uses
+    "cubic": Response(cubic, lambda M: (M + 3 * M**3) / 4),
 }
 
 
@@ -74,9 +73,7 @@ def as_response(response: str | Curve | Response | None) -> Response:
     made = response if isinstance(response, Response) else Response(response, bisect(response))
     M = np.asarray(made.f(np.linspace(0, 1, 1025)))
     if M.shape != (1025,) or not (np.all(np.diff(M) >= 0) and 0 <= M[0] < M[-1] <= 1):
-        raise ValueError(
-            "expected a response that rises from [0, 1] into [0, 1], on arrays; got one that does not"
-        )
+        raise ValueError("expected a response that rises from [0, 1] into [0, 1], got one that does not")
     return made
 
 

@@ -28,16 +28,8 @@ Exif = tuple[int, Exposure]  # the orientation and the exposure
 Looks = tuple[str, tuple[int, ...], np.dtype[Any], Exif]  # kind, shape as it is stored, dtype
 
 BEST_COMPRESSION = 1 << 12  # bytes of a picture in one of the file: more than any of these formats reaches
-MODES = {
-    "1": "1-bit pixels",
-    "P": "a palette",
-    "PA": "a palette",
-    "CMYK": "CMYK",
-    "F": "floating point",
-    "I": "32-bit integers",
-    "YCbCr": "YCbCr",
-    "LAB": "Lab",
-}
+MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
+MODES |= {"F": "floating point", "I": "32-bit integers"}
 UPRIGHT: dict[int, Callable[[Array], Array]] = {  # the EXIF orientations
     1: lambda a: a,
     2: lambda a: a[:, ::-1],
@@ -94,9 +86,8 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
         except Exception as error:  # on damaged files the codecs raise what they like
             raise ValueError(f"{header.path}: it is cut short or damaged ({error})") from None
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
-        raise ValueError(
-            f"{header.path}: expected {out.shape} {out.dtype}, got {pixels.shape} {pixels.dtype}"
-        )
+        got = f"{pixels.shape} {pixels.dtype}"
+        raise ValueError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")
     if pixels is not out:
         out[...] = pixels
 
@@ -115,9 +106,8 @@ def _png(data: bytes, out: Array | None) -> Array:
 def _tiff(data: bytes, out: Array | None) -> Array:
     with tifffile.TiffFile(io.BytesIO(data)) as file:
         page = file.pages.first
-        if any(
-            at + count > len(data) for at, count in zip(page.dataoffsets, page.databytecounts, strict=True)
-        ):
+        ends = map(sum, zip(page.dataoffsets, page.databytecounts, strict=True))
+        if max(ends, default=0) > len(data):
             raise ValueError("its pixels go past the end of the file")
         pixels = page.asarray()
     if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
@@ -155,16 +145,9 @@ def _look_tiff(path: Path) -> Looks:
     try:
         with tifffile.TiffFile(path) as file:
             page = file.pages.first
-            shape, dtype, samples = (
-                (int(page.imagelength), int(page.imagewidth)),
-                page.dtype,
-                page.samplesperpixel,
-            )
-            kind, extra, depth = (
-                str(getattr(page.photometric, "name", page.photometric)),
-                page.extrasamples,
-                page.imagedepth,
-            )
+            shape, dtype = (int(page.imagelength), int(page.imagewidth)), page.dtype
+            kind = str(getattr(page.photometric, "name", page.photometric))
+            samples, extra, depth = page.samplesperpixel, page.extrasamples, page.imagedepth
     except Exception as error:  # on damaged files tifffile raises what it likes
         raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
     if extra:

@@ -76,12 +76,7 @@ def _exr(path: str | Path) -> dict[str, Any]:
     kinds = exr.read_dtypes(path)  # stand with the pixels only
     return {
         "format": "OpenEXR",
-        **_size(
-            header.display.height,
-            header.display.width,
-            ", ".join(header.channels),
-            ", ".join(sorted(set(kinds))),
-        ),
+        **_size(*header.display[2:], ", ".join(header.channels), ", ".join(sorted(set(kinds)))),
         "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
         **({"data window": tuple(header.data)} if header.data != header.display else {}),
     }

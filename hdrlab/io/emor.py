@@ -29,10 +29,8 @@ class Emor(NamedTuple):
 
 def _text(path: str | Path) -> str:
     path = Path(path)
-    if path.stat().st_size > LARGEST:
-        raise ValueError(
-            f"{path}: expected a file of response curves, this one has {path.stat().st_size} bytes"
-        )
+    if (size := path.stat().st_size) > LARGEST:
+        raise ValueError(f"{path}: expected a file of response curves, this one has {size} bytes")
     return path.read_text(encoding="latin-1")
 
 

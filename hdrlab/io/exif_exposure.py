@@ -37,13 +37,11 @@ def exif_exposure(exif: Image.Exif) -> Exposure:
     """
     tags = {**dict(exif), **dict(exif.get_ifd(ExifTags.IFD.Exif))}
     speeds = (positive(tags.get(tag)) for tag in SPEEDS)
-    return Exposure(
-        positive(tags.get(SHUTTER)) or _apex(tags.get(SHUTTER_APEX), lambda Tv: 2**-Tv),
-        positive(tags[APERTURE])
-        if APERTURE in tags
-        else _apex(tags.get(APERTURE_APEX), lambda Av: 2 ** (Av / 2)),
-        next((speed for speed in speeds if speed and speed != UNKNOWN_SPEED), None),
-    )
+    speed = next((speed for speed in speeds if speed and speed != UNKNOWN_SPEED), None)
+    seconds = positive(tags.get(SHUTTER)) or _apex(tags.get(SHUTTER_APEX), lambda Tv: 2**-Tv)
+    stated = APERTURE in tags
+    N = positive(tags[APERTURE]) if stated else _apex(tags.get(APERTURE_APEX), lambda Av: 2 ** (Av / 2))
+    return Exposure(seconds, N, speed)
 
 
 def equivalent(names: Sequence[str], exposures: Sequence[Exposure]) -> list[float]:
@@ -71,9 +69,7 @@ def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> l
     known = [value for value in values if value is not None]
     if known and len(known) < len(values):
         missing = names[values.index(None)]
-        raise ValueError(
-            f"{missing}: expected the {what}, which other photographs of the bracket state; {HINT}"
-        )
+        raise ValueError(f"{missing}: expected the {what}, which other photographs state; {HINT}")
     return known or [1.0] * len(values)
 
 

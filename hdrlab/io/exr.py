@@ -58,12 +58,9 @@ def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
         raise ValueError(f"{path}: expected a flat image, got {attributes['type'].name}")
     channels, across, down = zip(*attributes["channels"], strict=True)
     if {*across, *down} != {1}:
-        raise ValueError(
-            f"{path}: expected channels of full size, got subsampled ones ({', '.join(channels)})"
-        )
-    data, display = (
-        _window(path, attributes[name], len(channels)) for name in ("dataWindow", "displayWindow")
-    )
+        raise ValueError(f"{path}: expected channels of full size, got subsampled {', '.join(channels)}")
+    windows = (attributes["dataWindow"], attributes["displayWindow"])
+    data, display = (_window(path, window, len(channels)) for window in windows)
     return Header(channels, data, display, attributes)
 
 
@@ -134,9 +131,7 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
     """
     E = as_radiance(E)
     if half and E.max() > LARGEST_HALF:
-        raise ValueError(
-            f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got up to {E.max():.6g}"
-        )
+        raise ValueError(f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}")
     pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     with replacing(path) as name, OpenEXR.File(header, {"RGB" if E.ndim == 3 else "Y": pixels}) as file:
@@ -150,9 +145,7 @@ def _first_part(path: str | Path, **options: bool) -> Part:
 
 def parts(path: str | Path, *, count: int | None = None, **options: bool) -> list[Part]:
     """Return the header, and the pixels by channel, of the first `count` parts of the file at `path`."""
-    with open(
-        path, "rb"
-    ) as start:  # the module cannot tell a file that is missing from one that is not OpenEXR
+    with open(path, "rb") as start:  # the module takes a missing file for one that is not OpenEXR
         magic = start.read(4)
     if magic != b"v/1\x01":
         raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
@@ -161,10 +154,7 @@ def parts(path: str | Path, *, count: int | None = None, **options: bool) -> lis
         with contextlib.redirect_stdout(said), OpenEXR.File(str(path), **options) as file:
             found = []
             for part in file.parts[:count]:
-                channels = [
-                    (channel.name, channel.xSampling, channel.ySampling)
-                    for channel in part.header["channels"]
-                ]
+                channels = [(one.name, one.xSampling, one.ySampling) for one in part.header["channels"]]
                 planes = {name: channel.pixels for name, channel in part.channels.items()}
                 found.append(({**part.header, "channels": channels}, planes))
             found[0]  # a file without a part is damaged too

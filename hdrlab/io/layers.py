@@ -10,6 +10,7 @@ import numpy as np
 import OpenEXR
 from numpy.typing import ArrayLike
 
+from hdrlab.core.arrays import describe
 from hdrlab.core.types import F32
 from hdrlab.io import exr
 from hdrlab.io.files import replacing
@@ -84,9 +85,7 @@ def write_layers(path: str | Path, layers: Mapping[str, ArrayLike]) -> None:
         if layer.ndim not in (2, 3) or layer[0, 0].size not in CHANNELS:
             raise ValueError(f"expected {name} to have 1, 3 or 4 channels, got shape {layer.shape}")
         if not (layer.min() >= 0 and layer.max() <= exr.LARGEST_HALF):  # NaN fails as well
-            raise ValueError(
-                f"expected {name} in 0 to {exr.LARGEST_HALF:.0f}, got {layer.min()} to {layer.max()}"
-            )
+            raise ValueError(f"expected {name} in 0 to {exr.LARGEST_HALF:.0f}, got {describe(layer)}")
         header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
         pixels = np.ascontiguousarray(layer, np.float16)
         parts.append(OpenEXR.Part(header, {CHANNELS[layer[0, 0].size]: pixels}, name))

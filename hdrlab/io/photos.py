@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
 from hdrlab.core.arrays import describe
@@ -101,9 +101,8 @@ def read_bracket(
     """
     headers = [look(path) for path in photographs(paths)]
     _check_alike(headers)
-    seconds = bracket_times(
-        [header.path.name for header in headers], [header.exposure for header in headers], times
-    )
+    names, exposures = [header.path.name for header in headers], [header.exposure for header in headers]
+    seconds = bracket_times(names, exposures, times)
     headers = [headers[j] for j in np.argsort(seconds, kind="stable")]
     linear = headers[0].kind == "RAW"
     balance = raw.balance(headers[0].path) if linear else None
@@ -131,10 +130,8 @@ def photographs(paths: Paths) -> list[Path]:
     given = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
     if len(given) == 1 and given[0].is_dir():
         folder = given[0]
-        given = sorted(
-            path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES and path.is_file()
-        )
-        given = [path for path in given if not path.name.startswith(".")]
+        found = sorted(path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES)
+        given = [path for path in found if path.is_file() and not path.name.startswith(".")]
         if not given:
             raise ValueError(f"{folder}: expected a folder with photographs, it holds none")
     for path in given:
@@ -166,20 +163,20 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     >>> read_photo(path).tolist()
     [[0, 255], [0, 255]]
     """
-    image, suffix = np.asarray(image), Path(path).suffix.lower()
+    suffix = Path(path).suffix.lower()
     if suffix not in PICTURES:
-        raise ValueError(
-            f"{path}: expected a picture file ({', '.join(PICTURES)}), got {suffix or 'no suffix'}"
-        )
-    if (
-        image.dtype != np.uint8
-        or image.ndim not in (2, 3)
-        or image.shape[2:] not in ((), (3,))
-        or not image.size
-    ):
-        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(image)}")
+        raise ValueError(f"{path}: expected a picture file ({', '.join(PICTURES)}), got {suffix or 'none'}")
+    picture = as_picture(image)
     with replacing(path) as name:
-        Image.fromarray(image).save(name, **PICTURES[suffix])
+        Image.fromarray(picture).save(name, **PICTURES[suffix])
+
+
+def as_picture(image: ArrayLike) -> NDArray[np.uint8]:
+    """Return a picture for the eye, (H, W) or (H, W, 3) uint8, or raise a ValueError."""
+    array = np.asarray(image)
+    if array.dtype != np.uint8 or array.ndim != 2 and array.shape[2:] != (3,) or not array.size:
+        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(array)}")
+    return array
 
 
 def _check_alike(headers: list[Header]) -> None:
@@ -200,9 +197,8 @@ def _check_alike(headers: list[Header]) -> None:
 def _short(header: Header) -> str:
     height, width = header.shape[:2]
     colour = "RGB" if len(header.shape) == 3 else "gray"
-    return (
-        f"{header.path.name} is {width} x {height}, {colour}, {8 * header.dtype.itemsize} bits, {header.kind}"
-    )
+    bits = 8 * header.dtype.itemsize
+    return f"{header.path.name} is {width} x {height}, {colour}, {bits} bits, {header.kind}"
 
 
 def _valid_like(images: Array, mask: tuple[int, int, int] | None) -> Mask | None:

@@ -104,17 +104,12 @@ def write_radiance(path: str | Path, E: ArrayLike, *, half: bool = False) -> Non
     form = format_of(path)
     if half and form is not exr:
         raise ValueError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
-    if form is exr:
-        exr.write(path, E, half=half)
-    else:
-        form.write(path, E)
+    form.write(path, E, **({"half": True} if half else {}))
 
 
 def format_of(path: str | Path) -> ModuleType:
     """Return the module that reads and writes files of this suffix, or raise a ValueError."""
     suffix = Path(path).suffix.lower()
     if suffix not in SUFFIXES:
-        raise ValueError(
-            f"{path}: expected a radiance file ({', '.join(SUFFIXES)}), got {suffix or 'no suffix'}"
-        )
+        raise ValueError(f"{path}: expected a radiance file ({', '.join(SUFFIXES)}), got {suffix or 'none'}")
     return SUFFIXES[suffix]

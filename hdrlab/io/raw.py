@@ -61,14 +61,9 @@ def decode(path: str | Path, white_balance: Balance | None = None) -> NDArray[np
     white_balance = balance(path) if white_balance is None else white_balance
     with _open(path) as file:
         matrix = file.color_matrix[:, :3].astype(np.float32)
-        camera = file.postprocess(
-            output_color=rawpy.ColorSpace.raw,
-            user_wb=list(white_balance),
-            gamma=(1, 1),
-            no_auto_bright=True,
-            adjust_maximum_thr=0.0,
-            output_bps=16,
-        )
+        alike = {"gamma": (1, 1), "no_auto_bright": True, "adjust_maximum_thr": 0.0, "output_bps": 16}
+        sensor = rawpy.ColorSpace.raw
+        camera = file.postprocess(output_color=sensor, user_wb=list(white_balance), **alike)
     return to_srgb(camera, matrix)
 
 

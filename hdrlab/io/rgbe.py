@@ -127,10 +127,8 @@ def to_pixels(E: F32) -> NDArray[np.uint8]:
 
 def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> F32:
     """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
-    if data[2] * 256 + data[3] != length:
-        raise ValueError(
-            f"{path}: expected scanlines of {length} pixels, got one of {data[2] * 256 + data[3]}"
-        )
+    if (stated := data[2] * 256 + data[3]) != length:
+        raise ValueError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
     check_size(path, scanlines, length, scanlines * (4 + 4 * 2 * -(-length // RUN)), held=len(data))
     E = np.empty((scanlines, length, 3), np.float32)
     try:
@@ -154,9 +152,8 @@ def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArr
     made = np.cumsum(counts)
     last = int(np.searchsorted(made, count))
     if last == len(made) or made[last] != count or marks[0]:
-        raise ValueError(
-            f"{path}: expected {scanlines} scanlines of {length} pixels, they are damaged or cut short"
-        )
+        size = f"{scanlines} scanlines of {length} pixels"
+        raise ValueError(f"{path}: expected {size}, they are damaged or cut short")
     repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
     return repeated.view(np.uint8).reshape(scanlines, length, 4)
 

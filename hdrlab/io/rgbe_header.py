@@ -51,13 +51,9 @@ def parse(path: str | Path, head: bytes) -> Header:
         match = None
     # the mark need not come first: tools of Radiance put lines of their own before it
     if match is None or not any(line.startswith("#?") for line in lines):
-        raise ValueError(
-            f"{path}: expected a Radiance file (#?RADIANCE, a line like -Y 768 +X 512), got {head[:16]!r}"
-        )
+        raise ValueError(f"{path}: expected a Radiance file (#?RADIANCE, -Y 768 +X 512), got {head[:16]!r}")
     if line.endswith("\r"):
-        raise ValueError(
-            f"{path}: expected a binary file, its line ends became CR LF when it was copied as text"
-        )
+        raise ValueError(f"{path}: expected a binary file, its line ends became CR LF: copied as text")
     values = dict(part.split("=", 1) for part in lines if "=" in part)
     if (form := values.get("FORMAT", "32-bit_rle_rgbe").strip()) != "32-bit_rle_rgbe":
         raise ValueError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form}")

@@ -9,6 +9,7 @@ Frames are decoded one at a time: a film need not fit into memory.
 """
 
 from collections.abc import Iterable, Iterator
+from itertools import chain
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, cast
@@ -17,7 +18,6 @@ import imageio.v3 as iio
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.core.arrays import describe
 from hdrlab.core.types import F32, Array
 from hdrlab.io import photos, radiance
 from hdrlab.io.files import MAX_PIXELS, replacing
@@ -26,9 +26,7 @@ FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
 ANIMATIONS = {".gif"}
 SUFFIXES = FILMS | ANIMATIONS
 WRITTEN = {".gif", ".mp4"}
-MISSING = (
-    "films need the extra `video` (pip install hdrlab[video]); a folder of frames or a .gif does without"
-)
+MISSING = "films need the extra `video` (pip install hdrlab[video]); folders of frames and .gif do without"
 
 
 def is_film(path: str | Path) -> bool:
@@ -74,7 +72,7 @@ def read(path: str | Path) -> Iterator[Array]:
         require_films(path)
     frames = require_alike(decode_frames(path), path)
     first = next(frames)  # an unreadable file is found before anything is done with it
-    return chained(first, frames)
+    return chain([first], frames)
 
 
 def count(path: str | Path) -> int | None:
@@ -88,12 +86,6 @@ def require_films(path: Path) -> None:
 
     if importlib.util.find_spec("av") is None:
         raise ValueError(f"{path}: {MISSING}")
-
-
-def chained(first: Array, frames: Iterator[Array]) -> Iterator[Array]:
-    """Yield the first frame, and the others."""
-    yield first
-    yield from frames
 
 
 def decode_frames(path: Path) -> Iterator[Array]:
@@ -119,10 +111,8 @@ def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:
     for number, frame in enumerate(frames, 1):
         first = frame if first is None else first
         if (frame.shape, frame.dtype) != (first.shape, first.dtype):
-            raise ValueError(
-                f"{path}: expected frames of one size and depth, got {first.shape} {first.dtype} "
-                f"and, number {number}, {frame.shape} {frame.dtype}"
-            )
+            got = f"{first.shape} {first.dtype} and, number {number}, {frame.shape} {frame.dtype}"
+            raise ValueError(f"{path}: expected frames of one size and depth, got {got}")
         yield frame
     if first is None:
         raise ValueError(f"{path}: expected at least one frame, got none")
@@ -158,11 +148,7 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
         raise ValueError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
     pictures = require_alike((as_rgb(frame) for frame in frames), path)
     with replacing(path) as name:
-        return (
-            _write_film(name, pictures, rate)
-            if path.suffix.lower() in FILMS
-            else _write_gif(name, pictures, rate)
-        )
+        return (_write_film if path.suffix.lower() in FILMS else _write_gif)(name, pictures, rate)
 
 
 def _write_film(path: Path, frames: Iterable[Array], rate: float) -> int:
@@ -230,12 +216,5 @@ def require_writable(path: Path) -> None:
 
 def as_rgb(frame: Array) -> NDArray[np.uint8]:
     """Return a frame as (H, W, 3) uint8, or raise a ValueError."""
-    array = np.asarray(frame)
-    if (
-        array.dtype != np.uint8
-        or array.ndim not in (2, 3)
-        or array.shape[2:] not in ((), (3,))
-        or not array.size
-    ):
-        raise ValueError(f"expected frames (H, W) or (H, W, 3) of uint8, got {describe(array)}")
+    array = photos.as_picture(frame)
     return array if array.ndim == 3 else np.repeat(array[..., None], 3, axis=-1)

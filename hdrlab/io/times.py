@@ -27,9 +27,7 @@ def bracket_times(names: Sequence[str], exposures: Sequence[Exposure], times: Ti
         where, times = str(times), read_times(times)
     if isinstance(times, Mapping):
         if missing := [name for name in names if name not in times]:
-            raise ValueError(
-                f"{where}: expected a time for each photograph, there is none for {', '.join(missing)}"
-            )
+            raise ValueError(f"{where}: expected a time for each photograph, none for {', '.join(missing)}")
         times = [times[name] for name in names]
     if len(times) != len(names):
         raise ValueError(f"expected {len(names)} exposure times, one per photograph, got {len(times)}")
@@ -74,9 +72,8 @@ def read_times(path: str | Path) -> dict[str, float]:
     lines = [(n, line) for n, line in numbered if line]
     if not lines:
         raise ValueError(f"{path}: expected a list of exposure times, it is empty")
-    rows = (
-        _table(path, lines) if "exposure_time_s" in lines[0][1] else [_columns(path, *line) for line in lines]
-    )
+    table = "exposure_time_s" in lines[0][1]
+    rows = _table(path, lines) if table else [_columns(path, *line) for line in lines]
     names = [name for _, name, _ in rows]
     for n, name, _ in rows:
         if names.count(name) > 1:
@@ -90,17 +87,15 @@ def _table(path: str | Path, lines: list[tuple[int, str]]) -> list[tuple[int, st
     header, *cells = csv.reader(line for _, line in lines)
     header = [column.strip() for column in header]
     if not {"file", "exposure_time_s"} <= set(header):
-        raise ValueError(
-            f"{path}, line {lines[0][0]}: expected the columns file and exposure_time_s, got {header}"
-        )
+        where = f"{path}, line {lines[0][0]}"
+        raise ValueError(f"{where}: expected the columns file and exposure_time_s, got {header}")
     rows = []
     for (n, line), row in zip(lines[1:], cells, strict=False):
         if len(row) != len(header):
             raise ValueError(f"{path}, line {n}: expected {len(header)} columns, got {len(row)} ({line})")
         said = dict(zip(header, (cell.strip() for cell in row), strict=True))
-        f_number, iso = (
-            _number(path, n, said[key]) if said.get(key) else None for key in ("f_number", "iso")
-        )
+        optional = (said.get(key) for key in ("f_number", "iso"))
+        f_number, iso = (_number(path, n, text) if text else None for text in optional)
         rows.append((n, said["file"], Exposure(_number(path, n, said["exposure_time_s"]), f_number, iso)))
     return rows
 

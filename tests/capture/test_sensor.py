@@ -232,7 +232,7 @@ def test_photographs_that_tell_nothing_are_refused(Z):
         (dict(vignetting=1.5), "vignetting"),
         (dict(bayer=True), "expected a sensor"),
         (dict(white=(2, 1, 1)), "expected a sensor"),
-        (dict(sensor=Sensor(), full_well=1000), "got both"),
+        (dict(sensor=Sensor(), full_well=1000), "not both"),
         (dict(sensor=Sensor(), read_noise=3), "finite full_well"),
         (dict(sensor=Sensor(bits=20)), "1 to 16 bits"),
         (dict(sensor=Sensor(black=5000)), "black level"),

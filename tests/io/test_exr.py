@@ -89,7 +89,7 @@ def test_half_floats_keep_three_digits_and_refuse_what_does_not_fit(tmp_path):
     exr.write(path, RGB, half=True)
     assert np.array_equal(exr.read(path), RGB.astype(np.float16))
     exr.write(path, [[65504.0]], half=True)
-    with pytest.raises(ValueError, match="expected radiance up to 65504 for half floats, got up to 65505"):
+    with pytest.raises(ValueError, match="expected radiance up to 65504 for half floats, got 65505"):
         exr.write(path, [[1.0, 65505.0]], half=True)
     assert exr.read(path) == 65504
 
@@ -114,7 +114,7 @@ def test_subsampled_channels_are_refused_by_name(tmp_path):
     assert data[at : at + 8] == np.array([1, 1], "<i4").tobytes()
     data[at : at + 8] = np.array([2, 2], "<i4").tobytes()
     path.write_bytes(data)
-    with pytest.raises(ValueError, match="x.exr: expected channels of full size, got subsampled ones"):
+    with pytest.raises(ValueError, match="x.exr: expected channels of full size, got subsampled"):
         exr.read(path)
 
 

@@ -68,9 +68,8 @@ def back(P: Points, w: Points) -> Points:
 def floor(P: Points, w: Points, tile: float = 0.5) -> Points:
     """Return rho of a floor of dark and light tiles."""
     x, _, z = P
-    column, row = (
-        np.clip((np.abs(2 * (a / (2 * tile) % 1) - 1) - 0.5) * 4 * tile / w, -1, 1) for a in (x, z)
-    )
+    waves = (np.abs(2 * (a / (2 * tile) % 1) - 1) - 0.5 for a in (x, z))
+    column, row = (np.clip(wave * 4 * tile / w, -1, 1) for wave in waves)
     shade = cover(rgb(0.25, 0.22, 0.23), 0.5 - 0.5 * column * row, rgb(1.25, 1.2, 1.1))
     return look_up("gravel", x / 1.1, z / 1.1, w / 1.1) * shade
 

@@ -111,11 +111,8 @@ def locomotive(shape: tuple[int, int] = SHAPE) -> Subject:
         E = cover(E, within(wheel, pixel), np.full((3, len(x)), 0.025 * light))
         E = cover(E, rim, light * 0.09 * rgb(1, 1, 1))
         black = np.maximum(black, wheel)
-    E = cover(
-        E,
-        within(np.minimum(0.012 - np.abs(y + 0.25), 0.4 - np.abs(x + 0.06)), pixel),
-        light * 0.12 * rgb(1, 1, 1),
-    )
+    rod = np.minimum(0.012 - np.abs(y + 0.25), 0.4 - np.abs(x + 0.06))
+    E = cover(E, within(rod, pixel), light * 0.12 * rgb(1, 1, 1))
     pane = np.minimum(0.07 - np.abs(x - 0.45), 0.06 - np.abs(y - 0.2))
     E = cover(E, within(pane, pixel), rgb(500, 520, 560))
     return _scene(shape, E, within(black, pixel), light)

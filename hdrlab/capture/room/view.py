@@ -60,9 +60,7 @@ def room(
     True
     """
     if len(shape) != 2 or min(shape) < 1 or samples < 1:
-        raise ValueError(
-            f"expected a shape (H, W) and samples of at least 1, got shape {shape}, samples {samples}"
-        )
+        raise ValueError(f"expected a shape (H, W) and a sample or more, got {shape} and {samples}")
     if not (0 <= sun < np.inf and 0 <= lamp < np.inf):
         raise ValueError(f"expected finite lights of at least 0 cd/m^2, got sun {sun} and lamp {lamp}")
     height, width = shape
