@@ -23,10 +23,10 @@ from hdrlab.beyond import patches, splitter, steady, video
 from hdrlab.capture import camera, movers
 from hdrlab.capture.responses import true_g
 from hdrlab.core import colour
+from hdrlab.fast import reinhard
 from hdrlab.fast.merge import merge
 from hdrlab.radiance.deghosting import ghosts
 from hdrlab.scenes.places import PLACES, Layers, layers
-from hdrlab.tonemap import reinhard
 
 Float = NDArray[np.float32]
 

@@ -42,7 +42,7 @@ pictures.radiance(room, alt="The room's radiance in false colour")
 # $$\bar L = \exp\Bigl(\frac 1 N \sum \ln(\delta + L)\Bigr).$$
 #
 # A small $\delta$ stands for black pixels. So that the unit of $L$ cancels, `delta` is given in medians of
-# $L$: $\delta$ is `delta` times the median luminance. Return a number.
+# $L$: $\delta$ is `delta` times the median of what is not black. Return a number.
 
 # %% task="log_average"
 # Return Lav = exp(mean(log(delta + L))), delta in medians of L.
@@ -143,8 +143,7 @@ pictures.picture(
 #
 # The eye does not mind a scale that varies slowly: $s = 1 / (k\, \mathrm{blur}(L))$ with a Gaussian blur,
 # so that a pixel $k$ times as bright as its neighbourhood becomes white ($k$ is `headroom`). The overview
-# prints a further factor $L$, a misprint. `sigma` is in pixels; the checks always give it. A single hot
-# pixel should not darken all around it: let the brightest 0.01 % count no more than the next.
+# prints a further factor $L$, a misprint. `sigma` is in pixels; the checks always give it.
 
 # %% task="scale"
 # Return s = 1 / (k blur(L)).

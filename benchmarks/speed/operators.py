@@ -16,8 +16,9 @@ from benchmarks.speed.tonemapping import pfstools
 from hdrlab.core import poisson
 from hdrlab.core.bilateral import bilateral as by_definition
 from hdrlab.core.colour import luminance
-from hdrlab.fast import bilateral, blur
-from hdrlab.tonemap import brush, chiu, durand, fattal, reinhard, ward
+from hdrlab.fast import bilateral, blur, chiu, durand, reinhard
+from hdrlab.tonemap import brush, fattal, ward
+from hdrlab.tonemap.durand import WIDTH, logarithm
 
 REINHARD = "own Reinhard"
 BLUR = 0.02  # of the longer side, a wide Gaussian
@@ -27,7 +28,7 @@ def bilateral_case(folder: Path, one: bool) -> Case:
     """Return the work of Durand's operator; its error is that of the base, against the definition."""
     E = data.scene(folder)
     L = luminance(E)
-    widths = ("--tmoDurSigmaS", f"{durand.WIDTH * max(L.shape):g}", "--tmoDurSigmaR", f"{0.4 * np.log(10):g}")
+    widths = ("--tmoDurSigmaS", f"{WIDTH * max(L.shape):g}", "--tmoDurSigmaR", f"{0.4 * np.log(10):g}")
     alike = (*widths, "--tmoDurBase", f"{np.log(50):g}")  # our knobs; theirs are in nats
     theirs, missing = peers.present(
         {
@@ -39,8 +40,8 @@ def bilateral_case(folder: Path, one: bool) -> Case:
     def error(who: str, _: Any) -> float | None:
         if who != OURS:
             return None
-        lL = durand.logarithm(L)[::6, ::6]  # the definition takes minutes on all of it
-        sigmas = {"sigma_s": durand.WIDTH * max(lL.shape), "sigma_r": 0.4}
+        lL = logarithm(L)[::6, ::6]  # the definition takes minutes on all of it
+        sigmas = {"sigma_s": WIDTH * max(lL.shape), "sigma_r": 0.4}
         exact, fast = by_definition(lL, **sigmas).mean, bilateral.bilateral(lL, **sigmas).mean
         return float(np.sqrt(np.mean((fast - exact) ** 2)))
 

@@ -13,6 +13,7 @@ from hdrlab import pipeline
 from hdrlab.core.arrays import Array
 from hdrlab.core.colour import encode_srgb, luminance, recolour
 from hdrlab.core.steps import last
+from hdrlab.fast import reinhard as fast
 from hdrlab.io import pfm
 from hdrlab.tonemap import reinhard
 
@@ -37,7 +38,7 @@ def plain_picture(E: Array) -> Array:
     """Return the global operator written plainly in float64, as codes that are not rounded."""
     L = luminance(E).astype(np.float64)
     Lm = 0.18 * L / np.exp(np.log(L).mean())
-    Ld = np.minimum(Lm * (1 + Lm / reinhard.white_point(Lm.astype(np.float32)) ** 2) / (1 + Lm), 1)
+    Ld = np.minimum(Lm * (1 + Lm / fast.white_point(Lm.astype(np.float32)) ** 2) / (1 + Lm), 1)
     return 255 * encode_srgb(np.clip(E * (Ld / L)[..., None], 0, 1))
 
 
@@ -62,12 +63,12 @@ def dodge(folder: Path, one: bool) -> Case:
 
     def ours() -> Array:
         L = luminance(E)
-        return recolour(E, L, reinhard.tonemap(L, local=True, white=np.inf))
+        return recolour(E, L, fast.tonemap(L, local=True, white=np.inf))
 
     def error(who: str, result: Any) -> float | None:
         if who != OURS:
             return None
-        V1 = reinhard.adaptation(reinhard.scaled(luminance(E)))
+        V1 = fast.local_adaptation(fast.scale_to_key(luminance(E)))
         return float(np.quantile(np.abs(V1 / truth - 1), 0.999))
 
     return Case({OURS: ours} | theirs, missing, error)
@@ -75,7 +76,7 @@ def dodge(folder: Path, one: bool) -> Case:
 
 def true_gaussians(L: Array) -> Array:
     """Return V1 at each pixel's own width, with SciPy's Gaussians in float64 and to six sigma."""
-    Lm = reinhard.scaled(L).astype(np.float64)
+    Lm = fast.scale_to_key(L).astype(np.float64)
     blurred = (gaussian_filter(Lm, s / 4, truncate=6) for s in reinhard.WIDTHS)
     return last(reinhard.scale_steps(blurred)).adaptation
 

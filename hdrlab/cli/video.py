@@ -84,7 +84,7 @@ def pictures(maps: Iterator[Any], *, key: float, span: int) -> Iterator[Any]:
     """Yield the frames as a display shows them, tone-mapped steadily."""
     from hdrlab.beyond import steady
     from hdrlab.core import colour
-    from hdrlab.tonemap import reinhard
+    from hdrlab.fast import reinhard
 
     for state in steady.tonemap_steps(maps, reinhard.tonemap, key=key, span=span):
         yield colour.render(state.E, colour.luminance(state.E), state.Ld)

@@ -68,8 +68,8 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
 def as_signal(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> F32:
     """Return v as float32 (H, W), finite, or raise a ValueError, as for a sigma that is not positive."""
     v = np.asarray(v, np.float32)
-    if v.ndim != 2 or 0 in v.shape or not np.isfinite(v).all():
-        raise ValueError(f"expected a finite signal (H, W), got shape {v.shape}")
-    if not (0 < sigma_s < np.inf and 0 < sigma_r < np.inf):
-        raise ValueError(f"expected sigmas above 0, got {sigma_s=} and {sigma_r=}")
+    sigmas = 0 < sigma_s < np.inf and 0 < sigma_r < np.inf
+    if v.ndim != 2 or 0 in v.shape or not np.isfinite(v).all() or not sigmas:
+        expected = "expected a finite signal (H, W) and sigmas above 0"
+        raise ValueError(f"{expected}, got shape {v.shape}, {sigma_s=}, {sigma_r=}")
     return v

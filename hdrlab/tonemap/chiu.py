@@ -18,19 +18,19 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bands import banded
 from hdrlab.core.bilateral import bilateral
-from hdrlab.core.blur import gaussian
-from hdrlab.core.extremes import robust_maximum
+from hdrlab.core.extremes import positive_median, robust_maximum
 from hdrlab.core.steps import last
-
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32
 
 LAWS = ("exposure",)
-WIDTH = 0.08  # sigma of the blur, of the longer side: narrower, every place is as bright as every other
+# sigma of the blur, of the longer side: narrower, every place is as bright as every other
+WIDTH = 0.08
+# luminance in medians
 LIMIT = np.float32(1e30)
 TINY = 1e-37
 
@@ -38,78 +38,74 @@ TINY = 1e-37
 class State(NamedTuple):
     """The scale s after a number of smoothing passes, and the luminance that it scales, each (H, W)."""
 
-    s: Float
-    L: Float
+    s: F32
+    L: F32
 
     @property
-    def Ld(self) -> Float:
+    def Ld(self) -> F32:
         """The picture s L, made when it is asked for."""
         return self.s * self.L
 
 
-def width(L: Float, sigma: float | None = None) -> float:
+def choose_sigma(L: F32, sigma: float | None = None) -> float:
     """Return sigma in pixels; None is 8 % of the longer side."""
     return WIDTH * max(L.shape) if sigma is None else sigma
 
 
-def relative(L: Float) -> Float:
+def divide_by_median(L: F32) -> F32:
     """Return L in medians of L, and what is beyond all measure like any other: so sums stay finite."""
-    median = np.float32(max(robust_maximum(L, cut=0.5), TINY))
     with np.errstate(over="ignore"):
-        return banded(lambda L: np.minimum(L / median, LIMIT), L)
+        return np.minimum(L / np.float32(max(positive_median(L), TINY)), LIMIT)
 
 
-def scale(L: Float, *, headroom: float = 8.0, sigma: float | None = None) -> Float:
-    """Return s = 1 / (k blur(L)) [Battiato08 eq. 1.28, whose further factor L is a misprint].
-
-    The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur reaches.
-    """
-    Lblur = gaussian(np.minimum(L, np.float32(robust_maximum(L))), width(L, sigma))
-    return 1 / np.maximum(np.float32(headroom) * Lblur, TINY)
+def scale(L: F32, *, headroom: float = 8.0, sigma: float | None = None) -> F32:
+    """Return s = 1 / (k blur(L)) [Battiato08 eq. 1.28, whose further factor L is a misprint]."""
+    return 1 / np.maximum(headroom * gaussian_filter(L, choose_sigma(L, sigma)), TINY)
 
 
-def clamp(s: Float, L: Float) -> Float:
+def clamp(s: F32, L: F32) -> F32:
     """Return min(s, 1 / L): no pixel above white [Chiu93]."""
     return np.minimum(s, 1 / np.maximum(L, TINY))
 
 
-def smooth(s: Float) -> Float:
-    """Return s averaged with its neighbours, weights 1 2 1 down and across: rounds the clamp's edges.
+def smooth(s: F32, L: F32) -> F32:
+    """Return s averaged with its neighbours, weights 1 2 1 down and across, and clamped again.
 
     The weights 1 2 1 are those of 1 1, twice: the sum of each pair, and of each pair of sums.
     """
-    s = np.pad(s, 1, mode="edge") * np.float32(1 / 16)
+    s = np.pad(s, 1, mode="edge") / 16
     for _ in range(2):
         s = s[:-1] + s[1:]
         s = s[:, :-1] + s[:, 1:]
-    return s
+    return clamp(s, L)
 
 
 def tonemap_steps(
-    L: Float, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16
+    L: F32, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16
 ) -> Iterator[State]:
-    """Yield the State with the clamped scale, and after each smoothing pass, which is clamped again."""
-    s = clamp(scale(L, headroom=headroom, sigma=sigma), L)
+    """Yield the State with the clamped scale, and after each smoothing pass.
+
+    The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur reaches.
+    """
+    s = clamp(scale(np.minimum(L, np.float32(robust_maximum(L))), headroom=headroom, sigma=sigma), L)
     yield State(s, L)
     for _ in range(passes):
-        s = banded(lambda s, L: clamp(smooth(s), L), s, L, margin=1)
+        s = smooth(s, L)
         yield State(s, L)
 
 
-def halo(
-    L: Float, s: Float, *, headroom: float = 8.0, sigma: float | None = None, contrast: float = 0.4
-) -> Float:
+def halo(L: F32, s: F32, *, headroom: float = 8.0, sigma: float | None = None, contrast: float = 0.4) -> F32:
     """Return log2(s k base), in stops: how much brighter a pixel is than if its own kind alone had scaled it.
 
     Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the blur, of
     neighbours that differ by about `contrast` decades.
     """
-    lL = np.log10(np.maximum(L, 1e-6 * max(robust_maximum(L, cut=0.5), TINY)))
-    base = bilateral(lL, sigma_s=width(L, sigma), sigma_r=contrast).mean
+    lL = np.log10(np.maximum(L, 1e-6 * max(positive_median(L), TINY)))
+    base = bilateral(lL, sigma_s=choose_sigma(L, sigma), sigma_r=contrast).mean
     return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))
 
 
-def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16) -> Float:
+def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, passes: int = 16) -> F32:
     """Return display luminance by a scale that follows the brightness of the neighbourhood.
 
     Parameters
@@ -139,9 +135,9 @@ def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, 
     0.25
     """
     L = as_luminance(L)
-    if not (headroom > 0 and width(L, sigma) > 0 and passes >= 0):
+    if not (headroom > 0 and choose_sigma(L, sigma) > 0 and passes >= 0):
         raise ValueError(
             f"expected headroom > 0, sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
-    state = last(tonemap_steps(relative(L), headroom=headroom, sigma=sigma, passes=passes))
-    return banded(lambda s, L: np.clip(s * L, 0, 1), state.s, state.L)
+    state = last(tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes))
+    return np.clip(state.Ld, 0, 1)

@@ -1,10 +1,11 @@
 """Fast bilateral filtering for the display of high-dynamic-range images (Durand and Dorsey, SIGGRAPH 2002).
 
 L         luminance              (H, W) >= 0, any linear unit
-lL         log10 L                (H, W), decades; all logarithms here have the base 10
+lL        log10 L                (H, W), decades; all logarithms here have the base 10
 base      large-scale light      (H, W), decades: lL by the bilateral filter, smooth but for its edges
 detail    lL - base               (H, W), decades [Battiato08 step 3 has the sign reversed]
 k         pixels behind a base   (H, W), 1 to 2 pi sigma_s^2
+u         certainty of a base    (H, W), log k / log root(2 pi sigma_s^2), 0 to 1
 c         contrast of the base   decades, log10 of `contrast`
 m         compression            c / (range of the base), at most 1
 Ld        display luminance      10^(m base + detail), (H, W), 1 = white
@@ -14,88 +15,78 @@ Chiu's blur the base does not cross an edge, so there is no halo. But what diffe
 edge: beside gentle steps, as of the patches of a chart, the picture glows a little.
 """
 
+import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bands import banded
 from hdrlab.core.bilateral import Filtered, bilateral
-from hdrlab.core.blur import gaussian
-from hdrlab.core.extremes import robust_maximum
-
-Float = NDArray[np.float32]
+from hdrlab.core.extremes import positive_median
+from hdrlab.core.types import F32
 
 LAWS = ("exposure",)
-WIDTH = 0.02  # sigma_s of the longer side
-DARK = 1e-6  # of the median: what is darker has no more detail
-NEAR = 2  # sigma in pixels of the blur that stands in for a doubtful base
-TINY = 1e-37
-ENOUGH = 1 << 18  # pixels that percentiles are taken from
+# sigma_s, of the longer side
+WIDTH = 0.02
+# of the median luminance: what is darker has no more detail
+DARK = 1e-6
+# sigma in pixels of the blur that takes the place of an uncertain base
+NEAR = 2
+# pixels that percentiles are taken from
+ENOUGH = 1 << 18
 
 
 class Layers(NamedTuple):
     """The two layers of lL = base + detail, each (H, W), decades."""
 
-    base: Float
-    detail: Float
+    base: F32
+    detail: F32
 
 
-def logarithm(L: Float) -> Float:
+def logarithm(L: F32) -> F32:
     """Return lL = log10 L, and for black the level of a millionth of the median."""
-    floor = np.float32(max(DARK * robust_maximum(L, cut=0.5), TINY))
-    return banded(lambda L: np.log(np.maximum(L, floor)) * np.float32(1 / np.log(10)), L)
+    floor = np.float32(max(DARK * positive_median(L), 1e-37))
+    return np.log(np.maximum(L, floor)) / np.float32(math.log(10))
 
 
-def certain(found: Filtered, *, sigma_s: float) -> Float:
-    """Return the base, and where it rests on few pixels its neighbourhood's instead [Durand02].
+def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
+    """Return u mean + (1 - u) blur(mean): a base that rests on few pixels is fixed [Durand02 sec. 6.1].
 
-    A pixel unlike all around it is its own base: without detail, and compressed like light. The weight of the
-    bilateral mean rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1; what
-    takes its place is blurred by NEAR pixels.
+    A pixel unlike all around it is its own base: without detail, and compressed like light. The certainty u
+    rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1.
     """
-    enough = np.float32((2 * np.pi * sigma_s**2) ** 0.5)
-    if enough <= 1 or not (found.k.min() < enough):
-        return found.mean
-
-    def base(mean: Float, k: Float) -> Float:
-        doubtful = k < enough
-        if not doubtful.any():
-            return mean
-        u = np.log(np.maximum(k[doubtful], 1)) / np.log(enough)
-        near, mean = gaussian(mean, NEAR)[doubtful], mean.copy()
-        mean[doubtful] += (1 - u) * (near - mean[doubtful])
+    mean, enough = found.mean, (2 * math.pi * sigma_s**2) ** 0.5
+    if enough <= 1 or found.k.min() >= enough:
         return mean
+    u = np.log(np.clip(found.k, 1, enough)) / math.log(enough)
+    return mean + (1 - u) * (gaussian_filter(mean, NEAR) - mean)
 
-    return banded(base, found.mean, found.k, margin=4 * NEAR)
 
-
-def layers(lL: Float, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:
+def layers(lL: F32, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:
     """Return base = bil(lL) and detail = lL - base."""
-    base = certain(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
+    base = fix_uncertain(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
     return Layers(base, lL - base)
 
 
-def spread(base: Float, *, cut: float = 0.01) -> tuple[float, float]:
+def base_range(base: F32, *, cut: float = 0.01) -> tuple[float, float]:
     """Return the levels that a fraction `cut` of the base lies below, and above."""
-    some = base.ravel()[:: -(-base.size // ENOUGH)]
-    low, high = np.quantile(some, [cut, 1 - cut])
+    low, high = np.quantile(base.ravel()[:: 1 + base.size // ENOUGH], [cut, 1 - cut])
     return float(low), float(high)
 
 
-def compressed(base: Float, low: float, high: float, *, contrast: float = 50.0) -> Float:
+def compressed(base: F32, low: float, high: float, *, contrast: float = 50.0) -> F32:
     """Return m (base - high), m = c / (high - low) [Battiato08 eq. 1.29, 1.30], anchored at the bright end.
 
     No scene is stretched: m is at most 1.
     """
-    m = min(1.0, np.log10(contrast) / max(high - low, 1e-6))
-    return np.float32(m) * (base - np.float32(high))
+    return min(1.0, math.log10(contrast) / max(high - low, 1e-6)) * (base - high)
 
 
-def combined(base: Float, detail: Float) -> Float:
+def combine(base: F32, detail: F32) -> F32:
     """Return 10^(base + detail)."""
-    return np.exp((base + detail) * np.float32(np.log(10)))
+    return np.exp((base + detail) * np.float32(math.log(10)))
 
 
 def tonemap(
@@ -105,7 +96,7 @@ def tonemap(
     sigma_s: float | None = None,
     sigma_r: float = 0.4,
     cut: float = 0.01,
-) -> Float:
+) -> F32:
     """Return display luminance with the light's contrast compressed and all detail kept.
 
     Parameters
@@ -140,9 +131,5 @@ def tonemap(
     if not (1 < contrast < np.inf and 0 <= cut < 0.5):
         raise ValueError(f"expected contrast > 1 and a cut in [0, 0.5), got {contrast=} and {cut=}")
     base, detail = layers(logarithm(L), sigma_s=sigma_s, sigma_r=sigma_r)
-    low, high = spread(base, cut=cut)
-
-    def display(base: Float, detail: Float) -> Float:
-        return np.minimum(combined(compressed(base, low, high, contrast=contrast), detail), 1)
-
-    return banded(display, base, detail)
+    low, high = base_range(base, cut=cut)
+    return np.minimum(combine(compressed(base, low, high, contrast=contrast), detail), 1)

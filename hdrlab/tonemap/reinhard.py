@@ -14,23 +14,18 @@ The paper's Gaussian exp(-(x^2 + y^2) / (alpha s)^2), alpha = 1 / (2 sqrt 2), ha
 """
 
 from collections.abc import Iterable, Iterator
+from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.arrays import as_luminance
-from hdrlab.core.blur import gaussian
-from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.core.steps import last
-
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32, F64, Flags, Mask
 
 LAWS = ("monotone", "exposure")
-WIDTHS = tuple(1.6**i for i in range(9))  # eight centres, and the surround of the last
-LIMIT = np.float32(1e30)  # scaled luminance beyond this is white like any other, and its sums stay finite
-TINY = float(np.finfo(np.float32).tiny)
-BAND = 64  # rows at a time, which stay in the processor's cache
+# eight centres, and the surround of the last
+WIDTHS = tuple(1.6**i for i in range(9))
 
 
 class Scale(NamedTuple):
@@ -46,94 +41,81 @@ class Scale(NamedTuple):
     """
 
     width: float
-    centre: Float
-    response: Float
-    even: NDArray[np.bool_]
-    adaptation: Float
+    centre: F32
+    response: F32
+    even: Mask
+    adaptation: F32
 
 
-def log_average(L: Float, *, delta: float = 1e-6) -> float:
+def log_average(L: F32, *, delta: float = 1e-6) -> float:
     """Return Lav = exp(mean(log(delta + L))) [Reinhard02, where 1 / N is misprinted outside exp].
 
-    So that the unit of L cancels, delta is measured in medians of L; it stands for what is black.
+    So that the unit of L cancels, delta is measured in medians of the positive L; it stands for black.
     """
-    floor = max(delta * robust_maximum(L, cut=0.5), TINY)
-    return float(np.exp(np.log(L + np.float32(floor)).mean(dtype=np.float64)))
+    median = np.median(L[L > 0]) if np.any(L) else 1.0
+    return float(np.exp(np.log(L + delta * float(median)).mean(dtype=np.float64)))
 
 
-def automatic_key(L: Float) -> float:
+def automatic_key(L: F32) -> float:
     """Return a = 0.18 4^((2 log2 Lav - log2 Lmin - log2 Lmax) / (log2 Lmax - log2 Lmin)) [Reinhard02b].
 
     A scene that is mostly bright for its range gets a high key. Lmin and Lmax leave out 1 % of the pixels.
     """
-    low, high = robust_minimum(L, cut=0.01), robust_maximum(L, cut=0.01)
-    if not 0 < low < high:
-        return 0.18
-    low, middle, high = np.log2([low, np.clip(log_average(L), low, high), high])
-    return float(0.18 * 4 ** ((2 * middle - low - high) / (high - low)))
+    low, high = np.log2(np.quantile(L[L > 0], [0.01, 0.99])) if np.any(L) else (0.0, 0.0)
+    middle = np.clip(np.log2(log_average(L)), low, high)
+    return float(0.18 * 4 ** ((2 * middle - low - high) / max(high - low, 1e-9)))
 
 
-def scaled(L: Float, *, key: float = 0.18) -> Float:
+def scale_to_key(L: F32, *, key: float = 0.18) -> F32:
     """Return Lm = a L / Lav [Battiato08 eq. 1.32]."""
-    with np.errstate(over="ignore"):
-        return np.minimum(L / np.float32(max(log_average(L) / key, TINY)), LIMIT)
+    return L * (key / log_average(L))
 
 
-def white_point(Lm: Float) -> float:
+def white_point(Lm: F32) -> float:
     """Return the brightest Lm but for 0.01 % of the pixels, and at least 1: dim scenes are not stretched."""
-    return max(1.0, robust_maximum(Lm))
+    return max(1.0, float(np.quantile(Lm, 0.9999, method="lower")))
 
 
-def display(Lm: Float, adaptation: Float, white: float = np.inf) -> Float:
+def display(Lm: F32, adaptation: F32, white: float = np.inf) -> F32:
     """Return Ld = Lm (1 + Lm / white^2) / (1 + adaptation), clipped at 1.
 
     With Lm itself as the adaptation it is the global operator [Reinhard02 eq. 4; Battiato08 eq. 1.33]; with
     V1 at each pixel's own width it is dodge and burn [Battiato08 eq. 1.35], printed for an infinite white.
     """
-    Ld = Lm / (1 + adaptation)
-    with np.errstate(over="ignore"):
-        return np.minimum(Ld * (1 + Lm / np.float32(white) / np.float32(white)), 1)
+    return np.minimum(Lm * (1 + Lm / white**2) / (1 + adaptation), 1)
 
 
-def blurs(Lm: Float) -> Iterator[Float]:
+def blurs(Lm: F32) -> Iterator[F32]:
     """Yield V1(s) for s = 1, 1.6, ..., 43 [Battiato08 eq. 1.34]."""
-    return (gaussian(Lm, s / 4) for s in WIDTHS)
+    return (gaussian_filter(Lm, s / 4) for s in WIDTHS)
 
 
-def response(V1: Float, V2: Float, *, width: float, key: float = 0.18, phi: float = 8.0) -> Float:
+def response(V1: F32, V2: F32, *, width: float, key: float = 0.18, phi: float = 8.0) -> F32:
     """Return V = (V1 - V2) / (2^phi a / s^2 + V1) [Battiato08 eq. 1.37]."""
-    return (V1 - V2) / (np.float32(2**phi * key / width**2) + V1)
+    return (V1 - V2) / (2**phi * key / width**2 + V1)
 
 
 def scale_steps(
-    blurred: Iterable[Float], *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
+    blurred: Iterable[F32], *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
 ) -> Iterator[Scale]:
     """Yield the Scale of each width, from small to large, given V1 at every width [Reinhard02]."""
-    surrounds = iter(blurred)
-    centre = adaptation = next(surrounds)
-    even = np.ones_like(centre, dtype=bool)
-    for width, surround in zip(WIDTHS, surrounds, strict=False):
-        V = response(centre, surround, width=width, key=key, phi=phi)
+    even, adaptation = np.True_, np.float32(0)
+    for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
+        V = response(V1, V2, width=width, key=key, phi=phi)
         even = even & (np.abs(V) < threshold)
-        adaptation = np.where(even, centre, adaptation)
-        yield Scale(width, centre, V, even, adaptation)
-        centre = surround
+        adaptation = np.where(even | (width == WIDTHS[0]), V1, adaptation)
+        yield Scale(width, V1, V, even, adaptation)
 
 
-def chosen(scales: Iterable[Scale]) -> NDArray[np.uint8]:
+def select_widths(scales: Iterable[Scale]) -> Flags:
     """Return the index into WIDTHS of each pixel's neighbourhood: how many widths stayed even, less one."""
     count = np.add.reduce([scale.even for scale in scales], dtype=np.uint8)
     return np.maximum(count, 1) - np.uint8(1)
 
 
-def adaptation(Lm: Float, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> Float:
+def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> F32:
     """Return V1 of each pixel at its own width: the last of scale_steps(blurs(Lm))."""
-    return last(scale_steps(blurs(Lm), key=key, phi=phi, threshold=threshold)).adaptation
-
-
-def bands(Lm: Float) -> Iterator[slice]:
-    """Yield the rows of the picture, BAND at a time."""
-    return (slice(top, top + BAND) for top in range(0, len(Lm), BAND))
+    return list(scale_steps(blurs(Lm), key=key, phi=phi, threshold=threshold))[-1].adaptation
 
 
 def tonemap(
@@ -144,7 +126,7 @@ def tonemap(
     local: bool = False,
     phi: float = 8.0,
     threshold: float = 0.05,
-) -> Float:
+) -> F32:
     """Return display luminance as a photographer prints it: expose for middle gray, hold back the highlights.
 
     Parameters
@@ -175,18 +157,19 @@ def tonemap(
     >>> tonemap(np.full((1, 2), 300.0), white=np.inf).round(3)
     array([[0.153, 0.153]], dtype=float32)
     """
-    L = as_luminance(L)
-    a = automatic_key(L) if key == "auto" else _positive("key", key)
-    Lm = scaled(L, key=a)
-    Lwhite = white_point(Lm) if white is None else _positive("white", white)
-    V1 = adaptation(Lm, key=a, phi=phi, threshold=_positive("threshold", threshold)) if local else Lm
-    Ld = np.empty_like(Lm)
-    for rows in bands(Lm):
-        Ld[rows] = display(Lm[rows], V1[rows], Lwhite)
-    return Ld
+    L = as_light(L)
+    a = automatic_key(L) if key == "auto" else key
+    if isinstance(a, str) or not (a > 0 and threshold > 0 and (white is None or white > 0)):
+        raise ValueError(f"expected key, white and threshold above 0, got {key=}, {white=}, {threshold=}")
+    Lm = scale_to_key(L, key=a)
+    white = white_point(Lm) if white is None else white
+    V1 = local_adaptation(Lm, key=a, phi=phi, threshold=threshold) if local else Lm
+    return np.asarray(display(Lm, V1, white), np.float32)
 
 
-def _positive(name: str, value: float | str) -> float:
-    if isinstance(value, str) or not value > 0:
-        raise ValueError(f"expected {name} > 0, got {value!r}")
-    return float(value)
+def as_light(L: ArrayLike) -> F64:
+    """Return L as float64 (H, W), finite and not negative, or raise a ValueError."""
+    L = np.asarray(L)
+    if L.ndim != 2 or L.dtype.kind not in "iuf" or not (L.size and L.min() >= 0 and L.max() < np.inf):
+        raise ValueError(f"expected luminance (H, W), finite and not negative, got {L.dtype} {L.shape}")
+    return L.astype(np.float64)

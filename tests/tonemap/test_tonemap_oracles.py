@@ -117,7 +117,7 @@ def test_reinhards_curve_is_pfstools_own(L):
     unless told, as it is here. What remains is their log average: its floor for black is another.
     """
     reinhard = operator("reinhard")
-    white = float(reinhard.scaled(L).max())
+    white = float(reinhard.scale_to_key(L).max())
     found = likeness(reinhard.tonemap(L, white=white), pfstmo("pfstmo_reinhard02", L))
     assert found.ssim > 0.99 and found.correlation > 0.999, found
 
@@ -160,7 +160,7 @@ def test_reinhards_curve_is_luminance_hdrs_own(L, tmp_path):
     """Here even the log average is alike."""
     reinhard = operator("reinhard")
     options = ("--tmo", "reinhard02", "--tmoR02Key", "0.18", "--tmoR02Scales", "false")
-    ours = reinhard.tonemap(L, white=float(reinhard.scaled(L).max()))
+    ours = reinhard.tonemap(L, white=float(reinhard.scale_to_key(L).max()))
     found = likeness(ours, luminance_hdr(tmp_path, L, *options))
     assert found.ssim > 0.99 and found.correlation > 0.999, found
 

@@ -1,0 +1,56 @@
+"""Photographic tone reproduction, fast: statistics of some pixels, neighbourhoods a band of rows at a time.
+
+Letters as in `tonemap.reinhard`. All is float32, and a pixel beyond all measure is white like any other.
+"""
+
+import numpy as np
+
+from hdrlab.core.arrays import as_luminance
+from hdrlab.core.extremes import positive_median, robust_maximum
+from hdrlab.core.steps import last
+from hdrlab.core.types import F32
+from hdrlab.fast import blur, with_parts
+from hdrlab.tonemap import reinhard
+
+# scaled luminance
+LIMIT = np.float32(1e15)
+TINY = float(np.finfo(np.float32).tiny)
+# rows at a time, which stay in the processor's cache
+BAND = 64
+KERNELS = tuple(blur._taps(s / 4) for s in reinhard.WIDTHS)
+REACH = len(KERNELS[-1]) // 2
+
+
+def log_average(L: F32, *, delta: float = 1e-6) -> float:
+    """Return exp(mean(log(delta + L))), delta in medians of a quarter of a million pixels."""
+    floor = max(delta * (positive_median(L) or 1.0), TINY)
+    return float(np.exp(np.log(L + np.float32(floor)).mean(dtype=np.float64)))
+
+
+def scale_to_key(L: F32, *, key: float = 0.18) -> F32:
+    """Return Lm = a L / Lav, at most LIMIT."""
+    with np.errstate(over="ignore"):
+        return np.minimum(L / np.float32(max(log_average(L) / key, TINY)), LIMIT)
+
+
+def white_point(Lm: F32) -> float:
+    """Return the brightest Lm but for 0.01 % of the pixels, and at least 1."""
+    return max(1.0, robust_maximum(Lm))
+
+
+def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> F32:
+    """Return V1 of each pixel at its own width."""
+    padded, V1 = blur._pad(Lm, REACH), np.empty_like(Lm)
+    for top in range(0, len(Lm), BAND):
+        rows, near = V1[top : top + BAND], padded[top : top + BAND + 2 * REACH]
+        blurred = (blur._inside(near, k, REACH) for k in KERNELS)
+        found = last(reinhard.scale_steps(blurred, key=key, phi=phi, threshold=threshold)).adaptation
+        rows[:] = found[: len(rows), : rows.shape[1]]
+    return V1
+
+
+parts = {"log_average": log_average, "scale_to_key": scale_to_key, "white_point": white_point}
+lessons = (reinhard.automatic_key, reinhard.tonemap)
+automatic_key, tonemap = with_parts(
+    __name__, *lessons, local_adaptation=local_adaptation, as_light=as_luminance, **parts
+)
