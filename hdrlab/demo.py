@@ -12,7 +12,7 @@ import numpy as np
 from hdrlab import pipeline, scenes
 from hdrlab.align.shift import crop
 from hdrlab.capture import camera, responses
-from hdrlab.core.errors import Truth
+from hdrlab.core.metrics import Truth
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import write_radiance
 from hdrlab.show.pages.report import write_report

@@ -22,7 +22,7 @@ from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.errors import response_rmse
+from hdrlab.core.metrics import response_rmse
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.transfer import histograms
 from hdrlab.core.weights import make_monotone

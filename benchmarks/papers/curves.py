@@ -19,7 +19,7 @@ from benchmarks.experiments import Experiment, along, at_most, real, spread
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.errors import response_rmse
+from hdrlab.core.metrics import response_rmse
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.fast import debevec
 from hdrlab.io.emor import read_curves

@@ -127,7 +127,7 @@ def _one(
     if rounds:
         method = recovery.validated(name)
         steps = bootstrap.bootstrap_steps(method, images, times, rounds=rounds, rng=seed, valid=valid)
-        band = bootstrap.band(common.progress(steps, "bootstrap", rounds))
+        band = bootstrap.percentile_band(common.progress(steps, "bootstrap", rounds))
     r = residuals.residuals(images, times, g, valid=valid)
     click.echo(f"{name}, from {len(times)} photographs")
     click.echo("\n".join(calibration.summary(g, r, assembly.spread, names, band)))
@@ -138,7 +138,7 @@ def _one(
 
 
 def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
-    from hdrlab.core.errors import well_seen
+    from hdrlab.core.metrics import well_exposed
     from hdrlab.io import response_files
     from hdrlab.show.plots import calibration
 
@@ -153,7 +153,7 @@ def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
     g = {name: one.g for name, one in found.items()}
     for name, one in found.items():
         click.echo(f"{name:<12}{calibration.reach(one.g):6.2f} stops, frames agree to {one.spread:.3f} stops")
-    well = well_seen(state.bracket.images, state.bracket.valid)
+    well = well_exposed(state.bracket.images, state.bracket.valid)
     click.echo("\nRMSE of exposure over the levels 10 to 250, percent of the largest, worst channel")
     click.echo("\n".join(calibration.matrix(list(g), calibration.rmse(g))))
     click.echo("\nradiance maps: median difference, stops")

@@ -106,6 +106,14 @@ def to_256(images: Array) -> NDArray[np.uint8]:
     return images if images.dtype == np.uint8 else ((images.astype(np.uint32) + 128) // 257).astype(np.uint8)
 
 
+def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
+    """Return a response as a table (n, channels); one curve serves all channels."""
+    table = as_table(g, n).reshape(n, -1)
+    if table.shape[1] not in (1, channels):
+        raise ValueError(f"expected a response of {channels} channels, or one for all, got {table.shape[1]}")
+    return np.broadcast_to(table, (n, channels))
+
+
 def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
     """Return a table over pixel levels with n rows, (n,) or (n, C): as it is, or read between its levels.
 

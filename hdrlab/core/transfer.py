@@ -24,9 +24,11 @@ def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> Array:
     """Return h (C, P, n) of photographs (P, H, W[, C]), over the pixels that are valid in every frame."""
     stack = as_stack(images)
     mask = as_mask(valid, stack)
-    shown = np.ones(stack.shape[1:3], bool) if mask is None else mask.all(axis=0)
-    channels = np.moveaxis(np.atleast_3d(stack[:, shown]), -1, 0)
-    return np.array([[np.bincount(Z, minlength=levels(stack)) for Z in frames] for frames in channels])
+    pixels = stack.reshape(len(stack), -1, stack[0, 0, 0].size)
+    if mask is not None:
+        pixels = pixels[:, mask.all(axis=0).ravel()]
+    n, channels = levels(stack), np.moveaxis(pixels, -1, 0)
+    return np.array([[np.bincount(Z, minlength=n) for Z in frames] for frames in channels])
 
 
 def cumulate(h: ArrayLike, n: int) -> F64:

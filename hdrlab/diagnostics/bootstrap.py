@@ -7,39 +7,40 @@ G       responses    (rounds, 256[, 3]), one per round
 
 A round draws rows x columns tiles from the photographs, with replacement, lays them side by side and recovers
 the response of that picture. Tiles and not pixels, for neighbours see the same light, and single ones would
-make the band too narrow. A tile is drawn with all its exposures, so that the frames stay tied.
+make the band too narrow. A tile is drawn with all its exposures, so that the frames stay connected.
 
-The band is about the choice of the scene and the noise. What all tiles share it does not know: times that are
-wrong, frames that are not aligned, a model of the curve that is too stiff.
+The band measures the choice of the scene and the noise. It does not measure what all tiles share: wrong
+times, frames that are not aligned, a model of the curve that is too stiff.
 """
 
 from collections.abc import Callable, Iterable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import Array, as_mask, as_stack, as_times
+from hdrlab.core.metrics import RELIABLE_LEVELS
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
-LEAST = 0.8  # share of the rounds that must find a response
-KEPT = slice(10, 251)  # levels whose band is summed up: noise rules below, the cut above
+# Share of the rounds that must find a response.
+MIN_SUCCESS = 0.8
 
 
 class Band(NamedTuple):
-    """Responses (256,) or (256, 3), below, in the middle of and above those of the rounds, level by level."""
+    """Percentiles of the rounds' responses at each level, (256,) or (256, 3): lower, median and upper."""
 
-    low: Float
-    middle: Float
-    high: Float
+    low: F64
+    middle: F64
+    high: F64
 
     @property
     def width(self) -> float:
         """How far high lies above low, in stops: the median over the levels 10 to 250 and the channels."""
-        return float(np.median((self.high - self.low)[KEPT]) / np.log(2))
+        return float(np.median((self.high - self.low)[RELIABLE_LEVELS]) / np.log(2))
 
 
-def tiled(stack: Array, tiles: tuple[int, int]) -> Array:
+def split_tiles(stack: Array, tiles: tuple[int, int]) -> Array:
     """Return the tiles of a stack (P, H, W, ...) as (rows columns, P, h, w, ...); the rest is left out."""
     rows, columns = tiles
     h, w = stack.shape[1] // rows, stack.shape[2] // columns
@@ -47,8 +48,8 @@ def tiled(stack: Array, tiles: tuple[int, int]) -> Array:
     return np.moveaxis(cut, (1, 3), (0, 1)).reshape(rows * columns, len(stack), h, w, *stack.shape[3:])
 
 
-def laid(drawn: Array, tiles: tuple[int, int]) -> Array:
-    """Return a stack of tiles (rows columns, P, h, w, ...) side by side: what `tiled` took apart."""
+def join_tiles(drawn: Array, tiles: tuple[int, int]) -> Array:
+    """Return a stack of tiles (rows columns, P, h, w, ...) side by side: the inverse of `split_tiles`."""
     rows, columns = tiles
     _, P, h, w, *rest = drawn.shape
     grid = np.moveaxis(drawn.reshape(rows, columns, P, h, w, *rest), (0, 1), (1, 3))
@@ -56,7 +57,7 @@ def laid(drawn: Array, tiles: tuple[int, int]) -> Array:
 
 
 def bootstrap_steps(
-    recover: Callable[..., Float],
+    recover: Callable[..., F64],
     images: ArrayLike,
     times: ArrayLike,
     *,
@@ -65,52 +66,52 @@ def bootstrap_steps(
     tiles: tuple[int, int] = (12, 16),
     pixels: int = 200_000,
     valid: ArrayLike | None = None,
-) -> Iterator[Float | None]:
+) -> Iterator[F64 | None]:
     """Yield the response of each round, None where its tiles hold too little; knobs as in `bootstrap`."""
     stack = as_stack(images)
     t, shown = as_times(times, len(stack)), as_mask(valid, stack)
     if rounds < 2 or min(tiles) < 1:
         raise ValueError(f"expected two rounds or more and tiles (rows, columns), got {rounds} and {tiles}")
     rows, columns = tiles = (min(tiles[0], stack.shape[1]), min(tiles[1], stack.shape[2]))
-    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / pixels)))
-    every = min(every, stack.shape[1] // rows, stack.shape[2] // columns)
-    parts = tiled(stack[:, ::every, ::every], tiles)
-    masks = None if shown is None else tiled(shown[:, ::every, ::every], tiles)
+    step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / pixels)))
+    step = min(step, stack.shape[1] // rows, stack.shape[2] // columns)
+    parts = split_tiles(stack[:, ::step, ::step], tiles)
+    masks = None if shown is None else split_tiles(shown[:, ::step, ::step], tiles)
     rng = np.random.default_rng(rng)
     for _ in range(rounds):
         drawn = rng.integers(0, len(parts), len(parts))
-        mask = None if masks is None else laid(masks[drawn], tiles)
+        mask = None if masks is None else join_tiles(masks[drawn], tiles)
         try:
-            yield recover(laid(parts[drawn], tiles), t, valid=mask)
+            yield recover(join_tiles(parts[drawn], tiles), t, valid=mask)
         except ValueError:
             yield None
 
 
-def band(curves: Iterable[Float | None], *, share: float = 0.95) -> Band:
+def percentile_band(curves: Iterable[F64 | None], *, share: float = 0.95) -> Band:
     """Return the Band that holds this share of the rounds' responses, at each level by itself.
 
     Raises
     ------
     ValueError
-        For a share that is none, and where more than a fifth of the rounds found no response.
+        For a share that is not between 0 and 1, and where more than a fifth of the rounds found no response.
     """
-    every = list(curves)
-    found = [one for one in every if one is not None]
+    curves = list(curves)
+    found = [one for one in curves if one is not None]
     if not 0 < share < 1:
         raise ValueError(f"expected a share between 0 and 1, got {share}")
-    if len(found) < max(2, LEAST * len(every)):
+    if len(found) < max(2, MIN_SUCCESS * len(curves)):
         raise ValueError(
-            f"expected a response in most rounds, got {len(found)} of {len(every)}: "
-            "too few parts of the scene are seen well in two exposures"
+            f"expected a response in most rounds, got {len(found)} of {len(curves)}: "
+            "too few parts of the scene are measured well in two exposures"
         )
     tail = 50 * (1 - share)
     return Band(*np.percentile(np.stack(found), [tail, 50, 100 - tail], axis=0))
 
 
 def bootstrap(
-    recover: Callable[..., Float], images: ArrayLike, times: ArrayLike, *, share: float = 0.95, **knobs: Any
+    recover: Callable[..., F64], images: ArrayLike, times: ArrayLike, *, share: float = 0.95, **knobs: Any
 ) -> Band:
-    """Return the band in which a method's response to a bracket is to be trusted.
+    """Return the confidence band of a method's response to a bracket.
 
     Parameters
     ----------
@@ -129,7 +130,7 @@ def bootstrap(
     tiles : (int, int)
         Into how many rows and columns each frame is cut.
     pixels : int
-        An even choice of about so many stands for a frame.
+        About this many, on an even grid, represent a frame.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
 
@@ -155,4 +156,4 @@ def bootstrap(
     >>> bool(found.low[200] <= found.middle[200] <= found.high[200]), found.width < 0.05
     (True, True)
     """
-    return band(bootstrap_steps(recover, images, times, **knobs), share=share)
+    return percentile_band(bootstrap_steps(recover, images, times, **knobs), share=share)

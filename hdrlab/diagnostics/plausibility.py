@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times
 from hdrlab.core.bracket import short_to_long
-from hdrlab.core.errors import HIGH, LOW
+from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
 
 Float = NDArray[np.float64]
@@ -57,7 +57,7 @@ def neighbour_errors(Z: NDArray[np.intp], t: Float, g: Float) -> tuple[Float, Fl
     NaN where two frames hold too few ranks between the levels 10 and 250, or have the same time.
     """
     channel = np.arange(Z.shape[-1])
-    inside = (Z >= LOW) & (Z <= HIGH)
+    inside = (Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)
     both = inside[:, 1:] & inside[:, :-1] & (np.diff(t) > 0)[:, None]
     apart = np.abs(np.diff(g[Z, channel], axis=1) - np.diff(np.log(t))[:, None]) / np.log(2)
     darker = np.diff(Z, axis=1) < -RANK_NOISE

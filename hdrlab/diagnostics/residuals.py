@@ -1,4 +1,4 @@
-"""What a response leaves unexplained, frame by frame and level by level.
+"""Residuals of a response, frame by frame and level by level.
 
 Z   pixel levels     (N, P[, 3]) integers 0 ... 255: sample i in frame j
 B   ln times         (P,)
@@ -14,33 +14,34 @@ contradict each other by a stop, each shows a part of it.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_stack, as_table, as_times
-from hdrlab.core.errors import HIGH, LOW
+from hdrlab.core.arrays import as_response, as_stack, as_table, as_times
+from hdrlab.core.metrics import RELIABLE_LEVELS
 from hdrlab.core.sampling import by_grid
+from hdrlab.core.types import F64, Indices
 
-Float = NDArray[np.float64]
-FEWEST = 20  # samples that make a median
+# Samples of a level, for a median.
+MIN_SAMPLES = 20
 
 
-def unexplained(Z: NDArray[np.intp], B: Float, g: Float, w: Float) -> Float:
-    """Return r (N, P) of one channel; NaN where w is 0, or where no other frame saw the sample well."""
+def sample_residuals(Z: Indices, B: F64, g: F64, w: F64) -> F64:
+    """Return r (N, P) of one channel; NaN where w is 0, or where no other frame measures the sample."""
     W = w[Z] ** 2
     G = g[Z] - B
     with np.errstate(invalid="ignore"):
         lE = (W * G).sum(axis=1) / W.sum(axis=1)
-    tied = (W > 0) & ((W > 0).sum(axis=1) >= 2)[:, None]
-    return np.where(tied, (G - lE[:, None]) / np.log(2), np.nan)
+    measured = (W > 0) & ((W > 0).sum(axis=1) >= 2)[:, None]
+    return np.where(measured, (G - lE[:, None]) / np.log(2), np.nan)
 
 
-def by_level(Z: NDArray[np.intp], r: Float, *, fewest: int = FEWEST) -> Float:
+def median_by_level(Z: Indices, r: F64) -> F64:
     """Return the median of r over the samples of each level (256,), NaN where they are few, of one frame."""
     known = np.isfinite(r)
     Z, r = Z[known], r[known]
     groups = np.split(r[np.argsort(Z, kind="stable")], np.cumsum(np.bincount(Z, minlength=256))[:-1])
-    return np.array([np.median(one) if len(one) >= fewest else np.nan for one in groups])
+    return np.array([np.median(one) if len(one) >= MIN_SAMPLES else np.nan for one in groups])
 
 
 def residuals(
@@ -51,7 +52,7 @@ def residuals(
     samples: int = 100_000,
     w: ArrayLike | None = None,
     valid: ArrayLike | None = None,
-) -> Float:
+) -> F64:
     """Return the median residual of each frame, level and channel.
 
     Parameters
@@ -92,29 +93,23 @@ def residuals(
     B = np.log(as_times(times, len(stack)))
     w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
     Z = by_grid(stack, samples, valid=valid)
-    channels = Z.reshape(*Z.shape[:2], -1)
-    count = channels.shape[-1]
-    curves = as_table(g, 256).reshape(256, -1)
-    if curves.shape[1] not in (1, count):
-        raise ValueError(f"expected a response of {count} channels, or one for all, got {curves.shape[1]}")
-    curves = np.broadcast_to(curves, (256, count))
-    found = np.empty((len(stack), 256, count))
-    for c in range(count):
-        r = unexplained(channels[..., c], B, curves[:, c], w)
-        for j in range(len(stack)):
-            found[j, :, c] = by_level(channels[:, j, c], r[:, j])
-    return found.reshape(len(stack), 256, *stack.shape[3:])
+    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
+    medians = []
+    for own, curve in zip(channels, as_response(g, 256, len(channels)).T, strict=True):
+        r = sample_residuals(own, B, curve, w)
+        medians.append([median_by_level(*one) for one in zip(own.T, r.T, strict=True)])
+    return np.stack(medians, axis=-1).reshape(len(stack), 256, *stack.shape[3:])
 
 
 def rms(r: ArrayLike) -> float:
     """Return the root of the mean squared residual of the levels 10 to 250, in stops; NaN for none."""
-    known = np.asarray(r, np.float64)[:, LOW : HIGH + 1]
+    known = np.asarray(r, np.float64)[:, RELIABLE_LEVELS]
     known = known[np.isfinite(known)]
     return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
 
 
-def offsets(r: ArrayLike) -> Float:
-    """Return by how many stops each frame lies off as a whole (P,): the median of its levels, or NaN."""
+def frame_offsets(r: ArrayLike) -> F64:
+    """Return the offset of each frame as a whole (P,), in stops: the median of its levels, or NaN."""
     frames = np.asarray(r, np.float64)
     known = [one[np.isfinite(one)] for one in frames]
     return np.array([np.median(one) if one.size else np.nan for one in known])

@@ -43,7 +43,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
 
 
 def _stiffness(w: F64, smoothness: float) -> F64:
-    """Return D^T D of the rows D of `core.tables.second_differences`, from their three diagonals."""
+    """Return D^T D of the rows D of `core.weights.second_differences`, from their three diagonals."""
     S, z = np.zeros((len(w), len(w))), np.arange(1, len(w) - 1)
     for (a, da), (b, db) in product(((-1, 1), (0, -2), (1, 1)), repeat=2):
         S[z + a, z + b] += (smoothness * w[1:-1]) ** 2 * da * db

@@ -8,7 +8,7 @@ from test_cli import hdrlab
 
 from hdrlab import scenes
 from hdrlab.capture import camera, responses
-from hdrlab.core.errors import response_rmse
+from hdrlab.core.metrics import response_rmse
 from hdrlab.diagnostics.bootstrap import Band
 from hdrlab.io import radiance
 from hdrlab.io.photos import write_picture

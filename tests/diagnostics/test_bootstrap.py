@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab.capture import responses
 from hdrlab.diagnostics import bootstrap, residuals
-from hdrlab.diagnostics.bootstrap import Band, band, laid, tiled
+from hdrlab.diagnostics.bootstrap import Band, join_tiles, percentile_band, split_tiles
 from hdrlab.fast import debevec
 from hdrlab.response import linear
 
@@ -22,8 +22,8 @@ def ramp(times, shape=(120, 160), factor=1.0, noise=0.0):
 
 def test_tiles_laid_in_their_order_are_the_frames():
     stack = np.arange(2 * 7 * 9 * 3).reshape(2, 7, 9, 3)
-    assert np.array_equal(laid(tiled(stack, (3, 2)), (3, 2)), stack[:, :6, :8])
-    assert tiled(stack, (3, 2)).shape == (6, 2, 2, 4, 3)
+    assert np.array_equal(join_tiles(split_tiles(stack, (3, 2)), (3, 2)), stack[:, :6, :8])
+    assert split_tiles(stack, (3, 2)).shape == (6, 2, 2, 4, 3)
 
 
 def test_a_tile_is_drawn_with_all_its_exposures_and_its_mask():
@@ -79,15 +79,15 @@ def test_a_method_that_does_not_look_at_the_photographs_has_a_band_without_width
 
 
 def test_the_band_lies_between_the_percentiles_of_the_rounds():
-    found = band([LINEAR + k for k in range(101)], share=0.9)
+    found = percentile_band([LINEAR + k for k in range(101)], share=0.9)
     assert np.allclose(found.low, LINEAR + 5) and np.allclose(found.high, LINEAR + 95)
     assert np.isclose(Band(LINEAR, LINEAR, LINEAR + np.log(2)).width, 1)
 
 
 def test_rounds_that_find_nothing_are_left_out_and_too_many_of_them_are_an_error():
-    assert np.array_equal(band([LINEAR] * 9 + [None]).low, LINEAR)
+    assert np.array_equal(percentile_band([LINEAR] * 9 + [None]).low, LINEAR)
     with pytest.raises(ValueError, match="3 of 10"):
-        band([LINEAR] * 3 + [None] * 7)
+        percentile_band([LINEAR] * 3 + [None] * 7)
 
 
 @pytest.mark.parametrize("knobs", [{"rounds": 1}, {"tiles": (0, 3)}, {"share": 1.0}])
@@ -121,7 +121,7 @@ def test_a_frame_with_a_wrong_time_lies_off_by_as_much():
     """A frame 0.3 stops brighter than it says; the three others share what it pulls at lE."""
     times = [0.25, 0.5, 1, 2]
     images = ramp(times, (300, 400), factor=[1, 2**0.3, 1, 1])
-    off = residuals.offsets(residuals.residuals(images, times, LINEAR))
+    off = residuals.frame_offsets(residuals.residuals(images, times, LINEAR))
     assert np.isclose(off[1] - off[[0, 2, 3]].mean(), 0.3, atol=0.1)
     assert np.argmax(np.abs(off)) == 1
 
@@ -139,12 +139,12 @@ def test_levels_of_few_samples_and_of_no_weight_are_not_known():
     assert np.isnan(r[:, [0, 251, 255]]).all() and np.isfinite(r).any()
     assert np.isnan(residuals.residuals(ramp(times, (3, 3)), times, LINEAR)).all()
     assert np.isnan(residuals.rms(np.full((2, 256), np.nan)))
-    assert np.isnan(residuals.offsets(np.full((2, 256), np.nan))).all()
+    assert np.isnan(residuals.frame_offsets(np.full((2, 256), np.nan))).all()
 
 
 def test_a_sample_that_one_frame_sees_well_says_nothing():
     Z = np.array([[0, 100], [50, 100]])
-    r = residuals.unexplained(Z, np.log([1.0, 2.0]), LINEAR, np.r_[0.0, np.ones(254), 0.0])
+    r = residuals.sample_residuals(Z, np.log([1.0, 2.0]), LINEAR, np.r_[0.0, np.ones(254), 0.0])
     assert np.isnan(r[0]).all() and np.allclose(r[1], 0)
 
 

@@ -6,7 +6,7 @@ from numpy.polynomial.polynomial import polyval
 
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
-from hdrlab.core.errors import response_rmse
+from hdrlab.core.metrics import response_rmse
 from hdrlab.course.checks.laws import photographs as shots
 from hdrlab.io.emor import read_curves
 from hdrlab.response import ambiguity, mitsunaga, polynomial

@@ -7,7 +7,7 @@ import pytest
 
 from hdrlab.capture import camera
 from hdrlab.core import weights
-from hdrlab.core.errors import response_rmse
+from hdrlab.core.metrics import response_rmse
 from hdrlab.fast import debevec
 from hdrlab.fast.merge import merge
 from hdrlab.response import grossberg, mann, marginal, mitsunaga, robertson, space

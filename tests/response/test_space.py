@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.capture import camera, responses
-from hdrlab.core.errors import response_rmse
+from hdrlab.core.metrics import response_rmse
 from hdrlab.course.checks.laws import photographs as shots
 from hdrlab.io.emor import read_curves, read_emor
 from hdrlab.response import families, space

@@ -12,7 +12,7 @@ from hdrlab import pipeline, scenes
 from hdrlab.align.shift import crop
 from hdrlab.capture import camera, responses
 from hdrlab.core.bracket import bracket
-from hdrlab.core.errors import Truth
+from hdrlab.core.metrics import Truth
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages import wording
 from hdrlab.show.pages.report import write_report

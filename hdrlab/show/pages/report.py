@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.errors import Truth
+from hdrlab.core.metrics import Truth
 from hdrlab.io.files import replacing
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.show.pages import sections

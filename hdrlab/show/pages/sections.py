@@ -12,10 +12,10 @@ import scipy
 from numpy.typing import NDArray
 
 import hdrlab
-from hdrlab.core import colour, errors
+from hdrlab.core import colour, metrics
 from hdrlab.core.arrays import Array, to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.errors import Truth
+from hdrlab.core.metrics import Truth
 from hdrlab.diagnostics import consistency
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
@@ -61,7 +61,9 @@ def response(g: Float, truth: Truth | None) -> dict[str, Any]:
         plots.response(truth.g, label="true", ax=ax)
     plots.response(g, label="found" if truth is not None else "", ax=ax)
     curves = g.reshape(len(g), -1)
-    low, high = curves[[round(level / 255 * (len(g) - 1)) for level in (errors.LOW, errors.HIGH)]]
+    low, high = curves[
+        [round(level / 255 * (len(g) - 1)) for level in (metrics.LOW_LEVEL, metrics.HIGH_LEVEL)]
+    ]
     reach = ", ".join(f"{one:.1f}" for one in (high - low) / np.log(2))
     alt = f"Response, pixel level over ln exposure: from level 10 to level 250 it rises over {reach} stops"
     return {"plot": figures.plot(ax, alt), "reach": reach, "coloured": curves.shape[1] == 3}
@@ -133,9 +135,9 @@ def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
 
 def against(truth: Truth, photographs: Bracket, offsets: Array, g: Float, E: Array) -> dict[str, Any]:
     """Return how far radiance, response and offsets lie from the truth."""
-    well = errors.well_seen(photographs.images, photographs.valid)
-    apart = np.abs(errors.radiance_errors(E, truth.E, well))[well]
-    rmse, off = errors.response_rmse(g, truth.g), errors.offset_errors(offsets, truth.offsets)
+    well = metrics.well_exposed(photographs.images, photographs.valid)
+    apart = np.abs(metrics.radiance_errors(E, truth.E, well))[well]
+    rmse, off = metrics.response_rmse(g, truth.g), metrics.offset_errors(offsets, truth.offsets)
     channels = [name for name, *_ in plots.CHANNELS] if len(rmse) == 3 else ["gray"]
     columns = zip(photographs.names, offsets, truth.offsets, off, strict=True)
     return {
@@ -151,7 +153,7 @@ def against(truth: Truth, photographs: Bracket, offsets: Array, g: Float, E: Arr
 
 def error_map(truth: Truth, E: Array, well: NDArray[np.bool_]) -> dict[str, Any]:
     """Return the errors of luminance in false colour and their scale."""
-    ratio = 1 + errors.radiance_errors(colour.luminance(E), colour.luminance(truth.E), well)
+    ratio = 1 + metrics.radiance_errors(colour.luminance(E), colour.luminance(truth.E), well)
     stops = np.where(well, np.log2(np.maximum(ratio, 2.0**-10)), np.nan)
     reach = figures.round_up(np.nanpercentile(np.abs(stops), 99))
     image = figures.false_colour(figures.fit(stops, 1000), -reach, reach, colours="PuOr_r")

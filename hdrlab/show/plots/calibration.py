@@ -1,7 +1,7 @@
 """What a calibration found, in words and pictures: a response with its band and residuals, or many together.
 
 g  response   (n,) or (n, 3), ln exposure of each pixel level, 0 at level n // 2
-r  residuals  (P, 256) or (P, 256, 3), stops: what g and the times leave unexplained
+r  residuals  (P, 256) or (P, 256, 3), stops: what g and the times do not explain
 E  radiance   (H, W[, 3])
 
 A stop is a factor of 2. Functions return lines of text or figures; only `write_plot` writes.
@@ -18,15 +18,15 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_table
-from hdrlab.core.errors import HIGH, LOW, radiance_errors, response_rmse
-from hdrlab.diagnostics.bootstrap import KEPT, Band
-from hdrlab.diagnostics.residuals import offsets, rms
+from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS, radiance_errors, response_rmse
+from hdrlab.core.types import F64
+from hdrlab.diagnostics.bootstrap import Band
+from hdrlab.diagnostics.residuals import frame_offsets, rms
 from hdrlab.io.files import replacing
 from hdrlab.show import plots
 from hdrlab.show.pages.wording import signed
 from hdrlab.show.widgets.pictures import require_alt
 
-Float = NDArray[np.float64]
 SUFFIXES = (".png", ".svg")
 COLOURS = ("#1A1A1A", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 STYLES = (
@@ -48,17 +48,17 @@ def doublings(g: ArrayLike) -> dict[int, float]:
     """
     curve = np.maximum.accumulate(np.asarray(g, np.float64)) / np.log(2)
     last = int(np.argmax(curve == curve[-1]))  # a curve that was levelled at its end says nothing there
-    whole = range(int(np.ceil(curve[LOW * len(curve) // 256])), int(np.floor(curve[last])) + 1)
+    whole = range(int(np.ceil(curve[LOW_LEVEL * len(curve) // 256])), int(np.floor(curve[last])) + 1)
     return {k: float(np.interp(k, curve[: last + 1], np.arange(last + 1))) for k in whole}
 
 
 def reach(g: ArrayLike) -> float:
     """Return how many stops lie between the levels 10 and 250 of 256, the mean of the channels."""
     curve = as_table(g, 256)
-    return float(np.mean(curve[HIGH] - curve[LOW]) / np.log(2))
+    return float(np.mean(curve[HIGH_LEVEL] - curve[LOW_LEVEL]) / np.log(2))
 
 
-def summary(g: Float, r: Float, spread: float, names: Sequence[str], band: Band | None = None) -> list[str]:
+def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | None = None) -> list[str]:
     """Return the lines that say what a response is and how far it is to be trusted."""
     channels = plots.CHANNELS if g.ndim == 2 else (("gray", "", ""),)
     found = [doublings(one) for one in np.atleast_2d(g.T)]
@@ -67,10 +67,10 @@ def summary(g: Float, r: Float, spread: float, names: Sequence[str], band: Band 
     for (name, *_), levels in zip(channels, found, strict=True):
         row = "".join(f"{levels[k]:5.0f}" if k in levels else 5 * " " for k in stops)
         lines.append(f"{name:<8}{row}".rstrip())
-    off = np.nan_to_num(offsets(r))
+    off = np.nan_to_num(frame_offsets(r))
     worst = int(np.argmax(np.abs(off)))
     lines += [
-        f"range      {reach(g):.2f} stops between the levels {LOW} and {HIGH}",
+        f"range      {reach(g):.2f} stops between the levels {LOW_LEVEL} and {HIGH_LEVEL}",
         f"spread     {spread:.3f} stops between what the frames say of the same light",
         f"residuals  {rms(r):.3f} stops rms; furthest off is {names[worst]}, by {signed(off[worst], 2)}",
     ]
@@ -100,17 +100,17 @@ def pairs(names: Sequence[str]) -> list[tuple[str, str]]:
     return [(one, other) for j, other in enumerate(names) for one in names[:j]]
 
 
-def rmse(curves: Mapping[str, Float]) -> dict[tuple[str, str], float]:
+def rmse(curves: Mapping[str, F64]) -> dict[tuple[str, str], float]:
     """Return how far each two responses lie apart: `response_rmse` in percent, of the worst channel."""
 
-    def between(a: Float, b: Float) -> float:
+    def between(a: F64, b: F64) -> float:
         a, b = np.broadcast_arrays(_channels(a), _channels(b))
         return float(max(response_rmse(a, b).max(), response_rmse(b, a).max()))
 
     return {(one, other): between(curves[one], curves[other]) for one, other in pairs(list(curves))}
 
 
-def _channels(g: Float) -> Float:
+def _channels(g: F64) -> F64:
     """Return g as a table (256, channels)."""
     return as_table(g, 256).reshape(256, -1)
 
@@ -125,7 +125,7 @@ def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> d
     return {(one, other): between(maps[one], maps[other]) for one, other in pairs(list(maps))}
 
 
-def calibration(g: Float, r: Float, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
+def calibration(g: F64, r: F64, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
     """Draw a response, beside it the band in which it is to be trusted, and the residuals of each frame."""
     count = 2 if band is None else 3
     figure = Figure(figsize=(5.2 * count, 4.2), dpi=100, layout="constrained")
@@ -147,7 +147,7 @@ def calibration(g: Float, r: Float, times: ArrayLike, *, band: Band | None = Non
     return figure
 
 
-def draw_band(band: Band, g: Float, *, ax: Axes | None = None) -> Axes:
+def draw_band(band: Band, g: F64, *, ax: Axes | None = None) -> Axes:
     """Draw how far a band lies from g, stops over the pixel level: upon a curve of ten stops none shows."""
     ax = ax or plots.axes()
     channels = plots.CHANNELS if band.low.ndim == 2 else plots.GRAY
@@ -157,7 +157,7 @@ def draw_band(band: Band, g: Float, *, ax: Axes | None = None) -> Axes:
         ax.fill_between(level, low, high, color=colour, alpha=0.2, linewidth=0)
         for edge, label in ((low, name), (high, None)):
             ax.plot(level, edge, color=colour, linestyle=style, linewidth=1, label=label)
-    most = max(0.02, 1.3 * max(float(np.quantile(np.abs(one[:, KEPT]), 0.98)) for one in columns))
+    most = max(0.02, 1.3 * max(float(np.quantile(np.abs(one[:, RELIABLE_LEVELS]), 0.98)) for one in columns))
     ax.axhline(0, color="#1A1A1A", linewidth=0.8)
     ax.set(xlabel="pixel level Z", ylabel="stops from the curve", xlim=(0, len(g) - 1), ylim=(-most, most))
     _shade(ax)
@@ -168,19 +168,19 @@ def draw_band(band: Band, g: Float, *, ax: Axes | None = None) -> Axes:
 
 def _shade(ax: Axes) -> None:
     """Shade the levels below 10 and above 250, where no method is held to anything."""
-    for low, high in ((0, LOW), (HIGH, 255)):
+    for low, high in ((0, LOW_LEVEL), (HIGH_LEVEL, 255)):
         ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
 
 
-def draw_residuals(r: Float, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
+def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     """Draw a line per frame, the channels' mean: pixel level across, stops up; dark lines are short times."""
     ax = ax or plots.axes()
     lines = np.ma.masked_invalid(r.reshape(*r.shape[:2], -1)).mean(axis=-1)
     colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
     for line, time, colour in zip(lines, np.asarray(times).tolist(), colours, strict=True):
         ax.plot(np.arange(256), line, color=colour, linewidth=1.1, label=plots.seconds(time))
-    told = np.ma.compressed(np.abs(lines[:, KEPT]))  # not the noise below, nor a few levels with few pixels
-    most = max(0.1, 1.5 * float(np.quantile(told, 0.99))) if len(told) else 0.1
+    sizes = np.ma.compressed(np.abs(lines[:, RELIABLE_LEVELS]))
+    most = max(0.1, 1.5 * float(np.quantile(sizes, 0.99))) if len(sizes) else 0.1  # but for rare levels
     ax.axhline(0, color="#1A1A1A", linewidth=0.8)
     ax.set(xlabel="pixel level Z", ylabel="g(Z) − ln E − ln t, stops", xlim=(0, 255), ylim=(-most, most))
     _shade(ax)
@@ -188,7 +188,7 @@ def draw_residuals(r: Float, times: ArrayLike, *, ax: Axes | None = None) -> Axe
     return ax
 
 
-def overlay(curves: Mapping[str, Float], *, title: str = "") -> Figure:
+def overlay(curves: Mapping[str, F64], *, title: str = "") -> Figure:
     """Draw responses over each other, channel by channel, and below how far each is from their median."""
     tables = {name: as_table(g, 256).reshape(256, -1) for name, g in curves.items()}
     count = max(one.shape[1] for one in tables.values())

@@ -18,7 +18,7 @@ from matplotlib.collections import LineCollection
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.errors import HIGH, LOW
+from hdrlab.core.metrics import RELIABLE_LEVELS
 from hdrlab.show.plots import SAMPLES, axes, fixed
 
 Dashes = str | tuple[int, tuple[float, ...]]
@@ -84,8 +84,8 @@ def deviations(
 
     `limit` and `span` fix the axes, as in `lines`.
     """
-    stops = np.asarray(truth, np.float64)[LOW : HIGH + 1] / np.log(2)
-    off = {name: np.asarray(g)[LOW : HIGH + 1] / np.log(2) - stops for name, g in found.items()}
+    stops = np.asarray(truth, np.float64)[RELIABLE_LEVELS] / np.log(2)
+    off = {name: np.asarray(g)[RELIABLE_LEVELS] / np.log(2) - stops for name, g in found.items()}
     ax = ax or axes()
     ax.axhline(0, color="#808080", linewidth=1, zorder=1)
     for (colour, style), (name, y) in zip(LINES[1:], off.items(), strict=False):

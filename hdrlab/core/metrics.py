@@ -1,9 +1,9 @@
-"""How far a result lies from a truth that is known, where the camera was a simulated one.
+"""Metrics: how far a result lies from a known truth, that of a simulated camera.
 
 g        response    (n,) or (n, 3), ln f^-1, ln exposure of each level
 E        radiance    (H, W[, 3]), any linear unit
 offsets  (P, 2) int, (dy, dx) pixels
-well     (H, W) bool, pixels that at least one frame saw well
+well     (H, W) bool, pixels that at least one frame exposed well
 
 Photographs fix neither the unit of exposure nor where the camera stood at first. So one factor, or one common
 shift, is taken off before anything is compared; each function says which.
@@ -14,10 +14,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_radiance, as_stack, as_table, describe, to_256
+from hdrlab.core.arrays import Array, as_radiance, as_response, as_stack, as_table, describe, to_256
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
-LOW, HIGH = 10, 250  # of 256 levels: noise rules below, the cut above
+# Of 256 levels: noise dominates below, the cut of the weights above.
+LOW_LEVEL, HIGH_LEVEL = 10, 250
+RELIABLE_LEVELS = slice(LOW_LEVEL, HIGH_LEVEL + 1)
 
 
 class Truth(NamedTuple):
@@ -31,11 +33,11 @@ class Truth(NamedTuple):
     """
 
     E: Array
-    g: Float
+    g: F64
     offsets: NDArray[np.int64]
 
 
-def response_rmse(g: ArrayLike, truth: ArrayLike) -> Float:
+def response_rmse(g: ArrayLike, truth: ArrayLike) -> F64:
     """Return the RMSE of f^-1 over the levels 10 to 250, in percent of the true f^-1(250), per channel.
 
     Each channel is first multiplied by the factor that fits it best (least squares), for a response is known
@@ -64,24 +66,22 @@ def response_rmse(g: ArrayLike, truth: ArrayLike) -> Float:
     >>> response_rmse(g + 3, g).round(6) + 0.0  # another unit of exposure is no error
     array([0.])
     """
-    levels = slice(LOW, HIGH + 1)
-    found, true = (as_table(one, 256).reshape(256, -1) for one in (g, truth))
-    if true.shape[1] not in (1, found.shape[1]):
-        raise ValueError(f"expected one true response, or {found.shape[1]}, got {true.shape[1]}")
-    X, X_true = np.exp(found - found[HIGH])[levels], np.exp(true - true[HIGH])[levels]
+    found = as_table(g, 256).reshape(256, -1)
+    true = as_response(truth, 256, found.shape[1])
+    X, X_true = (np.exp(one - one[HIGH_LEVEL])[RELIABLE_LEVELS] for one in (found, true))
     s = (X * X_true).sum(axis=0) / (X * X).sum(axis=0)
     return 100 * np.sqrt(((s * X - X_true) ** 2).mean(axis=0))
 
 
-def well_seen(images: ArrayLike, valid: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
+def well_exposed(images: ArrayLike, valid: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """Return where some frame (P, H, W[, 3]) has a pixel's levels, in all channels, within 10 to 250."""
     stack = as_stack(images)
     Z = to_256(stack).reshape(*stack.shape[:3], -1)
-    inside = ((Z >= LOW) & (Z <= HIGH)).all(axis=-1)
+    inside = ((Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)).all(axis=-1)
     return np.any(inside if valid is None else inside & valid, axis=0)
 
 
-def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> Float:
+def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> F64:
     """Return s E / E_true - 1 in every pixel and channel, (H, W[, 3]); NaN where the truth is without light.
 
     The factor s is one for all, and makes the median of s E / E_true over the pixels of `well` 1.
@@ -105,7 +105,7 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> 
     ratio = E / np.where(truth > 0, truth, np.nan)
     median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
     if not median > 0:
-        raise ValueError("expected a pixel with light that a frame saw well, got none")
+        raise ValueError("expected a well exposed pixel with light, got none")
     return ratio / median - 1
 
 
