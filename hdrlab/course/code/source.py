@@ -80,6 +80,8 @@ def _resolved(at: str, use: Use) -> Found | None:
     source, original, text = here.imported[name]
     if source.split(".")[0] != HOUSE:
         return Found(text, use.node)
+    while original in module(source).imported:  # it is imported there, too
+        source, original, _ = module(source).imported[original]
     if original in module(source).definitions:
         return Found(Key(source, original), use.node)
     inner = f"{source}.{original}"
