@@ -23,12 +23,6 @@ SCRATCH = tempfile.TemporaryDirectory(
 set_hypothesis_home_dir(SCRATCH.name)
 
 
-def pytest_configure(config):
-    """Know the markers of the specification in hdrlab/course/checks/specification."""
-    config.addinivalue_line("markers", "points(n): what a promise is worth, among those of its task")
-    config.addinivalue_line("markers", "hints(first, second, third): from a nudge to nearly the answer")
-
-
 def pytest_unconfigure():
     """Leave nothing behind."""
     SCRATCH.cleanup()

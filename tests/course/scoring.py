@@ -5,6 +5,7 @@ import runpy
 from importlib import import_module
 
 from hdrlab.course import plan
+from hdrlab.course.checks import plugin
 
 
 def functions(path):
@@ -19,7 +20,7 @@ def checks(task):
     for name, check in vars(module).items():
         if name.startswith("test_"):
             marks = {mark.name: mark.args for mark in check.pytestmark}
-            found.append((name, check, marks["points"][0], marks["hints"]))
+            found.append((name, check, marks["points"][0], plugin.hints(check)))
     return found
 
 

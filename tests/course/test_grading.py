@@ -14,6 +14,7 @@ import processes
 import pytest
 
 from hdrlab.course import feedback, gradebook, grading, handouts, materials, plan, results
+from hdrlab.course.classroom import imitation
 from hdrlab.course.code import inline
 from hdrlab.course.grading import Conditions
 from hdrlab.course.sandbox import tiers
@@ -80,8 +81,7 @@ def test_a_wrong_function_loses_what_it_breaks_and_is_recognised(graded):
 
 
 def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
-    blocks = inline.inlined({"gsolve": "response.debevec.gsolve"})
-    wrong = blocks["gsolve"].text.replace("(smoothness * w[1:-1]) ** 2", "1.0")
+    wrong = imitation.texts(of("hw2", "gsolve"), ["gsolve_smoothness_not_weighted"])["gsolve"]
     found = graded(wrong, of("hw2", "gsolve"))
     drawn = [one.drawing for one in found.checks if one.drawing.frames]
     assert drawn and all("they differ by" in alt for drawing in drawn for alt in drawing.alts)
@@ -130,8 +130,7 @@ def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_
     hidden.mkdir()
     (hidden / "test_hat.py").write_text(
         "import pytest\nfrom hdrlab.course.checks.compare import Different\n\n@pytest.mark.points(5)\n"
-        '@pytest.mark.hints("a secret hint")\n'
-        'def test_it_is_blue(subject):\n    raise Different("the secret")\n'
+        'def test_it_is_blue(subject):\n    """A secret hint."""\n    raise Different("the secret")\n'
     )
     found = graded(RIGHT, conditions=PRACTICE._replace(hidden=hidden))
     (own,) = (one for one in found.checks if one.hidden)

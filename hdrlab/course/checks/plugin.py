@@ -6,6 +6,7 @@ line by line into another, so that nothing is lost if this process is ended.
 """
 
 import base64
+import inspect
 import json
 import os
 import re
@@ -39,9 +40,8 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Read the job, and know the specification's markers."""
+    """Read the job, and know the specification's marker."""
     config.addinivalue_line("markers", "points(n): what the promise is worth among those of its task")
-    config.addinivalue_line("markers", "hints(first, second, third): from a nudge to nearly the answer")
     config.pluginmanager.register(Checking(config.getoption("--job")), "hdrlab-checking")
 
 
@@ -87,15 +87,14 @@ class Checking:
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Write down every check before the first is run."""
         for item in session.items:
-            marks = [item.get_closest_marker(name) for name in ("points", "hints")]
-            points, hints = (() if mark is None else mark.args for mark in marks)
+            worth = item.get_closest_marker("points")
             self._write(
                 check=_id(item),
                 task=_task(item),
                 name=item.originalname if isinstance(item, pytest.Function) else item.name,
                 promise=_promise(item),
-                points=str(Fraction(str(points[0] if points else 1))),
-                hints=[str(hint) for hint in hints],
+                points=str(Fraction(str(worth.args[0] if worth else 1))),
+                hints=hints(getattr(item, "function", None)),
                 hidden=self._is_hidden(item),
             )
 
@@ -157,11 +156,15 @@ def _task(item: pytest.Item) -> str:
 
 
 def _promise(item: pytest.Item) -> str:
-    """Return the promise in words: the first line of the test's docstring, or else its name."""
-    doc = getattr(getattr(item, "function", None), "__doc__", None)
+    """Return the promise in words, which is the name of the check."""
     name = item.originalname if isinstance(item, pytest.Function) else item.name
-    said = doc.strip().splitlines()[0] if doc else name.removeprefix("test_").replace("_", " ")
-    return said[:1].upper() + said[1:]
+    words = name.removeprefix("test_").replace("_", " ")
+    return words[:1].upper() + words[1:]
+
+
+def hints(check: object) -> list[str]:
+    """Return the hints of a check, from a nudge to nearly the answer: the paragraphs of its docstring."""
+    return [" ".join(one.split()) for one in (inspect.getdoc(check) or "").split("\n\n") if one]
 
 
 def _message(raised: BaseException) -> str:

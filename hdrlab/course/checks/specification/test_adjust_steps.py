@@ -23,12 +23,13 @@ def asked(subject, f, db, D, **knobs):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "After a trim T is less, and so is the ceiling: what stood just below it stands above it now.",
-    "Trim again, with a new T and a new ceiling.",
-    "Until the trimmings are below tolerance times T.",
-)
 def test_nothing_stays_above_the_ceiling(subject, rng):
+    """After a trim T is less, and so is the ceiling: what stood just below it stands above it now.
+
+    Trim again, with a new T and a new ceiling.
+
+    Until the trimmings are below tolerance times T.
+    """
     f, db, D = drawn(rng)
     end = asked(subject, f, db, D)[-1]
     T = end.sum()
@@ -43,12 +44,13 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Where do the trimmings go?",
-    "Nowhere: put elsewhere they would make another slope too steep.",
-    "f = minimum(f, ceiling), and that is all.",
-)
 def test_trimmings_are_not_put_elsewhere(subject, rng):
+    """Where do the trimmings go?
+
+    Nowhere: put elsewhere they would make another slope too steep.
+
+    f = minimum(f, ceiling), and that is all.
+    """
     f, db, D = drawn(rng)
     for before, after in zip([f, *asked(subject, f, db, D)], asked(subject, f, db, D), strict=False):
         if not np.all(after <= before + 1e-6 * before.max()):
@@ -58,24 +60,26 @@ def test_trimmings_are_not_put_elsewhere(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "The slope of ln Ld over ln L is f D / (T db): above which f does it exceed 1?",
-    "ceiling = T db / D.",
-    "D and db are both natural logarithms: mix no log10 in.",
-)
 def test_the_histogram_ends_where_the_trims_lead(subject, rng):
+    """The slope of ln Ld over ln L is f D / (T db): above which f does it exceed 1?
+
+    ceiling = T db / D.
+
+    D and db are both natural logarithms: mix no log10 in.
+    """
     f, db, D = drawn(rng)
     truth = last(ward.adjust_steps(f, db, D)).f
     same(asked(subject, f, db, D)[-1], truth, 0.05 * truth.max(), what="f after the last trim", kind="curve")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "A scene without any bin above the ceiling: what is there to trim?",
-    "Nothing, and f comes out as it went in.",
-    "Do not scale f, and do not make it a density.",
-)
 def test_an_even_histogram_is_left_alone(subject, rng):
+    """A scene without any bin above the ceiling: what is there to trim?
+
+    Nothing, and f comes out as it went in.
+
+    Do not scale f, and do not make it a density.
+    """
     f = np.full(40, float(rng.integers(50, 90)))
     same(asked(subject, f, 0.05, float(np.log(100)) / 3)[-1], f, 1e-6, what="f", kind="curve")
     peak = f.copy()

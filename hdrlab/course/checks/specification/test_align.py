@@ -39,23 +39,25 @@ def drawn(rng, least, most):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "What is there to be moved?",
-    "The offsets are an array (P, 2), a row for each image.",
-    "The same image twice: zeros.",
-)
 def test_identical_photographs_stay_where_they_are(subject, rng):
+    """What is there to be moved?
+
+    The offsets are an array (P, 2), a row for each image.
+
+    The same image twice: zeros.
+    """
     images = photographs(rng, scene(rng), [(0, 0)], [1])
     same(subject.align(np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
 
 
 @pytest.mark.points(6)
-@pytest.mark.hints(
-    "Look at the sign first: the offset says where the image must move, not where it has moved to.",
-    "At every level the best of nine is found, and twice that is where the next level begins.",
-    "XOR of the bitmaps, AND with both exclusion bitmaps, and count; the least count wins.",
-)
 def test_a_known_offset_is_found_two_stops_apart(subject, rng):
+    """Look at the sign first: the offset says where the image must move, not where it has moved to.
+
+    At every level the best of nine is found, and twice that is where the next level begins.
+
+    XOR of the bitmaps, AND with both exclusion bitmaps, and count; the least count wins.
+    """
     for times in ((1, 4), (4, 1)):
         dy, dx = drawn(rng, 5, 20)
         images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
@@ -64,12 +66,13 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Which candidate wins where all nine are equally good?",
-    "A scan that begins in the corner, and takes the first of equals, walks off diagonally, a pixel a level.",
-    "Begin with the centre, and move only for a count that is less.",
-)
 def test_in_a_tie_nothing_moves(subject, rng):
+    """Which candidate wins where all nine are equally good?
+
+    A scan that begins in the corner, and takes the first of equals, walks off diagonally, a pixel a level.
+
+    Begin with the centre, and move only for a count that is less.
+    """
     flat = np.full((2, 96, 128), int(rng.integers(60, 200)), np.uint8)
     same(subject.align(flat), np.zeros((2, 2)), 0, what="the offsets of two even walls")
     dx, levels = int(rng.choice([-6, 6])), gaussian_filter(rng.standard_normal(240), 2)
@@ -80,12 +83,13 @@ def test_in_a_tie_nothing_moves(subject, rng):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "At which level is the picture compared with its median?",
-    "A bitmap made small is not the bitmap of the small picture: fine texture becomes noise.",
-    "Shrink the gray picture, and make threshold and bitmaps anew at every level.",
-)
 def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
+    """At which level is the picture compared with its median?
+
+    A bitmap made small is not the bitmap of the small picture: fine texture becomes noise.
+
+    Shrink the gray picture, and make threshold and bitmaps anew at every level.
+    """
     dy, dx = drawn(rng, 17, 23)
     images = photographs(rng, scene(rng, fine=1.6), [(0, 0), (dy, dx)], (1, 1.5))
     came = finite(subject.align(images), (2, 2), what="the offsets")
@@ -93,12 +97,13 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "How far can an offset of n levels reach? 1 + 2 + 4 + ...",
-    "Each level doubles what the level above found, and adds at most 1.",
-    "Check that the coarsest level is used too, and that you double before you look around.",
-)
 def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
+    """How far can an offset of n levels reach? 1 + 2 + 4 + ...
+
+    Each level doubles what the level above found, and adds at most 1.
+
+    Check that the coarsest level is used too, and that you double before you look around.
+    """
     E, (dy, dx) = scene(rng), (int(rng.choice([-15, 15])), int(rng.choice([-15, 15])))
     came = finite(subject.align(photographs(rng, E, [(dy, dx), (0, 0)], (1, 2)), bits=4), (2, 2))
     same(came[0] - came[1], [dy, dx], 0, what="the offset at 4 bits")
@@ -107,12 +112,13 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
 
 
 @pytest.mark.points(6)
-@pytest.mark.hints(
-    "Neighbours in brightness have bitmaps that are alike; the darkest and the brightest have not.",
-    "The offsets of pairs are summed along the chain, away from the image in the middle.",
-    "Sort by brightness to make the pairs, and give the offsets back in the order that the images came in.",
-)
 def test_a_bracket_is_aligned_along_its_neighbours_to_the_one_in_the_middle(subject, rng):
+    """Neighbours in brightness have bitmaps that are alike; the darkest and the brightest have not.
+
+    The offsets of pairs are summed along the chain, away from the image in the middle.
+
+    Sort by brightness to make the pairs, and give the offsets back in the order that the images came in.
+    """
     true = np.cumsum(rng.integers(-7, 8, (5, 2)), axis=0)
     true -= true[2]
     images = photographs(rng, scene(rng), true, 2.0 ** np.arange(-2, 3))

@@ -28,12 +28,13 @@ def asked(subject, lL, **knobs):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "Halve the picture as long as its shorter side stays at 32 or more.",
-    "The coarsest comes first, the picture itself last.",
-    "128 x 144 pixels have three levels: 32, 64 and 128.",
-)
 def test_there_is_a_state_for_each_level(subject, rng):
+    """Halve the picture as long as its shorter side stays at 32 or more.
+
+    The coarsest comes first, the picture itself last.
+
+    128 x 144 pixels have three levels: 32, 64 and 128.
+    """
     lL = drawn(rng)
     came, _ = asked(subject, lL, alpha=0.1, beta=0.9)
     rows = np.array([np.shape(one[3])[0] for one in came])
@@ -41,12 +42,13 @@ def test_there_is_a_state_for_each_level(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "On a ramp every slope is the mean slope.",
-    "There phi = 1 / alpha^(1 - beta) ... or its inverse? Slopes above alpha times the mean are made less.",
-    "phi = (a / slope) (slope / a)^beta, a = alpha mean, and Phi multiplies the phi of all levels.",
-)
 def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
+    """On a ramp every slope is the mean slope.
+
+    There phi = 1 / alpha^(1 - beta) ... or its inverse? Slopes above alpha times the mean are made less.
+
+    phi = (a / slope) (slope / a)^beta, a = alpha mean, and Phi multiplies the phi of all levels.
+    """
     c = float(rng.uniform(0.01, 0.05))
     lL = np.broadcast_to(np.arange(160, dtype=np.float32) * np.float32(c), (128, 160)).copy()
     came, lPhi = asked(subject, lL, alpha=0.1, beta=0.9)
@@ -61,12 +63,13 @@ def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "With beta = 1 nothing is to change.",
-    "phi = (slope / a)^(beta - 1).",
-    "Another alpha multiplies all Phi by one number, for a is alpha times each level's own mean.",
-)
 def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
+    """With beta = 1 nothing is to change.
+
+    phi = (slope / a)^(beta - 1).
+
+    Another alpha multiplies all Phi by one number, for a is alpha times each level's own mean.
+    """
     lL = drawn(rng)
     _, none = asked(subject, lL, alpha=0.1, beta=1.0)
     same(none, np.zeros(lL.shape), 1e-3, what="ln Phi with beta = 1", picture=True)
@@ -81,12 +84,13 @@ def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Which slope belongs to which phi? Look at each level's picture beside its phi.",
-    "Phi_k = Phi_(k+1), enlarged, times phi_k: each level by its own slopes.",
-    "The mean, too, is that of the level's own slopes.",
-)
 def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
+    """Which slope belongs to which phi? Look at each level's picture beside its phi.
+
+    Phi_k = Phi_(k+1), enlarged, times phi_k: each level by its own slopes.
+
+    The mean, too, is that of the level's own slopes.
+    """
     lL = drawn(rng)
     came, _ = asked(subject, lL, alpha=0.1, beta=0.8)
     for one in came:
@@ -115,12 +119,13 @@ def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "Compare with the picture: dark in Phi is where the light jumps, at every scale.",
-    "Start at the coarsest level, enlarge, and multiply by the phi of the next finer one.",
-    "Enlarge by linear interpolation: repeated pixels leave blocks.",
-)
 def test_phi_of_the_picture_gathers_all_levels(subject, rng):
+    """Compare with the picture: dark in Phi is where the light jumps, at every scale.
+
+    Start at the coarsest level, enlarge, and multiply by the phi of the next finer one.
+
+    Enlarge by linear interpolation: repeated pixels leave blocks.
+    """
     lL = drawn(rng)
     _, lPhi = asked(subject, lL, alpha=0.1, beta=0.85)
     truth = np.log(list(fattal.attenuation_steps(lL, alpha=0.1, beta=0.85))[-1].Phi)

@@ -25,24 +25,26 @@ def asked(subject, Z, B, shown=None):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "Two things come back: E, and how it is known.",
-    "Z holds a column for each pixel: M of them.",
-    "E (M,) and flags (M,).",
-)
 def test_every_pixel_has_a_radiance_and_a_flag(subject, rng):
+    """Two things come back: E, and how it is known.
+
+    Z holds a column for each pixel: M of them.
+
+    E (M,) and flags (M,).
+    """
     Z, B = drawn(rng)
     E, flags = parts(subject.bound(Z, B, G, TOP, np.ones(Z.shape, bool)), 2)
     finite(E, (40,), what="E"), finite(flags, (40,), what="the flags")
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "Clipped in a frame of t seconds: the radiance is at least f^-1(top) / t.",
-    "Of several lower bounds the tightest counts, the largest: that of the shortest clipped frame.",
-    "ln E = max over the clipped frames of g[top] - B.",
-)
 def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
+    """Clipped in a frame of t seconds: the radiance is at least f^-1(top) / t.
+
+    Of several lower bounds the tightest counts, the largest: that of the shortest clipped frame.
+
+    ln E = max over the clipped frames of g[top] - B.
+    """
     _, B = drawn(rng)
     Z = rng.integers(TOP, 256, (3, 20))
     lE, _ = asked(subject, Z, B)
@@ -53,36 +55,39 @@ def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Dark in a frame of t seconds: the radiance is at most f^-1(1) / t.",
-    "Of several upper bounds the tightest counts, the least: that of the longest dark frame.",
-    "ln E = min over the dark frames of g[1] - B.",
-)
 def test_dark_in_all_frames_is_the_bound_of_the_longest(subject, rng):
+    """Dark in a frame of t seconds: the radiance is at most f^-1(1) / t.
+
+    Of several upper bounds the tightest counts, the least: that of the longest dark frame.
+
+    ln E = min over the dark frames of g[1] - B.
+    """
     _, B = drawn(rng)
     lE, _ = asked(subject, np.zeros((3, 20), int), B)
     same(lE, np.full(20, G[1] - B[-1]), 1e-3, what="ln E of dark pixels")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Dark in one frame and clipped in the next: the truth lies between two bounds.",
-    "Between means between the logarithms: radiance is a matter of factors.",
-    "ln E = (lower + upper) / 2.",
-)
 def test_between_two_bounds_is_the_middle_of_their_logarithms(subject, rng):
+    """Dark in one frame and clipped in the next: the truth lies between two bounds.
+
+    Between means between the logarithms: radiance is a matter of factors.
+
+    ln E = (lower + upper) / 2.
+    """
     Z, B = drawn(rng)
     truth = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[0]
     same(asked(subject, Z, B)[0], np.log(truth), 1e-3, what="ln E")
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "A frame that does not show the pixel says nothing of it.",
-    "`shown` is False there: neither clipped nor dark.",
-    "clipped = shown & (Z >= top), dark = shown & (Z == 0).",
-)
 def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
+    """A frame that does not show the pixel says nothing of it.
+
+    `shown` is False there: neither clipped nor dark.
+
+    clipped = shown & (Z >= top), dark = shown & (Z == 0).
+    """
     Z, B = drawn(rng)
     shown = np.ones(Z.shape, bool)
     shown[0] = False
@@ -91,12 +96,13 @@ def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "The second answer says how each pixel is known.",
-    "1 is clipped, 2 is dark, and 3 is both.",
-    "1 * clipped + 2 * dark, and 8 where neither.",
-)
 def test_the_flags_say_what_stood_in_the_way(subject, rng):
+    """The second answer says how each pixel is known.
+
+    1 is clipped, 2 is dark, and 3 is both.
+
+    1 * clipped + 2 * dark, and 8 where neither.
+    """
     Z, B = drawn(rng)
     flags = bound(Z, B, G, TOP, np.ones(Z.shape, bool))[1]
     same(asked(subject, Z, B)[1], flags, 0, what="the flags")

@@ -14,12 +14,13 @@ def drawn(rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "The range of the base, high - low decades, is to become c = log10(contrast) decades.",
-    "m = c / (high - low), and all logarithms have the base 10.",
-    "A natural logarithm would make c larger by a factor of 2.3.",
-)
 def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
+    """The range of the base, high - low decades, is to become c = log10(contrast) decades.
+
+    m = c / (high - low), and all logarithms have the base 10.
+
+    A natural logarithm would make c larger by a factor of 2.3.
+    """
     base, low, high = drawn(rng)
     for contrast in (50.0, 10.0):
         m = np.log10(contrast) / (high - low)
@@ -34,24 +35,26 @@ def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Where does the bright end of the base go?",
-    "White is 1, whose logarithm is 0.",
-    "Subtract high from the base before you multiply.",
-)
 def test_the_bright_end_becomes_white(subject, rng):
+    """Where does the bright end of the base go?
+
+    White is 1, whose logarithm is 0.
+
+    Subtract high from the base before you multiply.
+    """
     base, low, high = drawn(rng)
     ends = np.array([[low, high]], np.float32)
     same(subject.compressed(ends, low, high, contrast=50.0), [[-np.log10(50), 0]], 1e-3, what="low and high")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "A scene of little contrast: what does your m do to it?",
-    "No scene is stretched.",
-    "m is at most 1.",
-)
 def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
+    """A scene of little contrast: what does your m do to it?
+
+    No scene is stretched.
+
+    m is at most 1.
+    """
     base, low, high = drawn(rng)
     flat, high = low + (base - low) / 10, low + (high - low) / 10
     same(subject.compressed(flat, low, high, contrast=50.0), flat - high, 1e-3, what="the base", picture=True)

@@ -14,35 +14,38 @@ def drawn(rng):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "How many photographs can there be at least?",
-    "Return a whole number.",
-    "One photograph holds the stop.",
-)
 def test_a_scene_of_a_stop_takes_one_photograph(subject, rng):
+    """How many photographs can there be at least?
+
+    Return a whole number.
+
+    One photograph holds the stop.
+    """
     _, usable, overlap = drawn(rng)
     same(subject.count(0.4, usable, overlap), 1, 0, what="photographs for 0.4 stops")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "What does one photograph hold, if the scene has no more stops than that?",
-    "The formula goes below 1 for a scene of few stops.",
-    "At least one photograph: max(1, ...).",
-)
 def test_a_scene_that_one_photograph_holds_takes_one(subject, rng):
+    """What does one photograph hold, if the scene has no more stops than that?
+
+    The formula goes below 1 for a scene of few stops.
+
+    At least one photograph: max(1, ...).
+    """
     _, usable, overlap = drawn(rng)
     for scene in (0.5, usable / 2, usable - 0.01):
         same(subject.count(scene, usable, overlap), 1, 0, what=f"photographs for {scene:.2f} stops")
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Lay the photographs' ranges along the scene's: how far does each next one reach beyond the last?",
-    "Each next one adds usable - overlap stops.",
-    "n = 1 + ceil((scene - usable) / (usable - overlap)).",
-)
 def test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many(subject, rng):
+    """Lay the photographs' ranges along the scene's: how far does each next one reach beyond the last?
+
+    Each next one adds usable - overlap stops.
+
+    n = 1 + ceil((scene - usable) / (usable - overlap)).
+    """
     for _ in range(8):
         scene, usable, overlap = drawn(rng)
         n = float(subject.count(scene, usable, overlap))
@@ -54,12 +57,13 @@ def test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many(subject, 
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Neighbours share the overlap, or nothing ties them together.",
-    "More overlap takes more photographs.",
-    "The step is what a photograph holds less the overlap.",
-)
 def test_more_overlap_takes_more_photographs(subject, rng):
+    """Neighbours share the overlap, or nothing ties them together.
+
+    More overlap takes more photographs.
+
+    The step is what a photograph holds less the overlap.
+    """
     scene, usable = float(rng.uniform(16, 24)), 7.0
     for overlap in (1.0, 3.0, 5.0, 6.0):
         expected = 1 + math.ceil((scene - usable) / (usable - overlap))

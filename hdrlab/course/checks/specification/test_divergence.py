@@ -21,23 +21,25 @@ def gradient(u):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "Two components go in, one number for each pixel comes out.",
-    "G is (2, H, W), the answer (H, W).",
-    "A field that is 0 has a divergence that is 0.",
-)
 def test_every_pixel_has_a_finite_divergence(subject, rng):
+    """Two components go in, one number for each pixel comes out.
+
+    G is (2, H, W), the answer (H, W).
+
+    A field that is 0 has a divergence that is 0.
+    """
     finite(subject.divergence(field(rng)), (12, 17), what="div G")
     same(subject.divergence(np.zeros((2, 5, 6))), np.zeros((5, 6)), 1e-9, what="the divergence of nothing")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "The gradient looks forward: in which direction must the divergence look?",
-    "Backward differences: Gy(y, x) - Gy(y - 1, x) + Gx(y, x) - Gx(y, x - 1).",
-    "At the first row and column there is nothing before: only Gy(0, x), only Gx(y, 0).",
-)
 def test_the_divergence_of_a_gradient_is_the_laplacian_of_its_picture(subject, rng):
+    """The gradient looks forward: in which direction must the divergence look?
+
+    Backward differences: Gy(y, x) - Gy(y - 1, x) + Gx(y, x) - Gx(y, x - 1).
+
+    At the first row and column there is nothing before: only Gy(0, x), only Gx(y, 0).
+    """
     u = rng.standard_normal((12, 17))
     wide = np.pad(u, 1, mode="edge")
     laplacian = wide[2:, 1:-1] + wide[:-2, 1:-1] + wide[1:-1, 2:] + wide[1:-1, :-2] - 4 * u
@@ -45,12 +47,13 @@ def test_the_divergence_of_a_gradient_is_the_laplacian_of_its_picture(subject, r
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Nothing flows through the edges: what flows out of one pixel flows into the next.",
-    "The divergence of any field sums to 0.",
-    "It is minus the transpose of the gradient.",
-)
 def test_it_sums_to_0_and_is_minus_the_transpose_of_the_gradient(subject, rng):
+    """Nothing flows through the edges: what flows out of one pixel flows into the next.
+
+    The divergence of any field sums to 0.
+
+    It is minus the transpose of the gradient.
+    """
     G, u = field(rng), rng.standard_normal((12, 17))
     f = same(subject.divergence(G), np.zeros((12, 17)), 100.0, what="div G")
     same(float(f.sum()), 0.0, 1e-3, what="the sum of div G")

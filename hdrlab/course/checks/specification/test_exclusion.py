@@ -9,12 +9,13 @@ CODES = np.arange(256, dtype=np.uint8)[None]
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "The answer has the shape of the picture.",
-    "True or False, or 1 or 0, for every pixel.",
-    "A comparison of arrays gives an array of bool.",
-)
 def test_it_says_yes_or_no_for_every_pixel(subject, rng):
+    """The answer has the shape of the picture.
+
+    True or False, or 1 or 0, for every pixel.
+
+    A comparison of arrays gives an array of bool.
+    """
     Y = rng.integers(0, 256, (6, 9), dtype=np.uint8)
     came = finite(subject.exclusion(Y, 120), (6, 9), what="where Y is compared")
     if not np.isin(came, [0, 1]).all():
@@ -22,12 +23,13 @@ def test_it_says_yes_or_no_for_every_pixel(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Is the bitmap True where a pixel is compared, or where it is left out?",
-    "Noise decides the bit of a pixel close to the threshold; such a pixel must not be compared.",
-    "|Y - t| > 4.",
-)
 def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
+    """Is the bitmap True where a pixel is compared, or where it is left out?
+
+    Noise decides the bit of a pixel close to the threshold; such a pixel must not be compared.
+
+    |Y - t| > 4.
+    """
     t = int(rng.integers(20, 230))
     far = np.abs(CODES.astype(int) - t) > 12
     close = CODES == t
@@ -35,23 +37,25 @@ def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Write down by hand what happens to the codes t - 5, t - 4, t + 4 and t + 5.",
-    "Four codes on either side are left out, and t itself.",
-    "> 4 and not >= 4.",
-)
 def test_it_leaves_out_the_four_codes_on_either_side(subject, rng):
+    """Write down by hand what happens to the codes t - 5, t - 4, t + 4 and t + 5.
+
+    Four codes on either side are left out, and t itself.
+
+    > 4 and not >= 4.
+    """
     t = int(rng.integers(20, 230))
     same(subject.exclusion(CODES, t), np.abs(CODES.astype(int) - t) > 4, 0, what="where Y is compared")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "What is 3 - 5 in uint8?",
-    "Codes of one byte cannot be negative: a difference wraps around to 254.",
-    "Turn Y into int before you subtract, or compare with t - 4 and t + 4.",
-)
 def test_bytes_do_not_wrap_around(subject, rng):
+    """What is 3 - 5 in uint8?
+
+    Codes of one byte cannot be negative: a difference wraps around to 254.
+
+    Turn Y into int before you subtract, or compare with t - 4 and t + 4.
+    """
     Y = rng.integers(0, 256, (30, 40), dtype=np.uint8)
     for t in (2, 250):
         expected = np.abs(Y.astype(int) - t) > 4

@@ -31,23 +31,25 @@ def same_curve(came, expected, tolerance=0.02):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "Two things come back: g and lE.",
-    "g has an entry for each level, lE one for each sample.",
-    "Split the solution x at n: x[:n] and x[n:].",
-)
 def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
+    """Two things come back: g and lE.
+
+    g has an entry for each level, lE one for each sample.
+
+    Split the solution x at n: x[:n] and x[n:].
+    """
     Z, B = samples(rng, N=40)
     asked(subject, Z, B, 30.0, HAT)
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Every sample in every frame gives one row, w (g(Z) - lE) = w B.",
-    "Column Z[i, j] holds w, column n + i holds -w, and the right-hand side w B[j], B in natural logarithms.",
-    "Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.",
-)
 def test_the_curve_of_a_film_camera_comes_out(subject, rng):
+    """Every sample in every frame gives one row, w (g(Z) - lE) = w B.
+
+    Column Z[i, j] holds w, column n + i holds -w, and the right-hand side w B[j], B in natural logarithms.
+
+    Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.
+    """
     Z, B = samples(rng, N=100, noise=0)
     g, _ = asked(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
@@ -55,12 +57,13 @@ def test_the_curve_of_a_film_camera_comes_out(subject, rng):
 
 
 @pytest.mark.points(6)
-@pytest.mark.hints(
-    "Weights multiply whole rows: the left-hand side and the right-hand side.",
-    "The smoothness row of level z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0: lambda, and w(z) too.",
-    "Count your rows: N P of data, one for the gauge, n - 2 of smoothness.",
-)
 def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
+    """Weights multiply whole rows: the left-hand side and the right-hand side.
+
+    The smoothness row of level z is lambda w(z) (g(z - 1) - 2 g(z) + g(z + 1)) = 0: lambda, and w(z) too.
+
+    Count your rows: N P of data, one for the gauge, n - 2 of smoothness.
+    """
     Z, B = samples(rng)
     g, lE = asked(subject, Z, B, 30.0, HAT)
     truth = debevec.gsolve(Z, B, 30.0, HAT)
@@ -69,12 +72,13 @@ def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "What happens to your curve when the knob is turned from 1 to 300?",
-    "The printed listing shows a digit where lambda belongs.",
-    "Multiply every smoothness row by `smoothness`, once: a larger one makes g straighter.",
-)
 def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subject, rng):
+    """What happens to your curve when the knob is turned from 1 to 300?
+
+    The printed listing shows a digit where lambda belongs.
+
+    Multiply every smoothness row by `smoothness`, once: a larger one makes g straighter.
+    """
     Z, B = samples(rng, N=40)
     bends, misses = [], []
     for smoothness in (1.0, 10.0, 100.0, 1000.0):
@@ -86,12 +90,13 @@ def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subjec
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Does any line of yours look at the order of the frames?",
-    "B[j] belongs to column j of Z, wherever that column stands.",
-    "Do not sort Z or B by themselves.",
-)
 def test_the_order_of_the_frames_does_not_matter(subject, rng):
+    """Does any line of yours look at the order of the frames?
+
+    B[j] belongs to column j of Z, wherever that column stands.
+
+    Do not sort Z or B by themselves.
+    """
     Z, B = samples(rng, N=40)
     order = rng.permutation(len(B))
     g, _ = asked(subject, Z[:, order], B[order], 30.0, HAT)
@@ -99,12 +104,13 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Twice the time in every frame is half the irradiance, and the same curve.",
-    "A constant added to B must come out of lE, and leave g alone.",
-    "The right-hand side is w B[j]: B as it is given, neither its logarithm nor its exponential.",
-)
 def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
+    """Twice the time in every frame is half the irradiance, and the same curve.
+
+    A constant added to B must come out of lE, and leave g alone.
+
+    The right-hand side is w B[j]: B as it is given, neither its logarithm nor its exponential.
+    """
     Z, B = samples(rng, N=40)
     g, lE = asked(subject, Z, B + np.log(1000.0), 30.0, HAT)
     truth = debevec.gsolve(Z, B, 30.0, HAT)
@@ -113,12 +119,13 @@ def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Is there a 256 in your code? The weights say how many levels there are.",
-    "n = len(w); the gauge sits at level n // 2.",
-    "The unknowns are g (n,) and then lE (N,): n + N columns.",
-)
 def test_any_number_of_levels_will_do(subject, rng):
+    """Is there a 256 in your code? The weights say how many levels there are.
+
+    n = len(w); the gauge sits at level n // 2.
+
+    The unknowns are g (n,) and then lE (N,): n + N columns.
+    """
     Z, B = samples(rng, N=30)
     w = weights.hat(16)
     g, _ = asked(subject, Z // 16, B, 3.0, w)

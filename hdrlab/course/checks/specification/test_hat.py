@@ -25,12 +25,13 @@ def some(rng):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "As many weights as levels.",
-    "An array (n,), from level 0 to n - 1.",
-    "No weight is below 0.",
-)
 def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
+    """As many weights as levels.
+
+    An array (n,), from level 0 to n - 1.
+
+    No weight is below 0.
+    """
     n = some(rng)
     w = finite(subject.hat(n), (n,), what="w")
     if not (w >= 0).all():
@@ -38,12 +39,13 @@ def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Which levels does a photograph tell best: the ends of its range, or the middle?",
-    "A level is trusted the less the closer it is to 0 or to the top, 255 where there are 256.",
-    "w(z) = z below the middle, and n - 1 - z above it.",
-)
 def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng):
+    """Which levels does a photograph tell best: the ends of its range, or the middle?
+
+    A level is trusted the less the closer it is to 0 or to the top, 255 where there are 256.
+
+    w(z) = z below the middle, and n - 1 - z above it.
+    """
     n = some(rng)
     w = asked(subject, n)
     if not (np.all(np.diff(w[: n // 2]) > 0) and np.all(np.diff(w[n // 2 :]) < 0)):
@@ -51,12 +53,13 @@ def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "What does a pixel of the lowest level say of the light? And one of the highest?",
-    'Only "at most" and "at least": they measure nothing, and count nothing.',
-    "w(0) = w(n - 1) = 0: do not add 1.",
-)
 def test_clipped_levels_do_not_count(subject, rng):
+    """What does a pixel of the lowest level say of the light? And one of the highest?
+
+    Only "at most" and "at least": they measure nothing, and count nothing.
+
+    w(0) = w(n - 1) = 0: do not add 1.
+    """
     n = some(rng)
     w = asked(subject, n)
     same(w[[0, -1]], [0, 0], 1e-6, what=f"the weights of levels 0 and {n - 1}")
@@ -64,11 +67,12 @@ def test_clipped_levels_do_not_count(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "How many levels has a photograph of 16 bits?",
-    "n says how many: is there a 255 or a 128 in your code?",
-    "z = arange(n), and the top level is n - 1.",
-)
 def test_any_number_of_levels_will_do(subject, rng):
+    """How many levels has a photograph of 16 bits?
+
+    n says how many: is there a 255 or a 128 in your code?
+
+    z = arange(n), and the top level is n - 1.
+    """
     for n in (2 * int(rng.integers(10, 60)), 65536):
         same(asked(subject, n), hat(n), 1e-3, what=f"w of {n} levels", kind="curve")

@@ -16,23 +16,25 @@ def drawn(rng, N=300, P=4):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "One number for each sample, and not for each frame.",
-    "Sum over the frames, which are the second axis of Z.",
-    "The answer is E (N,).",
-)
 def test_every_sample_has_an_irradiance(subject, rng):
+    """One number for each sample, and not for each frame.
+
+    Sum over the frames, which are the second axis of Z.
+
+    The answer is E (N,).
+    """
     Z, t, f = drawn(rng)
     finite(subject.irradiance(Z.clip(20, 230), t, f, HAT), (300,), what="E")
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Divide one sum by another, both over the frames.",
-    "Above stands sum w f t: the time is there too.",
-    "E = sum_j w f(Z_ij) t_j / sum_j w t_j^2, the time squared below.",
-)
 def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
+    """Divide one sum by another, both over the frames.
+
+    Above stands sum w f t: the time is there too.
+
+    E = sum_j w f(Z_ij) t_j / sum_j w t_j^2, the time squared below.
+    """
     Z, t, f = drawn(rng)
     truth = robertson.irradiance(Z, t, f, HAT)
     seen = HAT[Z].sum(axis=1) > 0.05
@@ -40,12 +42,13 @@ def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Where every frame says the same E, the mean is that E.",
-    "f(Z_ij) = E_i t_j in every frame: put that into your formula.",
-    "Weights and times must cancel: what stands above must stand below with f = E t divided by E.",
-)
 def test_frames_that_agree_give_what_they_agree_on(subject, rng):
+    """Where every frame says the same E, the mean is that E.
+
+    f(Z_ij) = E_i t_j in every frame: put that into your formula.
+
+    Weights and times must cancel: what stands above must stand below with f = E t divided by E.
+    """
     f, t = np.arange(256) / 128.0, np.array([1.0, 2.0, 4.0])
     x = rng.integers(3, 60, 50)
     Z = np.stack([x, 2 * x, 4 * x], axis=1)
@@ -53,12 +56,13 @@ def test_frames_that_agree_give_what_they_agree_on(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Twice the time for the same photographs is half the light.",
-    "Replace t by 2 t in the quotient.",
-    "The time stands once above, and squared below.",
-)
 def test_twice_the_time_is_half_the_irradiance(subject, rng):
+    """Twice the time for the same photographs is half the light.
+
+    Replace t by 2 t in the quotient.
+
+    The time stands once above, and squared below.
+    """
     Z, t, f = drawn(rng)
     truth = robertson.irradiance(Z, t, f, HAT)
     seen = HAT[Z].sum(axis=1) > 0.05
@@ -66,12 +70,13 @@ def test_twice_the_time_is_half_the_irradiance(subject, rng):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "What is known of a sample that is clipped in all frames?",
-    "Nothing: 0 / 0.",
-    "NaN is the number that says so; 0 would be a dark hole.",
-)
 def test_a_sample_that_no_frame_saw_well_is_nan(subject, rng):
+    """What is known of a sample that is clipped in all frames?
+
+    Nothing: 0 / 0.
+
+    NaN is the number that says so; 0 would be a dark hole.
+    """
     _, t, f = drawn(rng)
     Z = np.array([[0, 0, 255, 255], [100, 150, 200, 250]])
     expected = [np.nan, robertson.irradiance(Z[1:], t, f, HAT)[0]]

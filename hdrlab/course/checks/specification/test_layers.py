@@ -23,24 +23,26 @@ def asked(subject, lL, **knobs):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Base and detail together are the picture.",
-    "The overview prints the difference the other way round.",
-    "detail = lL - base.",
-)
 def test_the_layers_add_up_to_the_picture(subject, rng):
+    """Base and detail together are the picture.
+
+    The overview prints the difference the other way round.
+
+    detail = lL - base.
+    """
     lL = drawn(rng)
     base, detail = asked(subject, lL)
     same(base + detail, lL, 1e-3, what="base + detail", picture=True)
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Each pixel of the base is a weighted mean of its neighbours.",
-    "Two Gaussians multiply: one of the distance, one of the difference in lL.",
-    "Divide by the sum of the weights; the exponents are -d^2 / (2 sigma^2).",
-)
 def test_the_base_is_the_bilateral_filter(subject, rng):
+    """Each pixel of the base is a weighted mean of its neighbours.
+
+    Two Gaussians multiply: one of the distance, one of the difference in lL.
+
+    Divide by the sum of the weights; the exponents are -d^2 / (2 sigma^2).
+    """
     lL = drawn(rng)
     found = bilateral(lL, **SIGMA)
     base, _ = asked(subject, lL)
@@ -48,12 +50,13 @@ def test_the_base_is_the_bilateral_filter(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Plot a row of the base across the edge.",
-    "A plain blur washes the edge out, and makes a halo.",
-    "A neighbour that differs by much more than sigma_r has hardly any weight.",
-)
 def test_an_edge_of_light_stays_in_the_base_and_out_of_the_detail(subject, rng):
+    """Plot a row of the base across the edge.
+
+    A plain blur washes the edge out, and makes a halo.
+
+    A neighbour that differs by much more than sigma_r has hardly any weight.
+    """
     lL = drawn(rng, texture=0.0)
     base, detail = asked(subject, lL)
     same(base, lL, 0.03, what="the base of two even walls", picture=True)
@@ -61,12 +64,13 @@ def test_an_edge_of_light_stays_in_the_base_and_out_of_the_detail(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Twice the light adds a constant to lL. What should it add to the base?",
-    "The weights depend on differences alone.",
-    "No logarithm is taken here: lL is one already.",
-)
 def test_another_exposure_moves_the_base_and_leaves_the_detail(subject, rng):
+    """Twice the light adds a constant to lL. What should it add to the base?
+
+    The weights depend on differences alone.
+
+    No logarithm is taken here: lL is one already.
+    """
     lL = drawn(rng)
     (base, detail), (moved, same_detail) = asked(subject, lL), asked(subject, lL + np.float32(1.3))
     same(moved - base, np.full(lL.shape, 1.3), 0.02, what="what 20 times the light adds to the base")

@@ -11,22 +11,24 @@ def drawn(rng):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "One number for the whole picture.",
-    "Not one for each row.",
-    "np.mean without an axis.",
-)
 def test_a_scene_has_one_average(subject, rng):
+    """One number for the whole picture.
+
+    Not one for each row.
+
+    np.mean without an axis.
+    """
     finite(subject.log_average(drawn(rng) + np.float32(1)), (), what="Lav")
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "One lamp must not decide how bright the whole scene is.",
-    "The mean of the logarithms, not the logarithm of the mean.",
-    "exp(mean(log(delta + L))): the paper's 1 / N stands inside exp.",
-)
 def test_it_is_the_geometric_mean(subject, rng):
+    """One lamp must not decide how bright the whole scene is.
+
+    The mean of the logarithms, not the logarithm of the mean.
+
+    exp(mean(log(delta + L))): the paper's 1 / N stands inside exp.
+    """
     L = drawn(rng)
     truth = np.exp(np.log(L, dtype=float).mean())
     same(np.log(finite(subject.log_average(L), (), what="Lav")), np.log(truth), 1e-3, what="ln Lav")
@@ -38,12 +40,13 @@ def test_it_is_the_geometric_mean(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "What is log 0?",
-    "A small delta is added, so that black has a logarithm.",
-    "log(delta + L), with the delta inside.",
-)
 def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
+    """What is log 0?
+
+    A small delta is added, so that black has a logarithm.
+
+    log(delta + L), with the delta inside.
+    """
     L = drawn(rng)
     L[:4] = 0
     came = float(finite(subject.log_average(L), (), what="Lav"))
@@ -52,12 +55,13 @@ def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Ten times the light: which number should come?",
-    "The unit of L is the unit of Lav.",
-    "Do not forget exp at the end.",
-)
 def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
+    """Ten times the light: which number should come?
+
+    The unit of L is the unit of Lav.
+
+    Do not forget exp at the end.
+    """
     L = drawn(rng)
     one, ten = (float(finite(subject.log_average(L * np.float32(k)), (), what="Lav")) for k in (1, 10))
     same(ten / one, 10.0, 0.01, what="Lav of 10 L, over that of L")

@@ -34,12 +34,13 @@ def same_map(came, truth, tolerance=0.01, **knobs):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "The map has the size of a photograph.",
-    "Sum over the frames, the first axis.",
-    "Nothing in it may be NaN, infinite or below 0.",
-)
 def test_every_pixel_has_a_finite_radiance(subject, rng):
+    """The map has the size of a photograph.
+
+    Sum over the frames, the first axis.
+
+    Nothing in it may be NaN, infinite or below 0.
+    """
     images = photographs(rng, smooth(rng))
     E = finite(subject.merge(images, TIMES, G), images.shape[1:], what="E")
     if not (E >= 0).all():
@@ -47,23 +48,25 @@ def test_every_pixel_has_a_finite_radiance(subject, rng):
 
 
 @pytest.mark.points(8)
-@pytest.mark.hints(
-    "Divide by the sum of the weights, not by the number of frames.",
-    "Each frame says ln E = g(Z) - ln t; the natural logarithm, as in g.",
-    "ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j), and E = exp(ln E).",
-)
 def test_it_is_the_weighted_mean_of_the_logarithms(subject, rng):
+    """Divide by the sum of the weights, not by the number of frames.
+
+    Each frame says ln E = g(Z) - ln t; the natural logarithm, as in g.
+
+    ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j), and E = exp(ln E).
+    """
     images = photographs(rng, smooth(rng))
     same_map(subject.merge(images, TIMES, G), merge(images, TIMES, G))
 
 
 @pytest.mark.points(6)
-@pytest.mark.hints(
-    "Compare your map with the scene that the photographs were made of, not only by its looks.",
-    "A pixel of level 128 in a frame of 2 seconds has radiance exp(g[128]) / 2.",
-    "Is the exposure time subtracted as a natural logarithm, from each frame its own?",
-)
 def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
+    """Compare your map with the scene that the photographs were made of, not only by its looks.
+
+    A pixel of level 128 in a frame of 2 seconds has radiance exp(g[128]) / 2.
+
+    Is the exposure time subtracted as a natural logarithm, from each frame its own?
+    """
     E = np.float32(2.0 ** rng.uniform(-3, 3)) * smooth(rng)
     times = camera.times_around(E, 7, stops=1)
     taken = camera.shoot(E, times, camera.Camera(response="gamma"))
@@ -75,48 +78,52 @@ def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "Two frames may disagree. Whom does the map believe, and how much?",
-    "The argument w holds the weights; None stands for the hat.",
-    "Look up w[Z] for each pixel and frame, of the w that is given.",
-)
 def test_the_weights_that_are_given_are_used(subject, rng):
+    """Two frames may disagree. Whom does the map believe, and how much?
+
+    The argument w holds the weights; None stands for the hat.
+
+    Look up w[Z] for each pixel and frame, of the w that is given.
+    """
     images = photographs(rng, smooth(rng))
     for w in (weights.gaussian(), 0.05 + np.linspace(0, 1, 256) ** 2):
         same_map(subject.merge(images, TIMES, G, w), merge(images, TIMES, G, w))
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Does any line of yours take the first frame for the shortest?",
-    "times[j] belongs to images[j].",
-    "Sort both together, or neither.",
-)
 def test_the_order_of_the_frames_does_not_matter(subject, rng):
+    """Does any line of yours take the first frame for the shortest?
+
+    times[j] belongs to images[j].
+
+    Sort both together, or neither.
+    """
     images = photographs(rng, smooth(rng))
     order = [1, 2, 0]
     same_map(subject.merge(images[order], TIMES[order], G), merge(images, TIMES, G))
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Colour photographs are (P, H, W, 3).",
-    "Every channel is merged by the same formula; g may be (256, 3), a curve each.",
-    "g[Z[..., c], c] looks up the channel's own curve.",
-)
 def test_each_channel_is_read_by_its_own_curve(subject, rng):
+    """Colour photographs are (P, H, W, 3).
+
+    Every channel is merged by the same formula; g may be (256, 3), a curve each.
+
+    g[Z[..., c], c] looks up the channel's own curve.
+    """
     images = np.stack([photographs(rng, smooth(rng)) for _ in range(3)], axis=-1)
     g = np.stack([G, responses.true_g("linear"), responses.true_g("film")], axis=-1)
     same_map(subject.merge(images, TIMES, g), merge(images, TIMES, g))
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "The lamp is clipped in every frame: its weights are all 0, and 0 / 0 is no radiance.",
-    "The shortest frame says the most: at least as bright as its highest level that is not clipped.",
-    "Where no frame measures a pixel that is clipped, take exp(g[top]) / t of the shortest frame.",
-)
 def test_a_clipped_sun_is_not_darker_than_the_sky_beside_it(subject, rng):
+    """The lamp is clipped in every frame: its weights are all 0, and 0 / 0 is no radiance.
+
+    The shortest frame says the most: at least as bright as its highest level that is not clipped.
+
+    Where no frame measures a pixel that is clipped, take exp(g[top]) / t of the shortest frame.
+    """
     E = smooth(rng)
     images = photographs(rng, E)
     y, x = int(rng.integers(8, 36)), int(rng.integers(8, 50))
@@ -137,12 +144,13 @@ def test_a_clipped_sun_is_not_darker_than_the_sky_beside_it(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "And a corner that is black in every frame?",
-    "The longest frame says the most: at most as bright as its first level.",
-    "Whatever you take, it must be finite, and darker than what any frame measured.",
-)
 def test_a_corner_that_is_black_in_all_frames_stays_dark_and_finite(subject, rng):
+    """And a corner that is black in every frame?
+
+    The longest frame says the most: at most as bright as its first level.
+
+    Whatever you take, it must be finite, and darker than what any frame measured.
+    """
     images = photographs(rng, smooth(rng))
     images[:, :6, :6] = 0
     came = finite(subject.merge(images, TIMES, G), images.shape[1:], what="E").astype(float)

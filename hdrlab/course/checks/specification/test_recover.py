@@ -36,35 +36,38 @@ def same_curve(g, response, tolerance):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "One number for each of 256 levels.",
-    "ln 0 is not finite: what stands at level 0?",
-    "Give level 0 a part of what level 1 has.",
-)
 def test_every_level_has_a_finite_g(subject, rng):
+    """One number for each of 256 levels.
+
+    ln 0 is not finite: what stands at level 0?
+
+    Give level 0 a part of what level 1 has.
+    """
     taken = photographs(rng, "linear", frames=3)
     asked(subject, taken.images, taken.times, order=3)
 
 
 @pytest.mark.points(7)
-@pytest.mark.hints(
-    "Plot f over M, from 0 to 1: it goes through (0, 0) and (1, 1).",
-    "With known ratios R the error sum (f(M_q) - R f(M_q+1))^2 is least squares in the coefficients.",
-    "Use samples between 0.05 and 0.98 in both frames alone, and let f(1) = 1 fix the scale.",
-)
 def test_the_curve_of_a_camera_comes_out(subject, rng):
+    """Plot f over M, from 0 to 1: it goes through (0, 0) and (1, 1).
+
+    With known ratios R the error sum (f(M_q) - R f(M_q+1))^2 is least squares in the coefficients.
+
+    Use samples between 0.05 and 0.98 in both frames alone, and let f(1) = 1 fix the scale.
+    """
     for response in ("linear", "gamma"):
         taken = photographs(rng, response)
         same_curve(asked(subject, taken.images, taken.times, order=5), response, 0.025)
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "The ratio in eq. 5 is that of a frame to the next longer one: below 1.",
-    "R = t_q / t_q+1, and not its inverse.",
-    "Sort the frames by their times first.",
-)
 def test_frames_in_another_order_give_the_same_curve(subject, rng):
+    """The ratio in eq. 5 is that of a frame to the next longer one: below 1.
+
+    R = t_q / t_q+1, and not its inverse.
+
+    Sort the frames by their times first.
+    """
     taken = photographs(rng, "gamma")
     order = rng.permutation(len(taken.times))
     shuffled = asked(subject, taken.images[order], taken.times[order], order=5)
@@ -72,12 +75,13 @@ def test_frames_in_another_order_give_the_same_curve(subject, rng):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "The method takes the times for rough. Which quantity does it correct?",
-    "With the curve known, R is the quotient of the sums of f over the two frames.",
-    "Take turns: coefficients, ratios, coefficients, until f moves by less than eps.",
-)
 def test_rough_times_are_corrected(subject, rng):
+    """The method takes the times for rough. Which quantity does it correct?
+
+    With the curve known, R is the quotient of the sums of f over the two frames.
+
+    Take turns: coefficients, ratios, coefficients, until f moves by less than eps.
+    """
     taken = photographs(rng, "linear", frames=4)
     rough = taken.times * 1.1 ** np.arange(4)  # each a tenth more than it says
     g = asked(subject, taken.images, rough, order=3)
@@ -85,12 +89,13 @@ def test_rough_times_are_corrected(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "A level that is brighter can never mean less light.",
-    "ln f needs f above 0, and g that rises.",
-    "Clamp the increments of f from level to level before you take the logarithm.",
-)
 def test_the_curve_rises_at_all_levels(subject, rng):
+    """A level that is brighter can never mean less light.
+
+    ln f needs f above 0, and g that rises.
+
+    Clamp the increments of f from level to level before you take the logarithm.
+    """
     for response in ("gamma", "film"):
         taken = photographs(rng, response)
         g = asked(subject, taken.images, taken.times, order=6)
@@ -100,12 +105,13 @@ def test_the_curve_rises_at_all_levels(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Each channel has its own curve.",
-    "g of colour photographs is (256, 3).",
-    "Gray is what comes out in each of three equal channels.",
-)
 def test_three_equal_channels_have_the_curve_of_gray(subject, rng):
+    """Each channel has its own curve.
+
+    g of colour photographs is (256, 3).
+
+    Gray is what comes out in each of three equal channels.
+    """
     taken = photographs(rng, "gamma", frames=4)
     rgb = asked(subject, np.stack([taken.images] * 3, axis=-1), taken.times, (3,), order=5)
     gray = asked(subject, taken.images, taken.times, order=5)

@@ -40,12 +40,13 @@ def asked(subject, Z, t, **knobs):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "Plot f after every turn: where does it go?",
-    "One turn: E from f, then f from E, then divide f by f(128).",
-    "Let the turns go on until f hardly changes; about thirty are enough.",
-)
 def test_the_turns_end_at_the_curve_of_the_camera(subject, rng):
+    """Plot f after every turn: where does it go?
+
+    One turn: E from f, then f from E, then divide f by f(128).
+
+    Let the turns go on until f hardly changes; about thirty are enough.
+    """
     for response in ("gamma", "film"):
         Z, t = samples(rng, response)
         f = asked(subject, Z, t, turns=25)[-1]
@@ -55,12 +56,13 @@ def test_the_turns_end_at_the_curve_of_the_camera(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "A turn is two means, one after the other. Which of them has weights?",
-    "The irradiance is a weighted mean; the new f(m) is the plain mean of E t over the pixels of level m.",
-    "Do not weight the update: all its pixels have one level.",
-)
 def test_one_turn_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
+    """A turn is two means, one after the other. Which of them has weights?
+
+    The irradiance is a weighted mean; the new f(m) is the plain mean of E t over the pixels of level m.
+
+    Do not weight the update: all its pixels have one level.
+    """
     Z, t = rng.integers(15, 250, (900, 4)), rng.uniform(0.2, 1, 4)
     line, shown = np.arange(256) / 128, slice(15, 249)
     truth = robertson.update(Z, t, robertson.irradiance(Z, t, line, W))
@@ -71,12 +73,13 @@ def test_one_turn_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "A linear camera's response is where the turns begin: what should they change?",
-    "Start from a line, not from an exponential.",
-    "f(m) = m / 128 is the line with f(128) = 1.",
-)
 def test_the_truth_is_where_the_turns_rest(subject, rng):
+    """A linear camera's response is where the turns begin: what should they change?
+
+    Start from a line, not from an exponential.
+
+    f(m) = m / 128 is the line with f(128) = 1.
+    """
     x = np.sort(rng.permutation(np.arange(5, 62))[:45])
     Z, t = np.stack([x, 2 * x, 4 * x], axis=1), np.array([1.0, 2.0, 4.0])
     shown = np.unique(Z)
@@ -86,24 +89,26 @@ def test_the_truth_is_where_the_turns_rest(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Some levels no pixel has. What is their mean?",
-    "0 / 0 is NaN, and one NaN spoils every sum of the next turn.",
-    "Fill empty levels from their neighbours: np.interp over those that have pixels.",
-)
 def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng):
+    """Some levels no pixel has. What is their mean?
+
+    0 / 0 is NaN, and one NaN spoils every sum of the next turn.
+
+    Fill empty levels from their neighbours: np.interp over those that have pixels.
+    """
     Z, t = samples(rng, "gamma")
     whole, even = (asked(subject, z, t, turns=12)[-1] for z in (Z, Z // 2 * 2))
     same_curve(even, whole, 0.03)
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Yield a state before the first turn, and one after each.",
-    "Each state is another array: one that is changed in place shows the last turn everywhere.",
-    "The changes from turn to turn become smaller.",
-)
 def test_each_turn_is_a_state_and_moves_the_curve_less(subject, rng):
+    """Yield a state before the first turn, and one after each.
+
+    Each state is another array: one that is changed in place shows the last turn everywhere.
+
+    The changes from turn to turn become smaller.
+    """
     Z, t = samples(rng, "gamma")
     found = asked(subject, Z, t, turns=8, tolerance=0.0)
     moved = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(found, found[1:], strict=False)]
@@ -112,12 +117,13 @@ def test_each_turn_is_a_state_and_moves_the_curve_less(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Seconds or milliseconds: who could tell from the photographs?",
-    "Times that are all 1000 times as long make E a thousandth, and leave f.",
-    "Divide f by f(128) at the end of every turn.",
-)
 def test_the_unit_of_time_does_not_matter(subject, rng):
+    """Seconds or milliseconds: who could tell from the photographs?
+
+    Times that are all 1000 times as long make E a thousandth, and leave f.
+
+    Divide f by f(128) at the end of every turn.
+    """
     Z, t = samples(rng, "film")
     one, other = (asked(subject, Z, factor * t, turns=6)[-1] for factor in (1.0, 1000.0))
     same_curve(other, one, 0.005)

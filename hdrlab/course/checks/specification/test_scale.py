@@ -17,12 +17,13 @@ def drawn(rng, shape=(60, 76)):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "A scale for each pixel: the shape of L.",
-    "A luminance that is blurred is above 0, and so is its inverse.",
-    "Nothing in it is NaN or infinite.",
-)
 def test_every_pixel_has_a_scale_above_0(subject, rng):
+    """A scale for each pixel: the shape of L.
+
+    A luminance that is blurred is above 0, and so is its inverse.
+
+    Nothing in it is NaN or infinite.
+    """
     L = drawn(rng)
     s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s")
     if not (s > 0).all():
@@ -30,12 +31,13 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "An even wall of luminance L: how bright should it be shown?",
-    "s L = 1 / k: the neighbourhood comes out as one k-th of white.",
-    "s = 1 / (k blur(L)): no further factor L, which is a misprint.",
-)
 def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
+    """An even wall of luminance L: how bright should it be shown?
+
+    s L = 1 / k: the neighbourhood comes out as one k-th of white.
+
+    s = 1 / (k blur(L)): no further factor L, which is a misprint.
+    """
     for _ in range(2):
         level, k = float(10 ** rng.uniform(-2, 3)), float(rng.uniform(2, 16))
         L = np.full((40, 40), level, np.float32)
@@ -44,12 +46,13 @@ def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Blur first, and divide then: the mean of 1 / L is another thing.",
-    "A Gaussian of `sigma` pixels.",
-    "s = 1 / (k blur(L)).",
-)
 def test_it_is_one_over_k_times_the_blur(subject, rng):
+    """Blur first, and divide then: the mean of 1 / L is another thing.
+
+    A Gaussian of `sigma` pixels.
+
+    s = 1 / (k blur(L)).
+    """
     L = drawn(rng)
     truth = 1 / (8 * gaussian_filter(L.astype(float), SIGMA))
     s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s").astype(float)
@@ -57,12 +60,13 @@ def test_it_is_one_over_k_times_the_blur(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Ten times the light in the whole scene: what becomes of s, and what of s L?",
-    "The scale is the inverse of a luminance.",
-    "s of 10 L is s / 10.",
-)
 def test_the_unit_of_luminance_cancels_in_the_picture(subject, rng):
+    """Ten times the light in the whole scene: what becomes of s, and what of s L?
+
+    The scale is the inverse of a luminance.
+
+    s of 10 L is s / 10.
+    """
     L = drawn(rng)
     one, ten = (
         finite(subject.scale(factor * L, headroom=8.0, sigma=SIGMA), L.shape, what="s").astype(float)

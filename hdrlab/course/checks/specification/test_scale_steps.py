@@ -29,12 +29,13 @@ def doubtful(truth, threshold=0.05):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "The surround of one width is the centre of the next: eight responses out of nine blurs.",
-    "s in the formula is the width in pixels, 1, 1.6, 2.56, ..., and not the number of the step.",
-    "V = (V1 - V2) / (2^phi a / s^2 + V1).",
-)
 def test_each_response_compares_a_width_with_the_next(subject, rng):
+    """The surround of one width is the centre of the next: eight responses out of nine blurs.
+
+    s in the formula is the width in pixels, 1, 1.6, 2.56, ..., and not the number of the step.
+
+    V = (V1 - V2) / (2^phi a / s^2 + V1).
+    """
     blurred = drawn(rng)
     truth, came = list(reinhard.scale_steps(blurred)), asked(subject, blurred)
     same(len(came), 8, 0, what="states")
@@ -43,12 +44,13 @@ def test_each_response_compares_a_width_with_the_next(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "The widths are tried from small to large. When does a pixel stop?",
-    "Once |V| has reached the threshold the neighbourhood stays as it is, whatever larger widths say.",
-    "even = even & (|V| < threshold); the adaptation takes the centre where it is still even.",
-)
 def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
+    """The widths are tried from small to large. When does a pixel stop?
+
+    Once |V| has reached the threshold the neighbourhood stays as it is, whatever larger widths say.
+
+    even = even & (|V| < threshold); the adaptation takes the centre where it is still even.
+    """
     blurred = drawn(rng)
     truth = list(reinhard.scale_steps(blurred))
     came, sure = asked(subject, blurred), ~doubtful(truth)
@@ -66,12 +68,13 @@ def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "What does an even wall say at any width?",
-    "Its response is 0 everywhere, so it takes the largest width.",
-    "At the widest the adaptation is V1(26.8), the centre of the last step, not its surround.",
-)
 def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
+    """What does an even wall say at any width?
+
+    Its response is 0 everywhere, so it takes the largest width.
+
+    At the widest the adaptation is V1(26.8), the centre of the last step, not its surround.
+    """
     level = float(rng.uniform(0.1, 2))
     blurred = [np.full((12, 15), level * (1 + 1e-3 * k), np.float32) for k in range(9)]
     came = asked(subject, blurred)
@@ -79,12 +82,13 @@ def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "The knobs are the key a, the sharpening phi, and the threshold.",
-    "A higher phi makes V less sensitive: larger neighbourhoods.",
-    "2^phi a / s^2, with the knobs' own values.",
-)
 def test_the_knobs_are_used(subject, rng):
+    """The knobs are the key a, the sharpening phi, and the threshold.
+
+    A higher phi makes V less sensitive: larger neighbourhoods.
+
+    2^phi a / s^2, with the knobs' own values.
+    """
     blurred = drawn(rng)
     for knobs in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):
         truth = list(reinhard.scale_steps(blurred, **knobs))

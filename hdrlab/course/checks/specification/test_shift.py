@@ -17,47 +17,51 @@ def views(rng, offsets, shape=(40, 50), channels=()):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "An offset (dy, dx) says where the image must move: down, and to the right.",
-    "After the move, what stood at (y, x) stands at (y + dy, x + dx).",
-    "The part that all show begins at the largest offset, and in image j at that less its own.",
-)
 def test_moved_images_lie_on_each_other(subject, rng):
+    """An offset (dy, dx) says where the image must move: down, and to the right.
+
+    After the move, what stood at (y, x) stands at (y + dy, x + dx).
+
+    The part that all show begins at the largest offset, and in image j at that less its own.
+    """
     offsets = np.array([[0, 0], [3, -5]])
     images, common = views(rng, offsets)
     same(subject.shift(images, offsets), np.stack([common, common]), 0, what="the moved images")
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "Where do the pixels at the border come from?",
-    "np.roll brings in at the left what left at the right.",
-    "Cut the images to the rectangle that every moved one covers.",
-)
 def test_nothing_comes_in_from_the_other_side(subject, rng):
+    """Where do the pixels at the border come from?
+
+    np.roll brings in at the left what left at the right.
+
+    Cut the images to the rectangle that every moved one covers.
+    """
     offsets = rng.integers(-9, 10, (4, 2))
     images, common = views(rng, offsets)
     same(subject.shift(images, offsets), np.stack([common] * 4), 0, what="the moved images")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Three channels move together.",
-    "Only the first two axes of an image are places.",
-    "image[top:bottom, left:right] takes all channels along.",
-)
 def test_colour_moves_like_gray(subject, rng):
+    """Three channels move together.
+
+    Only the first two axes of an image are places.
+
+    image[top:bottom, left:right] takes all channels along.
+    """
     offsets = rng.integers(-6, 7, (3, 2))
     images, common = views(rng, offsets, channels=(3,))
     same(subject.shift(images, offsets), np.stack([common] * 3), 0, what="the moved images")
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "What is to be done where all offsets are the same?",
-    "All images move, and all show the same part of the picture then.",
-    "Only differences between offsets cost pixels, beside what leaves the frame of (0, 0).",
-)
 def test_images_that_need_not_move_stay_whole(subject, rng):
+    """What is to be done where all offsets are the same?
+
+    All images move, and all show the same part of the picture then.
+
+    Only differences between offsets cost pixels, beside what leaves the frame of (0, 0).
+    """
     images, common = views(rng, np.zeros((3, 2), int))
     same(subject.shift(images, np.zeros((3, 2), int)), np.stack([common] * 3), 0, what="the images")

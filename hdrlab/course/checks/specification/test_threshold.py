@@ -16,24 +16,26 @@ def histogram(Y):
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "The median is not the mean: in a dark picture with a lamp they are far apart.",
-    "Cumulate the histogram, and look for half of all pixels.",
-    "t is the lowest code whose cumulated count reaches q times the count of all.",
-)
 def test_the_threshold_is_the_median(subject, rng):
+    """The median is not the mean: in a dark picture with a lamp they are far apart.
+
+    Cumulate the histogram, and look for half of all pixels.
+
+    t is the lowest code whose cumulated count reaches q times the count of all.
+    """
     for _ in range(3):
         Y = drawn(rng)
         same(subject.threshold(histogram(Y), 0.5), np.median(Y), 0, what="t")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "The argument q is the fraction, 0.5 for the median.",
-    "Is a 0.5, or a division by 2, written into your code?",
-    "Compare the cumulated histogram with q times its last value.",
-)
 def test_any_fraction_can_be_asked_for(subject, rng):
+    """The argument q is the fraction, 0.5 for the median.
+
+    Is a 0.5, or a division by 2, written into your code?
+
+    Compare the cumulated histogram with q times its last value.
+    """
     Y = drawn(rng)
     for q in (0.17, 0.33, 0.83):
         expected = np.sort(Y.ravel())[int(np.ceil(q * Y.size)) - 1]
@@ -41,22 +43,24 @@ def test_any_fraction_can_be_asked_for(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "A photograph twice as large of the same scene has the same median.",
-    "Counts are not fractions: divide by their sum, or multiply q by it.",
-    "Do not compare the cumulated counts with q itself.",
-)
 def test_a_larger_photograph_of_the_same_codes_has_the_same_threshold(subject, rng):
+    """A photograph twice as large of the same scene has the same median.
+
+    Counts are not fractions: divide by their sum, or multiply q by it.
+
+    Do not compare the cumulated counts with q itself.
+    """
     Y = drawn(rng)
     same(subject.threshold(7 * histogram(Y), 0.5), np.median(Y), 0, what="t")
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "An even wall: what else could its threshold be?",
-    "Half of the pixels do not exceed the one code that there is.",
-    "The index into the histogram is the code.",
-)
 def test_the_threshold_of_an_even_wall_is_its_code(subject, rng):
+    """An even wall: what else could its threshold be?
+
+    Half of the pixels do not exceed the one code that there is.
+
+    The index into the histogram is the code.
+    """
     code = int(rng.integers(1, 255))
     same(subject.threshold(histogram(np.full((8, 9), code)), 0.5), code, 0, what="t")

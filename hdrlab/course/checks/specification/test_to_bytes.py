@@ -28,46 +28,50 @@ def as_read(data):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "Two letters say what follows.",
-    "Pf for gray, PF for colour.",
-    "The bytes begin with b'Pf'.",
-)
 def test_the_file_begins_with_the_kind_of_map(subject, rng):
+    """Two letters say what follows.
+
+    Pf for gray, PF for colour.
+
+    The bytes begin with b'Pf'.
+    """
     for E, kind in ((drawn(rng), b"Pf"), (drawn(rng, (3,)), b"PF")):
         if asked(subject, E)[:2] != kind:
             raise Different(f"expected a file that begins with {kind.decode()}")
 
 
 @pytest.mark.points(6)
-@pytest.mark.hints(
-    "Look at the file with another program: where is the sky?",
-    "The rows of a PFM file run from the bottom to the top.",
-    "Write E[::-1].",
-)
 def test_what_is_written_is_read_again_and_stands_upright(subject, rng):
+    """Look at the file with another program: where is the sky?
+
+    The rows of a PFM file run from the bottom to the top.
+
+    Write E[::-1].
+    """
     E = drawn(rng)
     same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the picture read again", picture=True)
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "A gray map is Pf, a map in colour is PF.",
-    "The three values of a pixel follow each other.",
-    "The second line is width and height, in this order.",
-)
 def test_a_map_in_colour_is_read_again(subject, rng):
+    """A gray map is Pf, a map in colour is PF.
+
+    The three values of a pixel follow each other.
+
+    The second line is width and height, in this order.
+    """
     E = drawn(rng, (3,))
     same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the map read again")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "The values are float32: 4 bytes each, no more.",
-    "A file of n values is the header and 4 n bytes.",
-    "E.astype('<f4').tobytes(): float64 would take twice as many.",
-)
 def test_the_file_holds_four_bytes_a_value_and_no_more(subject, rng):
+    """The values are float32: 4 bytes each, no more.
+
+    A file of n values is the header and 4 n bytes.
+
+    E.astype('<f4').tobytes(): float64 would take twice as many.
+    """
     E = drawn(rng)
     data = asked(subject, E)
     start = data.find(b"\n", data.find(b"\n", data.find(b"\n") + 1) + 1) + 1
@@ -75,12 +79,13 @@ def test_the_file_holds_four_bytes_a_value_and_no_more(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Which byte of a number comes first? The third line says so.",
-    "A negative scale means little endian, a positive one big endian.",
-    "Write -1.0, and '<f4'.",
-)
 def test_the_sign_of_the_scale_is_the_order_of_the_bytes(subject, rng):
+    """Which byte of a number comes first? The third line says so.
+
+    A negative scale means little endian, a positive one big endian.
+
+    Write -1.0, and '<f4'.
+    """
     E = drawn(rng)
     data = asked(subject, E)
     scale = float(data.split(b"\n")[2])

@@ -19,22 +19,24 @@ def asked(subject, E):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "Three mantissas and an exponent.",
-    "The answer is (H, W, 4).",
-    "Whole numbers from 0 to 255.",
-)
 def test_every_pixel_is_four_bytes(subject, rng):
+    """Three mantissas and an exponent.
+
+    The answer is (H, W, 4).
+
+    Whole numbers from 0 to 255.
+    """
     asked(subject, drawn(rng))
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Decode what you encoded: E = m / 256 2^(e - 128).",
-    "The exponent is that of the brightest channel; np.frexp gives it.",
-    "m = floor(256 E / 2^(e - 128)): do not forget the 256, nor the 128.",
-)
 def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
+    """Decode what you encoded: E = m / 256 2^(e - 128).
+
+    The exponent is that of the brightest channel; np.frexp gives it.
+
+    m = floor(256 E / 2^(e - 128)): do not forget the 256, nor the 128.
+    """
     E = drawn(rng)
     m, e = np.split(asked(subject, E), [3], axis=-1)
     brightest = E.max(axis=-1, keepdims=True)
@@ -42,12 +44,13 @@ def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "How many of the mantissa's 256 values do you use?",
-    "The brightest channel's mantissa lies between 128 and 255.",
-    "The brightest channel is f 2^x with 0.5 <= f < 1, and e = x + 128.",
-)
 def test_the_largest_mantissa_is_128_or_more(subject, rng):
+    """How many of the mantissa's 256 values do you use?
+
+    The brightest channel's mantissa lies between 128 and 255.
+
+    The brightest channel is f 2^x with 0.5 <= f < 1, and e = x + 128.
+    """
     pixels = asked(subject, drawn(rng))
     largest = pixels[..., :3].max(axis=-1)
     if not (largest >= 128).all():
@@ -55,12 +58,13 @@ def test_the_largest_mantissa_is_128_or_more(subject, rng):
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "Twice the light: what happens to the four bytes?",
-    "The mantissas stay, and the exponent grows by one. Black is (0, 0, 0, 0).",
-    "Take care of log2(0): use np.where for black pixels.",
-)
 def test_twice_the_light_is_one_more_in_the_exponent_and_black_is_zero(subject, rng):
+    """Twice the light: what happens to the four bytes?
+
+    The mantissas stay, and the exponent grows by one. Black is (0, 0, 0, 0).
+
+    Take care of log2(0): use np.where for black pixels.
+    """
     E = drawn(rng)
     E[2, 3] = 0
     truth = rgbe.to_pixels(E).astype(float)

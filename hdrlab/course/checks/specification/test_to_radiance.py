@@ -13,36 +13,39 @@ def drawn(rng):
 
 
 @pytest.mark.points(1)
-@pytest.mark.hints(
-    "The exponent is no channel of the answer.",
-    "The answer is (H, W, 3).",
-    "Nothing in it is below 0.",
-)
 def test_every_pixel_is_three_radiances(subject, rng):
+    """The exponent is no channel of the answer.
+
+    The answer is (H, W, 3).
+
+    Nothing in it is below 0.
+    """
     E = finite(subject.to_radiance(drawn(rng)), (9, 11, 3), what="E")
     if not (E >= 0).all():
         raise Different(f"E: expected radiance of at least 0, got {float(E.min()):.3g}")
 
 
 @pytest.mark.points(5)
-@pytest.mark.hints(
-    "The slide's second triple is wrong: which factor did it forget?",
-    "A mantissa is a fraction of 256.",
-    "E = m / 256 2^(e - 128).",
-)
 def test_a_mantissa_is_a_fraction_of_256(subject):
+    """The slide's second triple is wrong: which factor did it forget?
+
+    A mantissa is a fraction of 256.
+
+    E = m / 256 2^(e - 128).
+    """
     pixels = np.array([[[149, 150, 151, 128], [128, 64, 32, 129]]], np.uint8)
     expected = [[[149 / 256, 150 / 256, 151 / 256], [1, 0.5, 0.25]]]
     same(subject.to_radiance(pixels), expected, 0.005, what="E")
 
 
 @pytest.mark.points(3)
-@pytest.mark.hints(
-    "What is 110 - 128 in uint8?",
-    "Bytes do not go below 0: the exponent wraps around.",
-    "Turn the exponent into int or float before you subtract 128.",
-)
 def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
+    """What is 110 - 128 in uint8?
+
+    Bytes do not go below 0: the exponent wraps around.
+
+    Turn the exponent into int or float before you subtract 128.
+    """
     pixels = drawn(rng)
     scale = 2.0 ** (pixels[..., 3:].astype(float) - 128)
     came = finite(subject.to_radiance(pixels), (9, 11, 3), what="E")
@@ -50,12 +53,13 @@ def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "The exponent 0 has a meaning of its own.",
-    "Whatever its mantissas, such a pixel is black.",
-    "E = 0 where e = 0.",
-)
 def test_the_exponent_0_is_black(subject, rng):
+    """The exponent 0 has a meaning of its own.
+
+    Whatever its mantissas, such a pixel is black.
+
+    E = 0 where e = 0.
+    """
     pixels = drawn(rng)
     black = rng.random((9, 11)) < 0.3
     pixels[black] = 0

@@ -17,60 +17,66 @@ def asked(subject):
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Try your operator on black, on one lamp in the dark, on a single pixel.",
-    "0 / 0 and log 0 come from pictures that are all black, or all alike.",
-    "Clip the answer to 0 ... 1, and look after a maximum, a range or a mean of 0 before you divide by it.",
-)
 def test_it_stays_in_range_whatever_the_scene(subject):
+    """Try your operator on black, on one lamp in the dark, on a single pixel.
+
+    0 / 0 and log 0 come from pictures that are all black, or all alike.
+
+    Clip the answer to 0 ... 1, and look after a maximum, a range or a mean of 0 before you divide by it.
+    """
     laws.stays_in_range(asked(subject))
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Does your operator remember anything?",
-    "Randomness without a seed, or a global that changes?",
-    "The same picture must give the same answer.",
-)
 def test_it_answers_the_same_twice(subject):
+    """Does your operator remember anything?
+
+    Randomness without a seed, or a global that changes?
+
+    The same picture must give the same answer.
+    """
     laws.answers_the_same_twice(asked(subject))
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "One pixel of a million times the light: what happens to all the others?",
-    "A maximum over the picture is a matter of one pixel.",
-    "Use a percentile, such as the 99.9th, instead of the maximum.",
-)
 def test_it_shrugs_off_a_hot_pixel(subject):
+    """One pixel of a million times the light: what happens to all the others?
+
+    A maximum over the picture is a matter of one pixel.
+
+    Use a percentile, such as the 99.9th, instead of the maximum.
+    """
     laws.shrugs_off_a_hot_pixel(asked(subject))
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Is what was bright still bright?",
-    "Compare the averages of large regions before and after: their ranks should hardly change.",
-    "A sign, or an inverse scale?",
-)
 def test_it_keeps_the_light_the_right_way_up(subject):
+    """Is what was bright still bright?
+
+    Compare the averages of large regions before and after: their ranks should hardly change.
+
+    A sign, or an inverse scale?
+    """
     laws.keeps_the_light_the_right_way_up(asked(subject))
 
 
 @pytest.mark.points(4)
-@pytest.mark.hints(
-    "Radiance has no unit that is sacred: watts or candelas show the same scene.",
-    "Twice the luminance everywhere is the same picture.",
-    "Scale by a statistic of the picture itself: the log average, the median, a percentile.",
-)
 def test_the_unit_of_luminance_cancels(subject):
+    """Radiance has no unit that is sacred: watts or candelas show the same scene.
+
+    Twice the luminance everywhere is the same picture.
+
+    Scale by a statistic of the picture itself: the log average, the median, a percentile.
+    """
     laws.exposure(asked(subject))
 
 
 @pytest.mark.points(2)
-@pytest.mark.hints(
-    "Which orders in memory does your code count on?",
-    "ravel, reshape and views of other strides all name the same pixels.",
-    "Begin with L = np.asarray(L, dtype=float).",
-)
 def test_it_takes_any_memory_layout(subject):
+    """Which orders in memory does your code count on?
+
+    ravel, reshape and views of other strides all name the same pixels.
+
+    Begin with L = np.asarray(L, dtype=float).
+    """
     laws.takes_any_memory_layout(asked(subject))
