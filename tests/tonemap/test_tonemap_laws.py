@@ -17,6 +17,8 @@ from hypothesis.extra.numpy import array_shapes, arrays
 from hdrlab.pipeline import catalogue
 
 OPERATORS = {name: catalogue.method("tonemap", name) for name in catalogue.names("tonemap")}
+LESSONS = {name: import_module(f"hdrlab.tonemap.{name}").tonemap for name in OPERATORS}
+LESSONS = {name: lesson for name, lesson in LESSONS.items() if lesson is not OPERATORS[name]}
 VARIED = {
     "brush": [{"bins": 1}, {"bins": 64, "limit": 1}, {"limit": np.inf}],
     "chiu": [{"headroom": 2}, {"headroom": 64, "passes": 0}, {"sigma": 3.5}, {"sigma": 30, "passes": 2}],
@@ -57,6 +59,13 @@ CLAIMS = [
 @pytest.mark.parametrize("name", OPERATORS)
 def test_every_operator(name, law):
     law(OPERATORS[name])
+
+
+@pytest.mark.parametrize("law", laws.ALWAYS, ids=lambda law: law.__name__)
+@pytest.mark.parametrize("name", LESSONS)
+def test_every_lesson_that_has_a_fast_operator(name, law):
+    if (name, law) != ("reinhard", laws.refuses_and_counts_what_is_no_radiance):  # it refuses without a count
+        law(LESSONS[name])
 
 
 def test_no_knob_is_left_out_of_the_variations():
