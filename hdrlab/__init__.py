@@ -21,7 +21,7 @@ Which pixels to use                    core.sampling, response.selection
 The radiance map                       radiance.merge.merge, radiance.merge.bound
 Does the map explain its photographs?  diagnostics.consistency, diagnostics.contradictions
 Exposure ratios of a linear camera     radiance.ratios.ratio
-What moved, and what the lens did      radiance.deghosting.ghosts.remove, radiance.flare.remove
+What moved, and what the lens did      radiance.deghosting.ghosts.remove_ghosts, radiance.flare.remove_glare
 ... photographed with the truth        capture.movers.shoot, capture.lens_flare.add_flare
 PFM, Radiance RGBE, OpenEXR            io.pfm, io.rgbe, io.exr; io.radiance.read_radiance
 One curve for all pixels               tonemap.curves, tonemap.ward, tonemap.brush

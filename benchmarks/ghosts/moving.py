@@ -56,7 +56,8 @@ def plain(taken: Bracket) -> Merged:
 def rid(taken: Bracket, way: str) -> ghosts.Ghosts:
     """Return the map without ghosts: by "regions", "reference", or regions "alone"."""
     reference = REFERENCE if way == "reference" else None
-    return ghosts.remove(taken.images, taken.times, G, W, reference=reference, alone=way == "alone")
+    settings = ghosts.Settings(reference=reference, alone=way == "alone")
+    return ghosts.remove_ghosts(taken.images, taken.times, G, W, settings=settings)
 
 
 def stops(E: Array, truth: Array, where: NDArray[np.bool_]) -> float:
@@ -73,7 +74,7 @@ def errors(taken: Moving, way: str) -> Errors:
     inside, outside = passed & (found.labels > 0), passed & (found.labels == 0)
     known = inside & (found.quality == 0) & (merged.quality == 0)
     truth = still.copy()
-    for r, j in enumerate(found.frames, start=1):
+    for r, j in enumerate(found.references, start=1):
         truth[found.labels == r] = moments[j][found.labels == r]
     return Errors(
         plain=min(stops(merged.E, one, known) for one in (truth, still, *moments)),
@@ -81,7 +82,7 @@ def errors(taken: Moving, way: str) -> Errors:
         measured=known.sum() / inside.sum(),
         elsewhere=float(np.abs(found.E / merged.E - 1)[found.labels == 0].max()),
         left=float(np.median(np.abs(found.E / still - 1)[outside])) if outside.any() else 0.0,
-        regions=len(found.frames),
+        regions=len(found.references),
     )
 
 

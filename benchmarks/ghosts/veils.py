@@ -22,12 +22,12 @@ from hdrlab.capture.lens_flare import add_glare
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array
-from hdrlab.core.scatter import Spread
+from hdrlab.core.scatter import GlareSpread
 from hdrlab.radiance import flare
 from hdrlab.radiance.merge import merge_with_quality
 from hdrlab.scenes.places import resample
 
-LENSES = tuple(Spread(share, power) for share, power in product((0.05, 0.1), (2.0, 2.5, 3.0)))
+LENSES = tuple(GlareSpread(share, power) for share, power in product((0.05, 0.1), (2.0, 2.5, 3.0)))
 AFFECTED = 0.05  # of a pixel's light
 CLOSE = 0.05  # of the truth
 
@@ -40,27 +40,27 @@ class Left(NamedTuple):
     close: float
 
 
-def left(E: Array, F: Array, found: Array, where: Array, lens: Spread) -> Left:
+def left(E: Array, F: Array, found: Array, where: Array, lens: GlareSpread) -> Left:
     """Return what is Left of a veil, where the scene had radiance E and the map F."""
     region = (1 - (1 - lens.share) * E / F).max(axis=-1) > AFFECTED
     before, after = (np.abs(one / E - 1).max(axis=-1)[region & where] for one in (F, found))
     return Left(float(np.median(before)), float(np.median(after)), float(np.mean(after < CLOSE)))
 
 
-def exact(item: tuple[str, Spread]) -> Left:
+def exact(item: tuple[str, GlareSpread]) -> Left:
     """Return what is left where the map is that of the lens itself."""
     place, lens = item
     E = resample(radiance(place), SHAPE)
     F = add_glare(E, lens)
-    return left(E, F, flare.remove(F).E, np.ones(SHAPE, bool), lens)
+    return left(E, F, flare.remove_glare(F).E, np.ones(SHAPE, bool), lens)
 
 
-def photographed(item: tuple[str, Spread]) -> Left:
+def photographed(item: tuple[str, GlareSpread]) -> Left:
     """Return what is left where the map was merged from photographs."""
     place, lens = item
     E = resample(radiance(place), SHAPE)
     F, seen = through(add_glare(E, lens))
-    return left(E, F, flare.remove(F).E, seen == 0, lens)
+    return left(E, F, flare.remove_glare(F).E, seen == 0, lens)
 
 
 def through(F: Array) -> tuple[Array, Array]:
@@ -71,7 +71,7 @@ def through(F: Array) -> tuple[Array, Array]:
     return found.E * np.median(F / found.E), found.quality
 
 
-def figures(what: str, work: Callable[[tuple[str, Spread]], Left]) -> Mapping[str, ArrayLike]:
+def figures(what: str, work: Callable[[tuple[str, GlareSpread]], Left]) -> Mapping[str, ArrayLike]:
     """Return the figures of all scenes and lenses."""
     items = list(product(STILL, LENSES))
     found = along(work, items, f"flare, {what}")
@@ -101,7 +101,7 @@ def clear(_: Path) -> Mapping[str, ArrayLike]:
     for place in STILL:
         E = resample(radiance(place), SHAPE)
         for F in (E, through(E)[0]):
-            changes.append(float(np.abs(flare.remove(F).E / F - 1).max()))
+            changes.append(float(np.abs(flare.remove_glare(F).E / F - 1).max()))
     return {"maps looked at": len(changes), "most change": max(changes)}
 
 

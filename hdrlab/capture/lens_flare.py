@@ -5,8 +5,8 @@ F   radiance behind it          (H, W[, 3]), (1 - share) E + share (K * E): see 
 k   place of a reflection       a light at p from the middle has its image at k p; k < 0 lies across from it
 a   aperture                    the image is a disc of this radius, pixels
 
-Two things happen. A little of all light is scattered, and lies over the picture as a veil. And light that is
-reflected by two surfaces on its way comes to a focus elsewhere: discs in a row through the middle.
+Two things happen. A little of all light is scattered, and lies over the picture as veiling glare. And light
+that is reflected by two surfaces on its way comes to a focus elsewhere: discs in a row through the middle.
 """
 
 import numpy as np
@@ -15,17 +15,19 @@ from scipy.ndimage import affine_transform
 from scipy.signal import fftconvolve
 
 from hdrlab.core.arrays import as_radiance
-from hdrlab.core.scatter import Spread, checked, kernel, scattered
+from hdrlab.core.scatter import GlareSpread, scatter, spread_transform, validate_spread
 from hdrlab.core.types import F32
 
+FINGERPRINTS = GlareSpread(0.05)
 
-def add_glare(E: ArrayLike, spread: Spread = Spread(0.05)) -> F32:  # noqa: B008  a NamedTuple of numbers
+
+def add_glare(E: ArrayLike, spread: GlareSpread = FINGERPRINTS) -> F32:
     """Return the radiance behind a lens that scatters, (1 - share) E + share (K * E).
 
     Parameters
     ----------
     E : (H, W) or (H, W, 3), radiance, any linear unit
-    spread : Spread of the lens; a clean one scatters 1 or 2 %, one with fingerprints 10 %
+    spread : GlareSpread of the lens; a clean one scatters 1 or 2 %, one with fingerprints 10 %
 
     Raises
     ------
@@ -40,15 +42,15 @@ def add_glare(E: ArrayLike, spread: Spread = Spread(0.05)) -> F32:  # noqa: B008
     --------
     >>> E = np.full((20, 30), 0.01, np.float32)
     >>> E[10, 15] = 1000  # a lamp
-    >>> seen = add_glare(E, Spread(0.02))
+    >>> seen = add_glare(E, GlareSpread(0.02))
     >>> bool(seen[10, 18] > 10 * seen[0, 0] > 0.1), float(seen[10, 15].round(1))
     (True, 980.0)
     """
-    share, power, core = checked(spread)
+    share, power, core = validate_spread(spread)
     E = as_radiance(E)
     if share == 0:
         return E.copy()
-    return np.float32(1 - share) * E + np.float32(share) * scattered(E, kernel(E.shape, power, core))
+    return np.float32(1 - share) * E + np.float32(share) * scatter(E, spread_transform(E.shape, power, core))
 
 
 def reflect(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: float = 1e-4) -> F32:
@@ -92,7 +94,7 @@ def reflect(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: f
 
 def add_flare(
     E: ArrayLike,
-    spread: Spread = Spread(0.05),  # noqa: B008
+    spread: GlareSpread = GlareSpread(0.05),  # noqa: B008
     *,
     places: tuple[float, ...] = (-0.6, 0.35),
     radius: float = 12.0,

@@ -44,14 +44,17 @@ if TYPE_CHECKING:
     help="What moved: as it is; each region by its best exposure; all of them by the middle photograph.",
 )
 @click.option(
-    "--flare", type=click.Choice(["none", "veil"]), default="none", help="Take off what the lens scattered."
+    "--flare",
+    type=click.Choice(["none", "glare"]),
+    default="none",
+    help="Remove veiling glare, the light that the lens scattered.",
 )
 @click.option("--tonemap", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
 @click.option(
     "--picture", type=common.FILE, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
 )
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
-@click.option("--anyway", is_flag=True, help="Write the map even where the photographs put it in doubt.")
+@click.option("--force", is_flag=True, help="Write the map even where the photographs put it in doubt.")
 def assemble(
     photos: tuple[Path, ...],
     out: Path,
@@ -61,7 +64,7 @@ def assemble(
     tonemap: str,
     picture: Path | None,
     report: Path | None,
-    anyway: bool,
+    force: bool,
     merge: str,
     response: str | Path,
     **methods: str,
@@ -86,7 +89,7 @@ def assemble(
     methods["method"] = merge
     methods["times"] = "estimate" if estimate_times or times == "estimate" else "stated"
     assembly = _assembled(bracket, methods | {"response": recover})
-    _tell(assembly, anyway)
+    _tell(assembly, force)
     radiance.write_radiance(out, assembly.E)
     if picture or report:
         rendered = pipeline.develop(assembly.E, tonemap)
@@ -115,12 +118,12 @@ def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":
     return last(common.progress(steps, "assembling", count))
 
 
-def _tell(assembly: "Assembly", anyway: bool) -> None:
+def _tell(assembly: "Assembly", force: bool) -> None:
     """Print notes and doubts, or raise a ValueError where doubts forbid to write the map."""
     for note in assembly.notes:
         click.echo(f"note: {note}", err=True)
-    if assembly.doubts and not anyway:
+    if assembly.doubts and not force:
         said = "; ".join(assembly.doubts)
-        raise ValueError(f"{said} (nothing was written; --anyway writes the map as it is)")
+        raise ValueError(f"{said} (nothing was written; --force writes the map as it is)")
     for doubt in assembly.doubts:
         click.echo(f"warning: {doubt}", err=True)

@@ -40,8 +40,8 @@ def report(project: Path, example: bool) -> None:
 @PROJECT
 @click.option("-o", "--out", type=common.FILE, default="submission.zip", help="The archive.")
 @click.option("--keep-metadata", is_flag=True, help="Leave location and serial numbers in the photographs.")
-@click.option("--anyway", is_flag=True, help="Make the archive though something is missing.")
-def submit(project: Path, out: Path, keep_metadata: bool, anyway: bool) -> None:
+@click.option("--force", is_flag=True, help="Make the archive though something is missing.")
+def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     """Look at PROJECT, say what is missing, and make one archive of it.
 
     Pictures go in without location, serial numbers and the notes of their makers; their pixels and exposures
@@ -60,8 +60,8 @@ def submit(project: Path, out: Path, keep_metadata: bool, anyway: bool) -> None:
             + said.replace("\n", "\n" + " " * 24).rstrip()
         )
     missing = sum(not one.good for one in findings)
-    if missing and not (anyway and found.artifact):
-        raise ValueError(f"{missing} to mend; nothing was written (--anyway makes the archive as it is)")
+    if missing and not (force and found.artifact):
+        raise ValueError(f"{missing} to mend; nothing was written (--force makes the archive as it is)")
     files = list(common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files)))
     digest = handing.write(found, out, files)
     told = handing.summary(files)

@@ -1,8 +1,8 @@
-"""Light that a lens scatters: every point of the picture becomes a veil over all of it.
+"""Veiling glare, the light that a lens scatters: every point spreads over all of the picture.
 
-E      radiance         (H, W[, 3]) float32
-r      distance         pixels
-K      point spread     (H', W'), K(r) = 1 / (1 + (r / core)^2)^(power / 2), without its middle, sum 1
+E      radiance                (H, W[, 3]) float32
+r      distance                pixels
+K      glare spread function   (H', W'), K(r) = 1 / (1 + (r / core)^2)^(power / 2), without its middle, sum 1
 share  of the light that is scattered, 0 to 1
 
 What the sensor gets is (1 - share) E + share (K * E). In a lens of dust, fingerprints and many surfaces K
@@ -12,22 +12,21 @@ falls off with a power of two to three [Talvala07 fig. 3]: slowly, so that a win
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import fft
 
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32, Array
 
 
-class Spread(NamedTuple):
-    """A lens: the share of light that it scatters, the power of its fall, and the core in pixels."""
+class GlareSpread(NamedTuple):
+    """A glare spread function: share of the light, power of the fall, core in pixels."""
 
     share: float
     power: float = 2.5
     core: float = 1.0
 
 
-def checked(spread: Spread) -> Spread:
-    """Return the spread, or raise a ValueError where its numbers mean nothing."""
+def validate_spread(spread: GlareSpread) -> GlareSpread:
+    """Return the spread, or raise a ValueError for numbers out of range."""
     share, power, core = spread
     if not (0 <= share < 1 and 0 < power < np.inf and 0 < core < np.inf):
         raise ValueError(
@@ -36,7 +35,7 @@ def checked(spread: Spread) -> Spread:
     return spread
 
 
-def kernel(shape: tuple[int, ...], power: float, core: float = 1.0) -> NDArray[np.complex64]:
+def spread_transform(shape: tuple[int, ...], power: float, core: float = 1.0) -> Array:
     """Return the transform of K over twice a frame, so that no light comes round its edges.
 
     K is cut off where it leaves the frame from one side to the other, and its sum is 1 there.
@@ -49,15 +48,15 @@ def kernel(shape: tuple[int, ...], power: float, core: float = 1.0) -> NDArray[n
     return np.asarray(fft.rfft2(K / K.sum(dtype=np.float64).astype(np.float32)), np.complex64)
 
 
-def scattered(E: Float, transform: NDArray[np.complex64]) -> Float:
+def scatter(E: F32, transform: Array) -> F32:
     """Return K * E, channel by channel; light from outside the frame is not known, and left out.
 
     Examples
     --------
     >>> E = np.zeros((5, 5), np.float32)
     >>> E[2, 2] = 100
-    >>> veil = scattered(E, kernel(E.shape, 2.0))
-    >>> float(veil[2, 2].round(3)), bool(veil[2, 3] > veil[2, 4] > 0)
+    >>> glare = scatter(E, spread_transform(E.shape, 2.0))
+    >>> float(glare[2, 2].round(3)), bool(glare[2, 3] > glare[2, 4] > 0)
     (0.0, True)
     """
     height, width = E.shape[:2]

@@ -19,7 +19,7 @@ class Assembly(NamedTuple):
     Attributes
     ----------
     stage : the one of STAGES that was done last, or "times", after "align" where these are estimated, or
-        "ghosts" or "flare", after "merge" where these are taken off
+        "ghosts" or "flare", after "merge" where these are removed
     bracket : the photographs, moved and cut to what all of them show
     offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
     g : (n,) or (n, 3), response, ln exposure of each level
@@ -30,7 +30,7 @@ class Assembly(NamedTuple):
     doubts : sentences, reasons not to trust it
     moves : (P, 3, 3), where each photograph was moved, rotation, scale and fractions of pixels included
     moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
-    veiled : (h, w) bool, where a veil was taken off; None where nobody asked
+    glare : (h, w) bool, where veiling glare was removed; None where nobody asked
     """
 
     stage: str
@@ -44,7 +44,7 @@ class Assembly(NamedTuple):
     doubts: tuple[str, ...] = ()
     moves: NDArray[np.float64] = None  # type: ignore[assignment]
     moving: NDArray[np.int32] | None = None
-    veiled: NDArray[np.bool_] | None = None
+    glare: NDArray[np.bool_] | None = None
 
     @property
     def spread(self) -> float:

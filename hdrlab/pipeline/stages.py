@@ -5,6 +5,7 @@ library's does. `assemble_steps` yields what is known after each stage; `assembl
 """
 
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -20,13 +21,13 @@ from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, Table
 from hdrlab.pipeline.registration import aligned
-from hdrlab.radiance import flare as glare
+from hdrlab.radiance import flare as lens
 from hdrlab.radiance.deghosting import ghosts as moving
 from hdrlab.radiance.merge import METHODS, Merged
 
 STAGES = ("align", "response", "merge", "compare")
 GHOSTS = ("none", "regions", "reference")
-FLARE = ("none", "veil")
+FLARE = ("none", "glare")
 WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "hat": lambda g: weights.hat(len(g)),
     "gaussian": lambda g: weights.gaussian(len(g)),
@@ -61,10 +62,10 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         "estimate" corrects rough times by the pixels, where that makes the frames agree better: see
         `diagnostics.exposure_times`.
     ghosts : {"none", "regions", "reference"}
-        What becomes of what moved: it stays half transparent; in each region its best exposure leads, or the
-        middle photograph in all of them: see `radiance.deghosting.ghosts`.
-    flare : {"none", "veil"}
-        Whether light that the lens scattered is taken off, where the map shows it: see `radiance.flare`.
+        What becomes of what moved: it stays half transparent; or the map shows it as in a reference frame,
+        the best exposure of each region, or the middle photograph in all: see `radiance.deghosting.ghosts`.
+    flare : {"none", "glare"}
+        Whether veiling glare, the light that the lens scattered, is removed: see `radiance.flare`.
 
     Returns
     -------
@@ -115,19 +116,19 @@ def assemble_steps(
     yield state
     if response == "auto":
         response = "linear" if bracket.linear else "debevec"
-    w = WEIGHTS[weight]
+    w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
     if times == "estimate":
-        yield (state := retimed(state, response, w, method))
+        yield (state := refine_times(state, response, w, merge))
     images, seconds, _, valid, _ = state.bracket
     g = recovery.validated(response)(images, seconds, valid=valid)
     yield (state := state._replace(stage="response", g=g))
-    E, quality = merge_with_quality(images, seconds, g, w(g), method=method, valid=valid)
+    E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
     if ghosts != "none":
-        yield (state := unghosted(state, ghosts, w, method))
+        yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
-        yield (state := unveiled(state))
-    yield compared(state, consistency.level_medians(images, seconds, E, valid=valid))
+        yield (state := remove_glare(state))
+    yield assess(state, consistency.level_medians(images, seconds, E, valid=valid))
 
 
 def _check_exposures(bracket: Bracket) -> None:
@@ -138,40 +139,41 @@ def _check_exposures(bracket: Bracket) -> None:
         raise ValueError(f"expected photographs of at least two different exposures, got {got}")
 
 
-def unghosted(state: Assembly, way: str, w: Callable[[Table], Table], method: str) -> Assembly:
+def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]) -> Assembly:
     """Return the Assembly without the ghosts of what moved; the reference is the middle photograph."""
     images, times, names, valid, _ = state.bracket
-    found = moving.remove(
+    found = moving.remove_ghosts(
         images,
         times,
         state.g,
         w(state.g),
+        settings=moving.Settings(reference=len(images) // 2 if way == "reference" else None),
         merged=Merged(state.E, state.quality),
-        reference=len(images) // 2 if way == "reference" else None,
-        merge=merge_with_quality,
-        method=method,
         valid=valid,
+        merge=merge,
     )
     notes = (*state.notes, moving.note(found, names))
     return state._replace(stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes)
 
 
-def unveiled(state: Assembly) -> Assembly:
+def remove_glare(state: Assembly) -> Assembly:
     """Return the Assembly without the light that the lens scattered."""
-    found = glare.remove(state.E)
+    found = lens.remove_glare(state.E)
     return state._replace(
-        stage="flare", E=found.E, veiled=found.region, notes=(*state.notes, glare.note(found))
+        stage="flare", E=found.E, glare=found.region, notes=(*state.notes, lens.note(found))
     )
 
 
-def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], method: str) -> Assembly:
+def refine_times(
+    state: Assembly, response: Method, w: Callable[[Table], Table], merge: Callable[..., Merged]
+) -> Assembly:
     """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
     images, stated, names, valid, _ = state.bracket
     recover = recovery.validated(response)
 
     def spread(times: NDArray[np.float64]) -> float:
         g = recover(images, times, valid=valid)
-        E = merge_with_quality(images, times, g, w(g), method=method, valid=valid).E
+        E = merge(images, times, g, w(g), valid=valid).E
         return consistency.spread(consistency.level_medians(images, times, E, valid=valid))
 
     known = recover(images, stated, valid=valid) if response == "linear" else None
@@ -181,8 +183,8 @@ def retimed(state: Assembly, response: Method, w: Callable[[Table], Table], meth
     return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
 
 
-def compared(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
-    """Return the Assembly with what its frames say of each level, and what that puts in doubt."""
+def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
+    """Return the Assembly with the medians of each level, and the warnings that follow from them."""
     state = state._replace(stage="compare", medians=medians)
     images, times, names, valid, _ = state.bracket
     alone = "no level stands in two frames, so the times cannot be compared with the pixels"

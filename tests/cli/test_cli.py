@@ -115,7 +115,7 @@ def test_photographs_that_contradict_their_times_are_refused_unless_told_otherwi
     code, _, complaint = hdrlab("assemble", folder, "-o", out, "--times", times, capsys=capsys)
     assert code == 2 and "contradict" in complaint and "frame2.png" in complaint
     assert not out.exists()
-    assert hdrlab("assemble", folder, "-o", out, "--times", times, "--anyway") == 0
+    assert hdrlab("assemble", folder, "-o", out, "--times", times, "--force") == 0
     assert out.exists()
 
 

@@ -203,7 +203,7 @@ def test_nothing_is_written_where_something_is_missing_unless_it_is_asked_for(ho
     (home / "map.hdr").unlink()
     code, said, notes = hdrlab("submit", home)
     assert code == 2 and "MISSING" in said and not (tmp_path / "submission.zip").exists()
-    assert hdrlab("submit", home, "--anyway")[0] == 0 and (tmp_path / "submission.zip").exists()
+    assert hdrlab("submit", home, "--force")[0] == 0 and (tmp_path / "submission.zip").exists()
 
 
 def test_a_link_out_of_the_project_is_not_followed(home, tmp_path):

@@ -8,7 +8,7 @@ from PIL import Image
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, lens_flare, movers
 from hdrlab.cli import main
-from hdrlab.core.scatter import Spread
+from hdrlab.core.scatter import GlareSpread
 from hdrlab.io.radiance import read_radiance
 from hdrlab.show.pages import report
 
@@ -31,7 +31,7 @@ def plain(moving):
 
 
 def test_without_being_asked_nothing_is_looked_for(plain):
-    assert plain.moving is None and plain.veiled is None and plain.stage == "compare"
+    assert plain.moving is None and plain.glare is None and plain.stage == "compare"
 
 
 @pytest.mark.parametrize("way", ["regions", "reference"])
@@ -48,14 +48,14 @@ def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
 
 def test_flare_is_the_last_stage_before_they_are_compared():
     room = scenes.room(SHAPE)
-    veiled = lens_flare.add_glare(room, Spread(0.1, 2.5))
+    veiled = lens_flare.add_glare(room, GlareSpread(0.1, 2.5))
     times = 0.9 / veiled.max() * 4.0 ** np.arange(9)
     taken = camera.shoot(veiled, times, camera.Camera(full_well=50_000), rng=1)
-    states = list(pipeline.assemble_steps(taken, align="none", flare="veil"))
+    states = list(pipeline.assemble_steps(taken, align="none", flare="glare"))
     assert [state.stage for state in states][-2:] == ["flare", "compare"]
     found = states[-1]
-    assert found.veiled.any() and any("the lens scattered" in note for note in found.notes)
-    assert np.median(found.E[found.veiled]) < np.median(states[2].E[found.veiled])
+    assert found.glare.any() and any("the lens scattered" in note for note in found.notes)
+    assert np.median(found.E[found.glare]) < np.median(states[2].E[found.glare])
 
 
 def test_ways_that_there_are_not_are_refused(moving):
@@ -72,12 +72,12 @@ def test_the_command_says_what_moved_and_the_report_shows_it(moving, plain, tmp_
     (tmp_path / "times.csv").write_text("\n".join(lines))
     photos = sorted(map(str, tmp_path.glob("*.png")))
     out, page = tmp_path / "map.pfm", tmp_path / "page"
-    asked = ["--align", "none", "--ghosts", "regions", "--flare", "veil", "--report", str(page)]
+    asked = ["--align", "none", "--ghosts", "regions", "--flare", "glare", "--report", str(page)]
     ran = CliRunner().invoke(
         main, ["assemble", *photos, "--times", str(tmp_path / "times.csv"), "-o", str(out), *asked]
     )
     assert ran.exit_code == 0, ran.output
-    assert "something moved in" in ran.output and "veil" in ran.output
+    assert "something moved in" in ran.output and "veiling glare" in ran.output
     assert not np.allclose(read_radiance(out), plain.E)
     text = (page / "report.html").read_text(encoding="utf8")
     assert "What moved" in text and "in orange with dark outlines" in text

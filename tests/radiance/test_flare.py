@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab import scenes
 from hdrlab.capture import lens_flare as lens
-from hdrlab.core.scatter import Spread, kernel, scattered
+from hdrlab.core.scatter import GlareSpread, scatter, spread_transform
 from hdrlab.radiance import flare
 
 
@@ -20,7 +20,7 @@ def room():
 def test_a_point_of_light_becomes_the_point_spread():
     E = np.zeros((31, 41), np.float32)
     E[10, 12] = 1
-    seen = lens.add_glare(E, Spread(0.1, 2.5, 2.0))
+    seen = lens.add_glare(E, GlareSpread(0.1, 2.5, 2.0))
     y, x = np.indices(E.shape)
     r = np.hypot(y - 10, x - 12)
     K = (1 + (r / 2) ** 2) ** -1.25
@@ -32,7 +32,7 @@ def test_a_point_of_light_becomes_the_point_spread():
 def test_no_light_is_made_and_what_stays_in_the_frame_is_what_was_there():
     E = np.zeros((81, 81), np.float32)
     E[40, 40] = 5
-    seen = lens.add_glare(E, Spread(0.2, 3.0))
+    seen = lens.add_glare(E, GlareSpread(0.2, 3.0))
     assert 0.95 * 5 < seen.sum(dtype=float) <= 5.0001 and np.all(seen >= 0)
 
 
@@ -44,7 +44,7 @@ def test_veils_add_and_scale_as_light_does():
 
 
 def test_a_clear_lens_changes_nothing(room):
-    assert np.array_equal(lens.add_glare(room, Spread(0.0)), room)
+    assert np.array_equal(lens.add_glare(room, GlareSpread(0.0)), room)
 
 
 def test_a_reflection_lies_across_the_middle_as_a_disc_with_its_share_of_light():
@@ -58,12 +58,14 @@ def test_a_reflection_lies_across_the_middle_as_a_disc_with_its_share_of_light()
     assert np.ptp(inner) < 0.02 * inner.max()
 
 
-@pytest.mark.parametrize("spread", [Spread(1.0), Spread(-0.1), Spread(0.1, 0.0), Spread(0.1, 2.0, -1.0)])
+@pytest.mark.parametrize(
+    "spread", [GlareSpread(1.0), GlareSpread(-0.1), GlareSpread(0.1, 0.0), GlareSpread(0.1, 2.0, -1.0)]
+)
 def test_a_lens_without_a_meaning_is_refused(spread):
     with pytest.raises(ValueError, match="share"):
         lens.add_glare(np.ones((4, 4)), spread)
     with pytest.raises(ValueError, match="share"):
-        flare.remove(np.ones((4, 4)), spread=spread)
+        flare.remove_glare(np.ones((4, 4)), spread=spread)
 
 
 @pytest.mark.parametrize("wrong", [{"place": 0}, {"radius": 0}, {"share": 1}])
@@ -77,8 +79,8 @@ def test_a_reflection_without_a_meaning_is_refused(wrong):
 
 @pytest.mark.parametrize("power", [2.0, 2.5, 3.0])
 def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
-    F = lens.add_glare(room, Spread(0.1, power))
-    found = flare.remove(F)
+    F = lens.add_glare(room, GlareSpread(0.1, power))
+    found = flare.remove_glare(F)
     affected = (1 - 0.9 * room / F).max(axis=-1) > 0.05
     before, after = (np.abs(one / room - 1).max(axis=-1)[affected] for one in (F, found.E))
     assert found.spread.power == power and found.spread.share == pytest.approx(0.1, rel=0.05)
@@ -86,29 +88,29 @@ def test_a_veil_is_found_and_the_truth_comes_back_to_5_percent(room, power):
 
 
 def test_a_lens_that_was_measured_is_undone_to_a_per_mille(room):
-    spread = Spread(0.08, 2.25)
+    spread = GlareSpread(0.08, 2.25)
     F = lens.add_glare(room, spread)
-    found = flare.remove(F, spread=spread, part=1e-6)
+    found = flare.remove_glare(F, spread=spread, part=1e-6)
     assert np.quantile(np.abs(found.E / room - 1), 0.99) < 1e-3
 
 
 @pytest.mark.parametrize("name", scenes.PLACES)
 def test_a_scene_through_a_clear_lens_is_left_as_it_is(name):
     E = scenes.layers(name, (128, 192)).radiance
-    found = flare.remove(E)
+    found = flare.remove_glare(E)
     assert np.array_equal(found.E, E) and not found.region.any() and found.spread.share == 0
-    assert "no veil" in flare.note(found)
+    assert "no veiling glare" in flare.note(found)
 
 
 def test_the_rounds_come_down_to_the_share(room):
-    F = lens.add_glare(room, Spread(0.1, 2.0))
-    shares = [state.share for state in flare.remove_steps(F, 2.0)]
+    F = lens.add_glare(room, GlareSpread(0.1, 2.0))
+    shares = [state.share for state in flare.glare_steps(F, 2.0)]
     assert abs(shares[-1] - 0.1) < abs(shares[0] - 0.1) and shares[-1] == pytest.approx(0.1, rel=0.03)
 
 
 def test_outside_the_region_the_map_stays_bit_for_bit(room):
-    F = lens.add_glare(room, Spread(0.1, 3.0))
-    found = flare.remove(F, part=0.2)
+    F = lens.add_glare(room, GlareSpread(0.1, 3.0))
+    found = flare.remove_glare(F, part=0.2)
     assert 0 < found.region.mean() < 0.9
     assert np.array_equal(found.E[~found.region], F[~found.region])
     assert np.all(found.E[found.region].min(axis=-1) < F[found.region].max(axis=-1))
@@ -116,15 +118,15 @@ def test_outside_the_region_the_map_stays_bit_for_bit(room):
 
 
 def test_the_unit_of_light_does_not_matter(room):
-    F = lens.add_glare(room, Spread(0.1, 2.5))
-    one, other = flare.remove(F), flare.remove(F * np.float32(1024))
+    F = lens.add_glare(room, GlareSpread(0.1, 2.5))
+    one, other = flare.remove_glare(F), flare.remove_glare(F * np.float32(1024))
     assert one.spread.power == other.spread.power and np.allclose(other.E, 1024 * one.E, rtol=1e-3)
 
 
 def test_gray_maps_and_maps_without_light_are_maps(room):
-    gray = flare.remove(lens.add_glare(room[..., 1], Spread(0.1, 2.5)))
+    gray = flare.remove_glare(lens.add_glare(room[..., 1], GlareSpread(0.1, 2.5)))
     assert gray.E.shape == room.shape[:2] and gray.spread.power == 2.5
-    dark = flare.remove(np.zeros((12, 14)))
+    dark = flare.remove_glare(np.zeros((12, 14)))
     assert not dark.E.any() and dark.spread.share == 0
 
 
@@ -134,16 +136,16 @@ def test_gray_maps_and_maps_without_light_are_maps(room):
 )
 def test_what_is_no_map_is_refused(wrong, said):
     with pytest.raises(ValueError, match=said):
-        flare.remove(**({"F": np.ones((4, 4))} | wrong))
+        flare.remove_glare(**({"F": np.ones((4, 4))} | wrong))
 
 
 def test_without_powers_there_is_nothing_to_choose():
     with pytest.raises(ValueError, match="power"):
-        flare.estimate(np.ones((4, 4)), powers=())
+        flare.estimate_spread(np.ones((4, 4)), powers=())
 
 
 def test_scattered_light_falls_with_distance():
     E = np.zeros((9, 60), np.float32)
     E[4, 5] = 1
-    veil = scattered(E, kernel(E.shape, 2.0))
+    veil = scatter(E, spread_transform(E.shape, 2.0))
     assert np.all(np.diff(veil[4, 6:]) < 0) and veil[4, 5] == pytest.approx(0, abs=1e-6)

@@ -1,39 +1,37 @@
 """How far the frames contradict each other at a pixel, and how much of that a still scene explains.
 
 Z   pixel levels         (P, H, W, C)
-x   estimates            (P, H, W, C), ln E of each frame alone: see `frames`
+x   ln E                 (P, H, W, C), of each frame alone: see `frames`
 w   weights              (n,), how far to trust a level
 v   weighted variance    (H, W), sum w (x - mean x)^2 / sum w; of logarithms, so exposure and unit drop out
 s2  noise                (H, W), sum w s2(Z) / sum w
 r   range                (H, W), of x over 3 x 3 pixels of a frame, sum w r / sum w
 
 Where an edge lies a little elsewhere in each frame, v is large too: under a shift of up to a pixel a frame's
-estimate changes by at most r, and so sqrt(v) stays below r / 2. A score counts what is left: sqrt(v) over
+ln E changes by at most r, and so sqrt(v) stays below r / 2. A score counts what is left: sqrt(v) over
 what is tolerated, tau + 2 s + edge r.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_table
-from hdrlab.radiance.deghosting.frames import Photographs
+from hdrlab.core.arrays import as_table
+from hdrlab.core.types import F32, Array
+from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import ROWS
-
-Float = NDArray[np.float32]
-Tables = NDArray[np.complex64]
 
 
 class Deviation(NamedTuple):
     """v, s2 and r, (H, W) float32 each, means over the channels; 0 where no frame measures a pixel."""
 
-    v: Float
-    s2: Float
-    r: Float
+    v: F32
+    s2: F32
+    r: F32
 
 
-def deviation(taken: Photographs, w: ArrayLike) -> Deviation:
+def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
     """Return the weighted variance, and what noise and edges have to do with it.
 
     A frame that clips one channel of a pixel is left out, as in the merge; where one frame alone measures a
@@ -41,7 +39,7 @@ def deviation(taken: Photographs, w: ArrayLike) -> Deviation:
 
     Parameters
     ----------
-    taken : Photographs, of `frames.photographs`
+    taken : Calibrated, of `frames.calibrate_frames`
     w : (n,), weights of the levels
 
     Raises
@@ -51,14 +49,14 @@ def deviation(taken: Photographs, w: ArrayLike) -> Deviation:
 
     Examples
     --------
-    >>> from hdrlab.radiance.deghosting.frames import photographs
+    >>> from hdrlab.radiance.deghosting.frames import calibrate_frames
     >>> images = np.array([[[40, 40]], [[80, 160]]], np.uint8)  # the second pixel became twice as bright
     >>> linear = np.log(np.maximum(np.arange(256), 0.5) / 128)
-    >>> taken = photographs(images, [1, 2], linear, np.ones((1, 2)))
-    >>> np.sqrt(deviation(taken, np.ones(256)).v).round(3)
+    >>> taken = calibrate_frames(images, [1, 2], linear, np.ones((1, 2)))
+    >>> np.sqrt(measure_deviation(taken, np.ones(256)).v).round(3)
     array([[0.   , 0.347]], dtype=float32)
     """
-    pixels, tables = taken.images, moments(taken, w)
+    pixels, tables = taken.images, moment_tables(taken, w)
     x = taken.x.astype(np.float32)
     out = np.empty((3, *pixels.shape[1:3]), np.float32)
     for start in range(0, out.shape[1], ROWS):
@@ -71,7 +69,7 @@ def deviation(taken: Photographs, w: ArrayLike) -> Deviation:
                 counts &= frame[..., c] < taken.top
             if taken.valid is not None:
                 counts &= taken.valid[j, rows]
-            low, high = extremes(pixels[j], rows)
+            low, high = local_extremes(pixels[j], rows)
             for c, Z in enumerate(np.moveaxis(frame, -1, 0)):
                 first = tables[0, j, c].take(Z) * counts
                 sums[0, ..., c] += first
@@ -84,7 +82,7 @@ def deviation(taken: Photographs, w: ArrayLike) -> Deviation:
     return Deviation(*out)
 
 
-def moments(taken: Photographs, w: ArrayLike) -> Tables:
+def moment_tables(taken: Calibrated, w: ArrayLike) -> Array:
     """Return the tables of w + i w x and of w x^2 + i w s2, (2, P, C, n): each costs a look-up a pixel."""
     n = taken.x.shape[-1]
     trust = as_table(w, n)
@@ -96,7 +94,7 @@ def moments(taken: Photographs, w: ArrayLike) -> Tables:
     return np.stack([trust + 1j * trust * x, trust * x**2 + 1j * trust * taken.s2]).astype(np.complex64)
 
 
-def extremes(frame: Array, rows: slice) -> tuple[Array, Array]:
+def local_extremes(frame: Array, rows: slice) -> tuple[Array, Array]:
     """Return the lowest and the highest level in the 3 x 3 pixels around each of some rows."""
     last = len(frame) - 1
     above, below = max(rows.start - 1, 0), min(rows.stop, last) + 1
@@ -113,7 +111,7 @@ def _three(values: Array, axis: int, best: np.ufunc) -> Array:
     return np.moveaxis(best(best(v[:-2], v[1:-1]), v[2:]), 0, axis)
 
 
-def score(found: Deviation, *, tau: float, edge: float) -> Float:
+def score_contradiction(found: Deviation, *, tau: float, edge: float) -> F32:
     """Return sqrt(v) / (tau + 2 s + edge r): above 1, neither noise nor an edge explains it all."""
     v, s2, r = found
     tolerated = np.float32(tau) + 2 * np.sqrt(s2) + np.float32(edge) * r

@@ -1,4 +1,4 @@
-"""What each frame of a bracket says of its levels, and how surely, learned from the pixels that stand still.
+"""Bias and noise of each frame of a bracket, level by level, from the pixels that stand still.
 
 Z      pixel levels      (P, H, W, C), frames from short to long, n = 256 or 65536 levels
 g      response          (C, n), ln exposure of each level
@@ -8,63 +8,55 @@ kappa  spread            (P, C, n), 1.48 times the median deviation of rho, in u
 s      noise             (C, n), what an error of one level of 256 makes of ln E
 
 Real brackets contradict themselves everywhere: times are rounded, phones tone-map, glare grows with light.
-What a frame says of most pixels of a level is no motion, so it is taken off before motion is looked for, as
-far as LARGEST; and a frame is trusted as far as its pixels agree. Most pixels have to stand still.
+The bias of most pixels of a level is no motion, so it is taken off before motion is looked for, as far as
+LARGEST; and a frame is trusted as far as its pixels agree. Most pixels have to stand still.
 """
 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_mask, as_radiance, as_stack, as_table, as_times, levels
+from hdrlab.core.arrays import as_mask, as_radiance
+from hdrlab.core.types import F64, Array, Mask
+from hdrlab.radiance.merge import TOP, as_tables
 
-Float = NDArray[np.float64]
-BINS = 32  # of the levels; each has a bias and a spread
-FEWEST = 100  # pixels that speak for a bin
-PIXELS = 300_000  # an even choice of about so many speaks for a frame
-LARGEST = 0.25  # ln E: a larger bias is a figure's that fills its bin, and stays
-LEAST, MOST = 1.0, 8.0  # of kappa: no level is surer than its rounding, and none is worth nothing
+# of the levels; each has a bias and a spread
+BINS = 32
+# pixels that make the median of a bin
+FEWEST = 100
+# an even choice of about so many represents a frame
+PIXELS = 300_000
+# ln E: a larger bias is that of a figure that fills its bin, and stays
+LARGEST = 0.25
+# of kappa: no level is surer than its rounding, and none is worth nothing
+LEAST, MOST = 1.0, 8.0
 
 
-class Photographs(NamedTuple):
+class Calibrated(NamedTuple):
     """A checked bracket: images (P, H, W, C), times (P,), top, valid (P, H, W) or None, and its tables.
 
     x (P, C, n) is ln E of each level in each frame, s2 (P, C, n) the variance of that.
     """
 
     images: Array
-    times: Float
+    times: F64
     top: int
-    valid: NDArray[np.bool_] | None
-    x: Float
-    s2: Float
+    valid: Mask | None
+    x: F64
+    s2: F64
 
 
-def curves(g: ArrayLike, n: int, channels: int) -> Float:
-    """Return g of each channel (C, n)."""
-    table = as_table(g, n).reshape(n, -1)
-    if table.shape[1] not in (1, channels):
-        raise ValueError(f"expected a response of 1 or {channels} channels, got {table.shape[1]}")
-    return np.broadcast_to(table, (n, channels)).T
-
-
-def noise(curve: Float) -> Float:
+def level_noise(curve: F64) -> F64:
     """Return s (C, n) = g'(z) n / 256, how much ln E changes where Z has an error of one level of 256."""
     n = curve.shape[1]
     return np.maximum(n // 256 * np.gradient(curve, axis=1), 1e-4)
 
 
-def photographs(
-    images: ArrayLike,
-    times: ArrayLike,
-    g: ArrayLike,
-    E: ArrayLike,
-    *,
-    top: float = 0.98,
-    valid: ArrayLike | None = None,
-) -> Photographs:
-    """Return the bracket with what its still pixels teach of its frames.
+def calibrate_frames(
+    images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLike, *, valid: ArrayLike | None = None
+) -> Calibrated:
+    """Return the bracket with each frame's bias and noise, from its still pixels.
 
     Parameters
     ----------
@@ -72,7 +64,6 @@ def photographs(
     times : (P,) seconds
     g : (n,) or (n, 3), ln exposure of each level
     E : (H, W) or (H, W, 3), the plain map of them
-    top : levels above this fraction of the top level are clipped
     valid : (P, H, W) bool, optional, False where a photograph holds no picture
 
     Raises
@@ -84,23 +75,19 @@ def photographs(
     --------
     >>> images = np.array([20, 40, 80], np.uint8)[:, None, None] * np.ones((3, 20, 20), np.uint8)
     >>> linear = np.log(np.maximum(np.arange(256), 0.5) / 128)
-    >>> found = photographs(images, [1, 2.2, 4], linear, np.full((20, 20), 20 / 128))  # it was 2 seconds
+    >>> found = calibrate_frames(images, [1, 2.2, 4], linear, np.full((20, 20), 20 / 128))  # it was 2 seconds
     >>> float((128 * np.exp(found.x[1, 0, 40])).round(6))  # as the pixels say, and not 40 / 2.2
     20.0
     """
-    stack = as_stack(images)
-    seconds, mask, n = as_times(times, len(stack)), as_mask(valid, stack), levels(stack)
-    Z, E = stack.reshape(*stack.shape[:3], -1), as_radiance(E)
+    stack, seconds, _, curves, first_clipped = as_tables(images, times, g, None, "log", TOP)
+    mask, Z, E = as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1), as_radiance(E)
     if E.shape != stack.shape[1:]:
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
-    if not 0 < top <= 1:
-        raise ValueError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
-    first_clipped = min(int(top * (n - 1)) + 1, n - 1)
-    curve = curves(g, n, Z.shape[-1])
-    s = noise(curve)
+    curve = curves.T
+    s = level_noise(curve)
     x = curve - np.log(seconds)[:, None, None]
     step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
-    few = (slice(None, None, step), slice(None, None, step))
+    few = (slice(None, None, step),) * 2
     with np.errstate(divide="ignore"):
         lE = np.log(E[few]).reshape(-1, Z.shape[-1])
     s2 = np.empty_like(x)
@@ -110,13 +97,13 @@ def photographs(
         if mask is not None:
             counts &= mask[j][few].ravel()
         for c, z in enumerate(levels_of[counts].T):
-            delta, kappa = bias(z, x[j, c, z] - lE[counts, c], s[c])
+            delta, kappa = fit_bias(z, x[j, c, z] - lE[counts, c], s[c])
             x[j, c] -= delta
             s2[j, c] = (kappa * s[c]) ** 2
-    return Photographs(Z, seconds, first_clipped, mask, x, s2)
+    return Calibrated(Z, seconds, first_clipped, mask, x, s2)
 
 
-def bias(Z: Array, rho: Float, s: Float) -> tuple[Float, Float]:
+def fit_bias(Z: Array, rho: F64, s: F64) -> tuple[F64, F64]:
     """Return delta (n,) and kappa (n,) of a frame's channel from the residuals (N,) of levels Z (N,)."""
     n = len(s)
     at = (np.arange(BINS) + 0.5) * n / BINS

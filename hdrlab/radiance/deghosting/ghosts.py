@@ -1,61 +1,79 @@
 """Ghosts: what moved between the photographs stands in the map several times, half transparent.
 
-Z        pixel levels      (P, H, W[, 3])
-score    contradiction     (H, W), 1 is what noise and edges explain: see `deviation`
-labels   regions           (H, W) int32, 1 ... R, 0 elsewhere
-frames   best exposures    (R,), the frame that leads each region
-shown    (P, H, W) bool    which frames make a pixel's radiance
+Z           pixel levels      (P, H, W[, 3])
+score       contradiction     (H, W), 1 is what noise and edges explain: see `deviation`
+labels      regions           (H, W) int32, 1 ... R, 0 elsewhere
+references  best exposures    (R,), the reference frame of each region
+used        (P, H, W) bool    which frames make a pixel's radiance
 
 The slide's way: weighted variance, threshold, dilation, regions, and in each region the best exposure. Two
 things are added. Edges of high contrast have variance as well; what they explain does not count. And in a
-region the best exposure leads, but other frames join it where they agree with it (`agreement`): so its
-clipped and its dark pixels are not lost, nor is its noise all there is. `alone` leaves them out, as on the
-slide.
+region the best exposure is the reference, but other frames join it where they are consistent with it: see
+`reference`. So its clipped and its dark pixels are not lost, nor is its noise all there is.
 
-One frame per region means one moment per region: who walks through the picture in great steps may be quality
-twice, or never. With a `reference`, that frame leads in every region, and the map shows its moment.
+One frame per region means one moment per region: who walks through the picture in great steps may appear
+twice, or never. With one reference for all regions, the map shows its moment.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from typing import Any, NamedTuple
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy import ndimage
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_times, levels
+from hdrlab.core.arrays import as_mask, as_stack, levels
 from hdrlab.core.steps import last
-from hdrlab.radiance.deghosting import agreement, deviation
-from hdrlab.radiance.deghosting.deviation import Deviation
-from hdrlab.radiance.deghosting.frames import Photographs, photographs
-from hdrlab.radiance.deghosting.regions import (
-    Box,
-    Labels,
-    Mask,
-    blended,
-    dilated,
-    grown,
-    labelled,
-    padded,
-    seam,
-    seeds,
-)
+from hdrlab.core.types import F32, F64, Flags, Indices, Labels, Mask
+from hdrlab.radiance.deghosting import reference, regions
+from hdrlab.radiance.deghosting.deviation import Deviation, measure_deviation, score_contradiction
+from hdrlab.radiance.deghosting.frames import Calibrated, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
 
-Float = NDArray[np.float32]
-TAU = 0.1  # ln E: what photographs of a still scene contradict each other by, noise and edges aside
-EDGE = 0.35  # of the range of ln E over 3 x 3 pixels; 0.5 is all that a shift of a pixel can do
-REACH = 4  # margins that a region grows at once
-MOST = 50  # per cent of the pixels: where more than these contradict each other, it is hardly motion
-ROUNDS = 4  # of growing: a leader's figure is found in one or two
+# margins that a region grows at once
+REACH = 4
+# per cent of the pixels: where more than these contradict each other, it is hardly motion
+WIDESPREAD = 50
+# of growing: the figure in a reference frame is found in one or two
+ROUNDS = 4
 
 
-class Led(NamedTuple):
-    """Regions (H, W), labelled 1 ... R, and the frame (R,) that leads in each."""
+@dataclass(frozen=True)
+class Settings:
+    """How motion is found, and which frames make the map where something moved.
+
+    Attributes
+    ----------
+    tau : contradiction, in ln E, that is tolerated everywhere, noise and edges aside
+    edge : share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides; at 0.5 no edge that
+        is shifted by up to a pixel counts
+    margin : pixels by which regions are dilated, and over which seams are blended; by default 1 in 150 of
+        the width, at least 4
+    reference : number of the reference frame of every region; by default each has its own best exposure
+    alone : nothing but the reference frame counts in a region, as on the slide
+    """
+
+    tau: float = 0.1
+    edge: float = 0.35
+    margin: int | None = None
+    reference: int | None = None
+    alone: bool = False
+
+    def __post_init__(self) -> None:
+        if not (0 < self.tau < np.inf and 0 <= self.edge < np.inf):
+            got = f"{self.tau} and {self.edge}"
+            raise ValueError(f"expected a positive tau, and an edge of at least 0, got {got}")
+        if self.margin is not None and self.margin < 0:
+            raise ValueError(f"expected a margin of at least 0 pixels, got {self.margin}")
+
+
+class Regions(NamedTuple):
+    """Regions (H, W), labelled 1 ... R, and the reference frame (R,) of each."""
 
     labels: Labels
-    frames: NDArray[np.int64]
+    references: Indices
 
 
 class Ghosts(NamedTuple):
@@ -64,120 +82,105 @@ class Ghosts(NamedTuple):
     Attributes
     ----------
     E : (H, W) or (H, W, 3) float32, the map; outside the regions it is the plain one
-    quality : (H, W) uint8, how each pixel is known, flags of `merge.Quality`
+    quality : (H, W) uint8, pixel quality flags of `merge.Quality`
     labels : (H, W) int32, the regions 1 ... R; 0 where nothing moved
-    frames : (R,) int, the frame that leads in each region
-    shown : (P, H, W) bool, the frames that make each pixel, in the order of the images given
+    references : (R,) int, the reference frame of each region
+    used : (P, H, W) bool, the frames that make each pixel, in the order of the images given
     score : (H, W) float32, contradiction over what noise and edges explain
     """
 
-    E: Float
-    quality: NDArray[np.uint8]
+    E: F32
+    quality: Flags
     labels: Labels
-    frames: NDArray[np.int64]
-    shown: NDArray[np.bool_]
-    score: Float
+    references: Indices
+    used: Mask
+    score: F32
 
 
-def detect(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[Float, Mask]:
-    """Return the score (H, W) and the mask (H, W) of what moved; the knobs are those of `remove`.
+def detect_motion(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[F32, Mask]:
+    """Return the score (H, W) and the mask (H, W) of what moved, by Settings.
 
     Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges counted for
     little, and then by the margin.
     """
-    score = deviation.score(found, tau=tau, edge=edge)
-    seed = seeds(score)
+    score = score_contradiction(found, tau=tau, edge=edge)
+    seed = regions.find_seeds(score)
     if not seed.any():
         return score, seed
-    weak = deviation.score(found, tau=tau / 2, edge=edge / 5) > 1
-    return score, dilated(grown(seed, weak, REACH * margin), margin)
+    weak = score_contradiction(found, tau=tau / 2, edge=edge / 5) > 1
+    return score, regions.dilate(regions.grow(seed, weak, REACH * margin), margin)
 
 
-def losses(taken: Photographs) -> NDArray[np.float32]:
-    """Return what a level costs, (P, C, n): the variance of its ln E; 1, the most, if it measures nothing."""
-    cost = np.minimum(taken.s2, 1.0)
+def mean_losses(taken: Calibrated, labels: Labels) -> F64:
+    """Return the mean loss of each frame in each region, (P, R).
+
+    A level costs the variance of its ln E, and 1, the most, where it measures nothing.
+    """
+    cost, boxes = np.minimum(taken.s2, 1.0).astype(np.float32), ndimage.find_objects(labels)
     cost[..., 0] = cost[..., taken.top :] = 1
-    return cost.astype(np.float32)
-
-
-def exposures(taken: Photographs, labels: Labels) -> NDArray[np.float64]:
-    """Return the mean loss of each frame in each region, (P, R)."""
-    cost, boxes = losses(taken), ndimage.find_objects(labels)
     out = np.ones((len(taken.images), len(boxes)))
     for j, r in np.ndindex(*out.shape):
         inside = labels[boxes[r]] == r + 1
         Z = taken.images[j][boxes[r]][inside]
         loss = np.mean([cost[j, c][Z[:, c]] for c in range(Z.shape[1])], axis=0)
-        quality = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
-        out[j, r] = np.where(quality, loss, 1).mean()
+        shown = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
+        out[j, r] = np.where(shown, loss, 1).mean()
     return out
 
 
-def leaders(taken: Photographs, labels: Labels, reference: int | None = None) -> NDArray[np.int64]:
-    """Return the frame that leads in each region (R,): its best exposure, of least loss, or the reference."""
-    loss = exposures(taken, labels)
-    return loss.argmin(axis=0) if reference is None else np.full(loss.shape[1], reference)
+def best_exposures(taken: Calibrated, labels: Labels) -> Indices:
+    """Return the best exposure of each region (R,): the frame of least loss."""
+    return mean_losses(taken, labels).argmin(axis=0)
 
 
-def contradicted(taken: Photographs, box: Box, lead: int, E: Float) -> Mask:
-    """Return where a photograph does not agree with the map E (h, w, C) of a box."""
+def find_contradictions(taken: Calibrated, box: regions.Box, j: int, E: F32) -> Mask:
+    """Return where a photograph is not consistent with the map E (h, w, C) of a box."""
     nothing = np.zeros_like(E)
-    plain = agreement.Known(E, nothing, np.ones(E.shape, bool), nothing, np.full_like(E, np.inf))
-    return ~agreement.agrees(agreement.reading(taken, lead, box), plain, tau=2 * agreement.TAU)
+    plain = reference.Estimate(E, nothing, np.ones(E.shape, bool), nothing, np.full_like(E, np.inf))
+    return ~reference.find_consistent(reference.read_frame(taken, j, box), plain, tau=2 * reference.TAU)
 
 
-def led_steps(
-    taken: Photographs, E: Float, moved: Mask, margin: int, *, reference: int | None = None
-) -> Iterator[Led]:
-    """Yield the regions and the frame that leads in each, until no region cuts off what its leader saw.
+def region_steps(
+    taken: Calibrated, E: F32, moved: Mask, margin: int, *, choose: Callable[[Labels], Indices]
+) -> Iterator[Regions]:
+    """Yield the regions and their reference frames, until no region cuts off a figure of its reference.
 
-    A region must hold the whole figure as it stands in the frame that leads there. Where that frame's
+    A region must hold the whole figure as it stands in its reference frame, which `choose` gives. Where that
     photograph contradicts the plain map E (H, W, C) beside the region, that grows, and may meet another.
     """
     for _ in range(ROUNDS):
-        labels = labelled(moved)
-        frames = leaders(taken, labels, reference)
-        yield Led(labels, frames)
+        labels = regions.label(moved)
+        chosen = choose(labels)
+        yield Regions(labels, chosen)
         wider = moved.copy()
         for r, box in enumerate(ndimage.find_objects(labels)):
-            wide = padded(box, REACH * margin, labels.shape)
-            beside = contradicted(taken, wide, int(frames[r]), E[wide])
-            wider[wide] |= grown(labels[wide] == r + 1, beside, REACH * margin)
+            wide = regions.pad_box(box, REACH * margin, labels.shape)
+            beside = find_contradictions(taken, wide, int(chosen[r]), E[wide])
+            wider[wide] |= regions.grow(labels[wide] == r + 1, beside, REACH * margin)
         if np.array_equal(wider, moved):
             return
-        moved = dilated(wider, margin // 2)
+        moved = regions.dilate(wider, margin // 2)
 
 
-def followers(taken: Photographs, box: Box, lead: int, *, alone: bool) -> Mask:
-    """Return which frames make a box's pixels, (P, h, w): those that agree with the leader, or it alone."""
+def select_frames(taken: Calibrated, box: regions.Box, j: int, *, alone: bool) -> Mask:
+    """Return which frames make a box, (P, h, w): those consistent with the reference, or it alone."""
     if not alone:
-        return agreement.following(taken, lead, box)
-    follow = np.zeros((len(taken.images), *taken.images[0][box].shape[:2]), bool)
-    follow[lead] = True if taken.valid is None else taken.valid[lead][box]
-    return follow
+        return reference.find_consistent_frames(taken, j, box)
+    used = np.zeros((len(taken.images), *taken.images[0][box].shape[:2]), bool)
+    used[j] = True if taken.valid is None else taken.valid[j][box]
+    return used
 
 
-def around(images: Array) -> int:
-    """Return the margin that suits photographs of this size: a 150th of their width, at least 4 pixels."""
-    return max(4, round(images.shape[2] / 150))
-
-
-def remove(
+def remove_ghosts(
     images: ArrayLike,
     times: ArrayLike,
     g: ArrayLike,
     w: ArrayLike | None = None,
     *,
+    settings: Settings = Settings(),
     merged: Merged | None = None,
-    merge: Callable[..., Merged] = merge_with_quality,
-    reference: int | None = None,
-    alone: bool = False,
-    tau: float = TAU,
-    edge: float = EDGE,
-    margin: int | None = None,
-    top: float = 0.98,
     valid: ArrayLike | None = None,
-    **knobs: Any,
+    merge: Callable[..., Merged] = merge_with_quality,
 ) -> Ghosts:
     """Return the radiance map of a bracket in which something moved, without ghosts.
 
@@ -187,16 +190,10 @@ def remove(
     times : (P,) seconds
     g : (n,) or (n, 3), response, ln exposure of each level
     w : (n,), weights; the hat by default
-    merged : the plain map of `merge_with_quality`, where it is known; else it is made here
-    merge : `merge_with_quality`, or its fast form
-    reference : number of the frame that leads in every region; by default each has its own best exposure
-    alone : nothing but the leading frame counts in a region, as on the slide
-    tau : contradiction, in ln E, that is tolerated everywhere
-    edge : share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides; at 0.5 no edge that
-        is shifted by up to a pixel counts
-    margin : pixels by which regions are dilated, and over which seams are blended; by default 1 in 150 of
-        the width, at least 4
-    top, valid, **knobs : of `merge_with_quality`
+    settings : how motion is found, and which frames make the map there
+    merged : the plain map of `merge`, where it is known; else it is made here
+    valid : (P, H, W) bool, optional, False where a photograph holds no picture
+    merge : `merge_with_quality`, of `radiance.merge` or of `fast.merge`
 
     Returns
     -------
@@ -206,7 +203,7 @@ def remove(
     Raises
     ------
     ValueError
-        For arrays that do not fit together, and knobs out of their range.
+        For arrays that do not fit together, and a reference that is no frame.
 
     References
     ----------
@@ -219,53 +216,46 @@ def remove(
     >>> wall = np.full((60, 90), 0.5, np.float32)
     >>> ball = movers.ball((60, 90), (30, 45), 9, 2.0)
     >>> taken = movers.shoot(wall, ball, movers.path(3, (0, 25)), [0.25, 0.5, 1.0])
-    >>> found = remove(taken.bracket.images, taken.bracket.times, responses.true_g("film"))
+    >>> found = remove_ghosts(taken.bracket.images, taken.bracket.times, responses.true_g("film"))
     >>> found.labels.max(), found.E.shape
     (np.int32(1), (60, 90))
     """
     stack = as_stack(images)
-    seconds, mask, n = as_times(times, len(stack)), as_mask(valid, stack), levels(stack)
-    _check(len(stack), reference, tau, edge, margin)
-    margin = around(stack) if margin is None else margin
-    w = weights.hat(n) if w is None else w
-    knobs |= {"top": top}
-    E, quality = merge(stack, seconds, g, w, valid=mask, **knobs) if merged is None else merged
-    taken = photographs(stack, seconds, g, E, top=top, valid=mask)
-    score, moved = detect(deviation.deviation(taken, w), tau=tau, edge=edge, margin=margin)
-    plain = E.reshape(taken.images.shape[1:])
-    labels, frames = last(led_steps(taken, plain, moved, margin, reference=reference))
-    alpha = seam(labels, margin // 2)
-    E, quality = E.copy(), quality.copy()
-    shown = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
+    mask, fixed = as_mask(valid, stack), settings.reference
+    if fixed is not None and fixed not in range(len(stack)):
+        raise ValueError(f"expected the number of a frame, 0 to {len(stack) - 1}, as reference, got {fixed}")
+    w = weights.hat(levels(stack)) if w is None else w
+    margin = max(4, round(stack.shape[2] / 150)) if settings.margin is None else settings.margin
+    E, quality = (one.copy() for one in merged or merge(stack, times, g, w, valid=mask))
+    taken = calibrate_frames(stack, times, g, E, valid=mask)
+    deviation = measure_deviation(taken, w)
+    score, moved = detect_motion(deviation, tau=settings.tau, edge=settings.edge, margin=margin)
+
+    def choose(labels: Labels) -> Indices:
+        return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
+
+    plain = E.reshape(taken.images.shape[1:]).copy()
+    labels, chosen = last(region_steps(taken, plain, moved, margin, choose=choose))
+    alpha = regions.feather(labels, margin // 2)
+    used = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
     for r, box in enumerate(ndimage.find_objects(labels)):
-        y, x = wide = padded(box, 2 * agreement.BOX, labels.shape)
+        y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
         here = labels[wide] == r + 1
-        follow = followers(taken, wide, int(frames[r]), alone=alone)
-        led = merge(stack[:, y, x], seconds, g, w, valid=follow, **knobs)
-        E[wide][here] = blended(E[wide], led.E, alpha[wide])[here]
-        quality[wide][here] = led.quality[here]
-        shown[:, y, x][:, here] = follow[:, here]
-    return Ghosts(E, quality, labels, frames, shown, score)
+        frames = select_frames(taken, wide, int(chosen[r]), alone=settings.alone)
+        still = merge(stack[:, y, x], times, g, w, valid=frames)
+        E[wide][here] = regions.blend(E[wide], still.E, alpha[wide])[here]
+        quality[wide][here] = still.quality[here]
+        used[:, y, x][:, here] = frames[:, here]
+    return Ghosts(E, quality, labels, chosen, used, score)
 
 
 def note(found: Ghosts, names: Sequence[str]) -> str:
-    """Return the sentence on what moved, and which photographs lead where it did."""
-    if not len(found.frames):
+    """Return the sentence on what moved, and which photographs are the references there."""
+    if not len(found.references):
         return "nothing moved: no region contradicts itself by more than noise and edges explain"
-    numbers, counts = np.unique(found.frames, return_counts=True)
-    led = ", ".join(f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True))
-    count, share = len(found.frames), 100 * np.mean(found.labels > 0)
-    regions = "one region" if count == 1 else f"{count} regions"
-    said = f"something moved in {regions}, {share:.1f} % of the pixels; photographs that lead there: {led}"
-    return said if share < MOST else f"{said}; so much is rather a matter of times or of alignment"
-
-
-def _check(count: int, reference: int | None, tau: float, edge: float, margin: int | None) -> None:
-    if reference is not None and reference not in range(count):
-        raise ValueError(
-            f"expected a reference from 0 to {count - 1}, the number of a frame, got {reference}"
-        )
-    if not (0 < tau < np.inf and 0 <= edge < np.inf):
-        raise ValueError(f"expected a positive tau, and an edge of at least 0, got {tau} and {edge}")
-    if margin is not None and margin < 0:
-        raise ValueError(f"expected a margin of at least 0 pixels, got {margin}")
+    numbers, counts = np.unique(found.references, return_counts=True)
+    per_frame = ", ".join(f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True))
+    count, share = len(found.references), 100 * np.mean(found.labels > 0)
+    number = "one region" if count == 1 else f"{count} regions"
+    text = f"something moved in {number}, {share:.1f} % of the pixels; reference photographs: {per_frame}"
+    return text if share < WIDESPREAD else f"{text}; so much is rather a matter of times or of alignment"

@@ -5,45 +5,44 @@ alpha   (H, W) float32, 0 outside the regions, 1 inside, a ramp of a few pixels 
 """
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy import ndimage
 
-Float = NDArray[np.float32]
-Labels = NDArray[np.int32]
-Mask = NDArray[np.bool_]
+from hdrlab.core.types import F32, Labels, Mask
+
 Box = tuple[slice, slice]
-SEED = 3  # pixels: a contradiction that is thinner is an edge's, or noise
-AROUND = np.ones((3, 3), bool)
+# pixels: a contradiction that is thinner is an edge's, or noise
+SEED = 3
+CONNECTED = np.ones((3, 3), bool)
 
 
-def seeds(score: Float) -> Mask:
+def find_seeds(score: F32) -> Mask:
     """Return where the score exceeds 1 over at least 3 x 3 pixels."""
     return ndimage.binary_opening(score > 1, np.ones((SEED, SEED), bool))
 
 
-def grown(seed: Mask, weak: Mask, reach: int) -> Mask:
+def grow(seed: Mask, weak: Mask, reach: int) -> Mask:
     """Return the seeds and what weaker contradictions connect with them, at most `reach` pixels far."""
-    return ndimage.binary_dilation(seed, AROUND, iterations=max(reach, 1), mask=weak | seed)
+    return ndimage.binary_dilation(seed, CONNECTED, iterations=max(reach, 1), mask=weak | seed)
 
 
-def dilated(mask: Mask, margin: int) -> Mask:
+def dilate(mask: Mask, margin: int) -> Mask:
     """Return the mask, all within `margin` pixels of it, and what it encloses: a figure's inside."""
     if not mask.any():
         return mask
     return ndimage.binary_fill_holes(ndimage.distance_transform_edt(~mask) <= margin)
 
 
-def labelled(mask: Mask) -> Labels:
+def label(mask: Mask) -> Labels:
     """Return the connected parts of a mask, labelled 1 ... R; corners connect."""
-    return ndimage.label(mask, AROUND)[0].astype(np.int32)
+    return ndimage.label(mask, CONNECTED)[0].astype(np.int32)
 
 
-def seam(labels: Labels, width: int) -> Float:
+def feather(labels: Labels, width: int) -> F32:
     """Return alpha: 0 outside, rising over `width` pixels inside each region to 1.
 
     Examples
     --------
-    >>> seam(np.pad(np.ones((7, 5), np.int32), 2), 2)[5].round(2)
+    >>> feather(np.pad(np.ones((7, 5), np.int32), 2), 2)[5].round(2)
     array([0.  , 0.  , 0.33, 0.67, 1.  , 0.67, 0.33, 0.  , 0.  ],
           dtype=float32)
     """
@@ -51,7 +50,7 @@ def seam(labels: Labels, width: int) -> Float:
     return np.minimum(depth / (width + 1), 1).astype(np.float32)
 
 
-def blended(E: Float, other: Float, alpha: Float) -> Float:
+def blend(E: F32, other: F32, alpha: F32) -> F32:
     """Return E^(1 - alpha) other^alpha: the seam is even in stops, as the eye sees it."""
     a = alpha if E.ndim == 2 else alpha[..., None]
     both = (E > 0) & (other > 0)
@@ -60,9 +59,8 @@ def blended(E: Float, other: Float, alpha: Float) -> Float:
     return np.where(a == 0, E, np.where((a == 1) | ~both, other, mixed)).astype(np.float32)
 
 
-def padded(box: Box, by: int, shape: tuple[int, ...]) -> Box:
+def pad_box(box: Box, by: int, shape: tuple[int, ...]) -> Box:
     """Return a box with so many pixels more all round, as far as the picture reaches."""
-    y, x = (
-        slice(max(side.start - by, 0), min(side.stop + by, n)) for side, n in zip(box, shape, strict=True)
-    )
+    ends = zip(box, shape, strict=False)
+    y, x = (slice(max(side.start - by, 0), min(side.stop + by, n)) for side, n in ends)
     return y, x
