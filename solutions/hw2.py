@@ -12,8 +12,9 @@
 # | $Z_{ij}$ | pixel level, 0 to 255, of sample $i$ in photograph $j$ | (N, P) |
 # | $t_j$, $B_j = \ln t_j$ | exposure time in seconds, and its logarithm | (P,) |
 # | $E_i$ | irradiance of sample $i$; `lE` $= \ln E_i$ | (N,) |
-# | $f$ (in code) | the exposure of each level, the camera's response turned round | (256,) |
-# | $g = \ln f$ | its logarithm | (256,) |
+# | $f$ | the camera's response: $Z = f(E\,t)$ | |
+# | $f^{-1}$, `f_inv` | its inverse, the exposure of each level | (256,) |
+# | $g = \ln f^{-1}$ | its logarithm | (256,) |
 # | $w$ | how far to trust a level | (256,) |
 #
 # Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
@@ -63,7 +64,7 @@ pictures.picture(
 # %% [markdown] about="gsolve"
 # ## 2 · Debevec and Malik: one system for all ({points})
 #
-# The camera makes $Z_{ij} = f^{-1}(E_i t_j)$, hence $g(Z_{ij}) = \ln E_i + B_j$. All $n$ values of $g$ and
+# The camera makes $Z_{ij} = f(E_i t_j)$, hence $g(Z_{ij}) = \ln E_i + B_j$. All $n$ values of $g$ and
 # all $N$ of $\ln E_i$ stand in it linearly. Minimise
 #
 # $$\sum_{i,j} \bigl\{ w(Z_{ij})\,[\,g(Z_{ij}) - \ln E_i - B_j\,] \bigr\}^2
@@ -85,10 +86,10 @@ pictures.picture(ax, alt="The sixty pixels' points, moved sideways by their ln E
 # ## 3 · Robertson: the best irradiance for a curve ({points})
 #
 # Robertson, Borman and Stevenson ask for the most probable curve under noise, and alternate. First half:
-# were $f$ known, each sample's irradiance would be a weighted mean of what its photographs say,
-# $f(Z_{ij})/t_j$. Long exposures know better, by $t_j^2$, so
+# were $f^{-1}$ known, each sample's irradiance would be a weighted mean of what its photographs
+# say, $f^{-1}(Z_{ij})/t_j$. Long exposures know better, by $t_j^2$, so
 #
-# $$E_i = \frac{\sum_j w(Z_{ij})\, t_j\, f(Z_{ij})}{\sum_j w(Z_{ij})\, t_j^2},$$
+# $$E_i = \frac{\sum_j w(Z_{ij})\, t_j\, f^{-1}(Z_{ij})}{\sum_j w(Z_{ij})\, t_j^2},$$
 #
 # and NaN for a sample that no photograph saw well, where this is $0/0$.
 
@@ -97,9 +98,9 @@ pictures.picture(ax, alt="The sixty pixels' points, moved sideways by their ln E
 # %% [markdown] about="update"
 # ## 4 · Robertson: the best curve for irradiances ({points})
 #
-# Second half: were the $E_i$ known, $f(m)$ would be the mean exposure of all pixels of level $m$,
+# Second half: were the $E_i$ known, $f^{-1}(m)$ would be the mean exposure of all pixels of level $m$,
 #
-# $$f(m) = \frac{1}{|E_m|}\sum_{(i,j) \in E_m} E_i\, t_j, \qquad E_m = \{(i,j) : Z_{ij} = m\},$$
+# $$f^{-1}(m) = \frac{1}{|E_m|}\sum_{(i,j) \in E_m} E_i\, t_j, \qquad E_m = \{(i,j) : Z_{ij} = m\},$$
 #
 # a plain mean, in which the weights have no say. Samples without irradiance are left out; a level without
 # pixels is NaN.
@@ -107,46 +108,45 @@ pictures.picture(ax, alt="The sixty pixels' points, moved sideways by their ln E
 # %% task="update"
 
 # %% [markdown] about="recover_steps"
-# ## 5 · Robertson: turn by turn ({points})
+# ## 5 · Robertson: step by step ({points})
 #
-# Begin with the line of a linear camera, $f(m) = m/128$, yield it, and then take turns: irradiances from
-# the curve, the curve from the irradiances, levels without pixels filled from their neighbours, and $f$
-# divided by $f(128)$. Yield after every turn, and end when $f$ changes by less than `tolerance` anywhere,
-# or after so many `turns`.
+# Begin with the line of a linear camera, $f^{-1}(m) = m/128$, yield it, and then iterate: irradiances from
+# the curve, the curve from the irradiances, levels without pixels filled from their neighbours, and all
+# divided by $f^{-1}(128)$. Yield after every iteration, and end when $f^{-1}$ changes by less than
+# `tolerance` anywhere, or after `max_iterations`.
 #
-# A yielded state begins with $f$; that alone, in a tuple, is enough. The checks ask with `smoothness=0`,
-# the paper's own; what the library does with it otherwise, you may find out, or leave.
+# A yielded state begins with $f^{-1}$; that alone, in a tuple, is enough.
 
 # %% task="recover_steps"
-# Yield the state of one channel, before the first turn and after each.
+# Yield the state of one channel, before the first iteration and after each.
 
 # %% [markdown] about="recover_steps"
 # **Predict.** Photographs two stops apart leave something open: whatever repeats with a period of two stops
-# in $\ln E$ can be moved from $f$ into the $E_i$. What will that look like?
+# in $\ln E$ can be moved from $f^{-1}$ into the $E_i$. What will that look like?
 
 # %% about="recover_steps hat"
-states = list(recover_steps(sampling.by_rank(grays, 800), bracket.times, hat(), smoothness=0.0))
+states = list(recover_steps(sampling.by_rank(grays, 800), bracket.times, hat()))
 ax = plots.response(responses.true_g(), label="true")
-plots.response(np.log(states[-1][0]), label=f"after {len(states) - 1} turns", ax=ax)
+plots.response(np.log(states[-1][0]), label=f"after {len(states) - 1} iterations", ax=ax)
 ax.lines[-1].set(color="#0072B2", linestyle="--")
 ax.legend()
-pictures.picture(ax, alt="The curve after the last turn winds about the true one, once in two stops")
+pictures.picture(ax, alt="The curve after the last iteration winds about the true one, once in two stops")
 
 # %% [markdown] about="recover"
 # ## 6 · Mitsunaga and Nayar: a polynomial, and rough times ({points})
 #
-# A response is smooth, so a polynomial of low order will do: $f(M) = \sum_{k=0}^{K} c_k M^k$, $M = Z/255$,
-# with $f(1) = 1$. And a shutter's times are rough, so they are corrected in turn with the curve. For
-# neighbours in time, with the ratio $R_q = t_q / t_{q+1} < 1$,
+# A response is smooth, so for its inverse a polynomial of low order will do:
+# $f^{-1}(M) = \sum_{k=1}^{K} c_k M^k$, $M = Z/255$, with $f^{-1}(1) = 1$. And a shutter's times are rough, so
+# they are corrected in turn with the curve. For neighbours in time, with the ratio $R_q = t_q / t_{q+1} < 1$,
 #
-# $$\varepsilon = \sum_q \sum_p \bigl[\, f(M_{p,q}) - R_q\, f(M_{p,q+1}) \,\bigr]^2$$
+# $$\varepsilon = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
 #
-# is least squares in the $c_k$; then each $R_q$ is the quotient of the sums of $f$ over the two frames; and
-# so on, until $f$ moves by less than `eps`.
+# is least squares in the $c_k$; then each $R_q$ is the quotient of the sums of $f^{-1}$ over the two frames;
+# and so on, until $f^{-1}$ changes by less than `eps`.
 #
 # `images` are `(P, H, W[, 3])` bytes. Choose samples that both frames see well, between 0.05 and 0.98.
-# Return $g = \ln f$, `(256,)` or `(256, 3)`, rising, with $g(128) = 0$ in each channel. Knobs that checks
-# pass: `order` and `eps`.
+# Return $g = \ln f^{-1}$, `(256,)` or `(256, 3)`, rising, with $g(128) = 0$ in each channel. Knobs that
+# checks pass: `order` and `eps`.
 
 # %% task="recover"
 

@@ -13,15 +13,18 @@ spends its samples where the pictures have pixels.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_mask, as_stack, to_256
+from hdrlab.core.arrays import as_stack, to_256
+from hdrlab.core.types import Array, Indices, Mask
 
-Samples = NDArray[np.intp]
-PIXELS = 1_000_000  # an even choice of about so many ranks a frame as well as all of it
+# an even choice of about so many ranks a frame as well as all of it
+PIXELS = 1_000_000
+# samples of which one that connects levels is looked for at a time
+BLOCK = 2**15
 
 
-def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Samples:
+def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
     """Return Z (N, P[, 3]): the level at rank (i + 1/2) / N of each frame's histogram, channel by channel.
 
     Examples
@@ -32,19 +35,13 @@ def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     stack = as_stack(images)
     step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     pixels = to_256(stack[:, ::step, ::step])
-    pixels = pixels.reshape(*pixels.shape[:3], -1)
-    seen = slice(None) if valid is None else _seen_in_all(valid, stack)[::step, ::step]
-    ranks = (np.arange(count) + 0.5) / count
-    Z = np.empty((count, len(pixels), pixels.shape[-1]), np.intp)
-    for j, frame in enumerate(pixels):
-        for c in range(pixels.shape[-1]):
-            histogram = np.bincount(frame[..., c][seen].ravel(), minlength=256)
-            cumulative = np.cumsum(histogram)
-            Z[:, j, c] = np.searchsorted(cumulative, ranks * cumulative[-1], side="right")
-    return Z.reshape(count, len(pixels), *stack.shape[3:])
+    shown = np.s_[:] if valid is None else _shown_in_all(valid, stack)[::step, ::step].ravel()
+    pixels = pixels.reshape(len(stack), -1, *stack.shape[3:])[:, shown]
+    rank = ((np.arange(count) + 0.5) / count * pixels.shape[1]).astype(int)
+    return np.sort(pixels, axis=1, kind="stable")[:, rank].swapaxes(0, 1).astype(np.intp)
 
 
-def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Samples:
+def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
     """Return Z (N, P[, 3]): of a grid of `count` pixels or a few fewer, those that every frame shows."""
     stack = as_stack(images)
     height, width = stack.shape[1:3]
@@ -54,12 +51,32 @@ def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     x = ((np.arange(columns) + 0.5) * width / columns).astype(int)
     levels = to_256(stack[:, y[:, None], x]).reshape(len(stack), rows * columns, *stack.shape[3:])
     Z = levels.swapaxes(0, 1).astype(np.intp)
-    return Z if valid is None else Z[_seen_in_all(valid, stack)[y[:, None], x].ravel()]
+    return Z if valid is None else Z[_shown_in_all(valid, stack)[y[:, None], x].ravel()]
 
 
-def _seen_in_all(valid: ArrayLike, images: Array) -> NDArray[np.bool_]:
+def every_pixel(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
+    """Return Z (N, P[, 3]): all pixels that every frame shows, whatever the count."""
+    stack = as_stack(images)
+    Z = to_256(stack).reshape(len(stack), -1, *stack.shape[3:]).swapaxes(0, 1)
+    return Z if valid is None else Z[_shown_in_all(valid, stack).ravel()]
+
+
+def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
+    """Raise a ValueError unless a sample has weight at two levels, at two times: such connect the levels."""
+    Z, times, has_weight = np.asarray(Z), np.asarray(times), np.asarray(w) > 0
+    if Z.ndim != 2 or Z.dtype.kind not in "iu" or times.shape != Z.shape[1:]:
+        raise ValueError(f"expected levels Z (N, P) and times (P,), got shapes {Z.shape} and {times.shape}")
+    for z in np.split(Z, range(BLOCK, len(Z), BLOCK)):
+        values = [np.where(has_weight[z], one, np.nan) for one in (times, z)]
+        if np.any(np.all([np.fmax.reduce(v, axis=1) > np.fmin.reduce(v, axis=1) for v in values], axis=0)):
+            return
+    raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
+
+
+def _shown_in_all(valid: ArrayLike, images: Array) -> Mask:
     """Return where every frame shows something, (H, W)."""
-    everywhere = np.all(as_mask(valid, images), axis=0)
-    if not everywhere.any():
-        raise ValueError("expected pixels that every frame shows, but the mask leaves none")
-    return everywhere
+    valid = np.asarray(valid, bool)
+    if valid.shape != images.shape[:3] or not valid.all(axis=0).any():
+        got = "but the mask leaves none" if valid.shape == images.shape[:3] else f"got {valid.shape}"
+        raise ValueError(f"expected a mask of shape {images.shape[:3]} with pixels that all show, {got}")
+    return np.asarray(valid.all(axis=0))

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.sampling import by_rank
+from hdrlab.core.sampling import by_rank, require_two_exposures
 from hdrlab.core.types import F64, Indices
 from hdrlab.response import debevec
 from hdrlab.response.debevec import Solution
@@ -29,7 +29,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     Z, B, w = _validate(Z, B, smoothness, w)
     N, n = len(Z), len(w)
     W = w[Z] ** 2
-    _require_two_exposures(Z, W, B)
+    require_two_exposures(Z, B, w)
     D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
     has_weight = D > 0
     D[~has_weight] = 1
@@ -95,14 +95,3 @@ def _validate(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> tu
     if B.shape != Z.shape[1:] or not np.all(np.isfinite(B)):
         raise ValueError(f"expected finite ln times B ({Z.shape[1]},), got {describe(B)}")
     return Z.astype(np.intp, copy=False), B, w
-
-
-def _require_two_exposures(Z: Indices, W: F64, B: F64) -> None:
-    """Raise a ValueError where no sample has weight at two levels, in two exposures."""
-
-    def spread(values: F64) -> F64:
-        low, high = np.where(W > 0, values, np.inf), np.where(W > 0, values, -np.inf)
-        return high.max(axis=1) - low.min(axis=1)
-
-    if not np.any((spread(B) > 0) & (spread(Z) > 0)):
-        raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")

@@ -7,10 +7,19 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.types import F64
 from hdrlab.diagnostics.plausibility import validate_response
+from hdrlab.fast.robertson import Smooth
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 
 Recover = Callable[..., F64]
+# what a method needs beyond its paper's defaults for photographs as people take them
+KNOBS = {"robertson": {"steps": Smooth(100)}}
+
+
+def method(response: Method) -> Recover:
+    """Return a method by its name, with its KNOBS; a function is taken as it is."""
+    found = catalogue.method("response", response)
+    return found if callable(response) else partial(found, **KNOBS.get(response, {}))
 
 
 def validated(response: Method) -> Recover:
@@ -18,8 +27,8 @@ def validated(response: Method) -> Recover:
 
     A function is taken as it is, and so is "linear", which does not ask the images.
     """
-    method = catalogue.method("response", response)
-    return method if callable(response) or response == "linear" else partial(recover, method)
+    found = method(response)
+    return found if callable(response) or response == "linear" else partial(recover, found)
 
 
 def recover(method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_stack, as_table, as_times, describe
+from hdrlab.core.arrays import as_stack, as_times, describe
 from hdrlab.core.sampling import by_rank
 from hdrlab.core.types import F64, Indices
 from hdrlab.core.weights import make_monotone
@@ -164,7 +164,6 @@ def recover(
     B = np.log(as_times(times, len(stack), distinct=2))
     if w is None:
         w = weights.cut(np.sqrt(weights.hat() * weights.gaussian()), below=0.02)
-    w = as_table(w, 256)
     Z = choose(stack, samples, valid=valid)
     channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
     g = np.stack([solve(Z, B, smoothness, w).g for Z in channels], axis=-1)

@@ -35,10 +35,10 @@ def gsolve(Z, B, smoothness, w):
 # %% task="irradiance"
 
 
-def irradiance(Z, t, f, w):
-    t, f, w = t.astype(f32), f.astype(f32), w.astype(f32)
+def irradiance(Z, t, f_inv, w):
+    t, f_inv, w = t.astype(f32), f_inv.astype(f32), w.astype(f32)
     with np.errstate(all="ignore"):
-        return np.einsum("ij,ij,j->i", w[Z], f[Z], t) / np.einsum("ij,j->i", w[Z], t * t)
+        return np.einsum("ij,ij,j->i", w[Z], f_inv[Z], t) / np.einsum("ij,j->i", w[Z], t * t)
 
 
 # %% task="update"
@@ -57,20 +57,20 @@ def update(Z, t, E, n=256):
 # %% task="recover_steps"
 
 
-def recover_steps(Z, times, w, *, smoothness=100.0, tolerance=1e-4, turns=200):
+def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
     t = (times / np.max(times)).astype(f32)
-    f = np.linspace(0, 255 / 128, 256, dtype=f32)
+    f_inv = np.linspace(0, 255 / 128, 256, dtype=f32)
     level = np.arange(256)
     empty = (np.bincount(Z.ravel(), minlength=256) == 0) | (level == 0) | (level > level[w > 0].max())
-    yield f, f32(np.inf), empty
-    for _ in range(turns):
-        new = update(Z, t, irradiance(Z, t, f, w))
+    yield f_inv, f32(np.inf), empty
+    for _ in range(max_iterations):
+        new = update(Z, t, irradiance(Z, t, f_inv, w))
         known = ~empty & ~np.isnan(new)
         new = np.interp(level, level[known], new[known]).astype(f32)
         new /= new[128]
-        change = np.abs(new - f).max()
-        f = new
-        yield f, change, empty
+        change = np.abs(new - f_inv).max()
+        f_inv = new
+        yield f_inv, change, empty
         if change < tolerance:
             break
 

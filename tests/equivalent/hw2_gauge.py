@@ -47,17 +47,17 @@ def held(M, N):
 # %% task="recover_steps"
 
 
-def recover_steps(Z, times, w, *, smoothness=100.0, tolerance=1e-4, turns=200):
+def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
     level, shown = np.arange(256), np.bincount(Z.ravel(), minlength=256) > 0
     told = shown & (level > 0) & (level <= level[w > 0].max())
-    f, change = (level + 0.0) / 127.5, np.inf
-    yield f
-    for _ in range(turns):
-        E = irradiance(Z, times, f, w)
+    f_inv, change = (level + 0.0) / 127.5, np.inf
+    yield f_inv
+    for _ in range(max_iterations):
+        E = irradiance(Z, times, f_inv, w)
         fresh = np.interp(level, level[told], update(Z, times, E)[told])
         fresh /= fresh[100:156].mean()  # a gauge of its own
-        change, f = np.abs(fresh - f).max(), fresh
-        yield f
+        change, f_inv = np.abs(fresh - f_inv).max(), fresh
+        yield f_inv
         if change < tolerance:
             return
 
@@ -76,10 +76,10 @@ def update(Z, t, E, n=256):
 # %% task="irradiance"
 
 
-def irradiance(Z, t, f, w):
-    """Fit each sample's line f(Z) = E t by itself: weighted least squares through 0."""
+def irradiance(Z, t, f_inv, w):
+    """Fit each sample's line f_inv(Z) = E t by itself: weighted least squares through 0."""
     root = np.sqrt(w)[Z]
-    A, b = root * t, root * f[Z]
+    A, b = root * t, root * f_inv[Z]
     seen = A.any(axis=1)
     E = np.full(len(Z), np.nan)
     E[seen] = (np.linalg.pinv(A[seen, :, None]) @ b[seen, :, None])[:, 0, 0]

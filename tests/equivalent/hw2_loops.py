@@ -38,10 +38,10 @@ def gsolve(Z, B, smoothness, w):
 # %% task="irradiance"
 
 
-def irradiance(Z, t, f, w):
+def irradiance(Z, t, f_inv, w):
     E = []
     for row in Z:
-        above = sum(w[z] * f[z] * tj for z, tj in zip(row, t, strict=True))
+        above = sum(w[z] * f_inv[z] * tj for z, tj in zip(row, t, strict=True))
         below = sum(w[z] * tj * tj for z, tj in zip(row, t, strict=True))
         E.append(above / below if below > 0 else float("nan"))
     return np.array(E)
@@ -63,19 +63,19 @@ def update(Z, t, E, n=256):
 # %% task="recover_steps"
 
 
-def recover_steps(Z, times, w, *, smoothness=100.0, tolerance=1e-4, turns=200):
-    f = np.arange(256) / 128
+def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
+    f_inv = np.arange(256) / 128
     empty = np.array([not (Z == m).any() for m in range(256)])
     empty[0], top = True, max(z for z in range(256) if w[z] > 0)
     empty[top + 1 :] = True
-    yield f, np.inf, empty
-    for _ in range(turns):
-        new = update(Z, times, irradiance(Z, times, f, w))
+    yield f_inv, np.inf, empty
+    for _ in range(max_iterations):
+        new = update(Z, times, irradiance(Z, times, f_inv, w))
         known = [m for m in range(256) if not empty[m] and new[m] == new[m]]
         new = np.interp(np.arange(256), known, new[known])
         new = new / new[128]
-        f, change = new, np.abs(new - f).max()
-        yield f, change, empty
+        f_inv, change = new, np.abs(new - f_inv).max()
+        yield f_inv, change, empty
         if change < tolerance:
             return
 

@@ -10,9 +10,14 @@ from hdrlab.core import weights
 from hdrlab.core.metrics import response_rmse
 from hdrlab.fast import debevec
 from hdrlab.fast.merge import merge
-from hdrlab.response import grossberg, mann, marginal, mitsunaga, robertson, space
+from hdrlab.pipeline import recovery
+from hdrlab.response import grossberg, mann, marginal, mitsunaga, space
 
-FREE = {"debevec": debevec.recover, "robertson": robertson.recover, "histograms": grossberg.recover}
+FREE = {
+    "debevec": debevec.recover,
+    "robertson": recovery.method("robertson"),
+    "histograms": grossberg.recover,
+}
 FORMULAS = {
     "polynomial": mitsunaga.recover,  # of the order that it chooses
     "likelihood": marginal.recover,

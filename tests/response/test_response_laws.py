@@ -4,7 +4,7 @@ import laws
 import pytest
 
 from hdrlab.capture.responses import RESPONSES
-from hdrlab.pipeline import catalogue
+from hdrlab.pipeline import catalogue, recovery
 
 CAMERAS = {  # what a method assumes of its camera; of one that takes seconds, one does
     "linear": ["linear"],
@@ -17,10 +17,10 @@ CASES = [(name, one) for name in catalogue.names("response") for one in CAMERAS.
 @pytest.mark.parametrize("law", laws.RECOVERY, ids=lambda law: law.__name__)
 @pytest.mark.parametrize(("name", "response"), CASES)
 def test_every_recovery(name, response, law):
-    law(catalogue.method("response", name), response)
+    law(recovery.method(name), response)
 
 
 @pytest.mark.parametrize("law", laws.CALIBRATION, ids=lambda law: law.__name__)
 @pytest.mark.parametrize(("name", "response"), [case for case in CASES if case[0] != "linear"])
 def test_every_recovery_that_asks_the_photographs(name, response, law):
-    law(catalogue.method("response", name), response)
+    law(recovery.method(name), response)

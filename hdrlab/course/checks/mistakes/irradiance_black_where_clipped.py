@@ -6,6 +6,6 @@ import numpy as np
 TASK = "irradiance"
 
 
-def irradiance(Z, t, f, w):
+def irradiance(Z, t, f_inv, w):
     below = w[Z] @ t**2
-    return np.where(below > 0, (w[Z] * f[Z]) @ t / np.where(below > 0, below, 1), 0.0)
+    return np.where(below > 0, (w[Z] * f_inv[Z]) @ t / np.where(below > 0, below, 1), 0.0)

@@ -3,5 +3,5 @@
 TASK = "irradiance"
 
 
-def irradiance(Z, t, f, w):
-    return (f[Z] * t).sum(axis=1) / (t**2).sum() + 0 * w[Z].sum(axis=1)
+def irradiance(Z, t, f_inv, w):
+    return (f_inv[Z] * t).sum(axis=1) / (t**2).sum() + 0 * w[Z].sum(axis=1)

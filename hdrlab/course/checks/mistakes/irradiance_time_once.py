@@ -4,5 +4,5 @@ one bin."""
 TASK = "irradiance"
 
 
-def irradiance(Z, t, f, w):
-    return (w[Z] * f[Z]).sum(axis=1) / (w[Z] * t).sum(axis=1)
+def irradiance(Z, t, f_inv, w):
+    return (w[Z] * f_inv[Z]).sum(axis=1) / (w[Z] * t).sum(axis=1)

@@ -8,11 +8,11 @@ from hdrlab.response import robertson
 TASK = "recover_steps"
 
 
-def recover_steps(Z, times, w, *, smoothness=0.0, tolerance=1e-4, turns=200):
-    t, empty = times / times.max(), robertson.empty_levels(np.bincount(Z.ravel(), minlength=256), w)
-    f = robertson.line()
-    yield f, np.inf, empty
-    for _ in range(turns):
-        f = np.nan_to_num(robertson.update(Z, t, robertson.irradiance(Z, t, f, w)))
-        f = f / (f[128] or 1)
-        yield f, 0.0, empty
+def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
+    t = times / times.max()
+    f_inv = robertson.linear()
+    yield f_inv, np.inf
+    for _ in range(max_iterations):
+        f_inv = np.nan_to_num(robertson.update(Z, t, robertson.irradiance(Z, t, f_inv, w)))
+        f_inv = f_inv / (f_inv[128] or 1)
+        yield f_inv, 0.0

@@ -1,4 +1,5 @@
-"""One turn is not the end: the new f gives a better E, and that a better f. Go on until f hardly changes."""
+"""One iteration is not the end: the new f^-1 gives a better E, and that a better one. Go on until it hardly
+changes."""
 
 import numpy as np
 
@@ -7,9 +8,9 @@ from hdrlab.response import robertson
 TASK = "recover_steps"
 
 
-def recover_steps(Z, times, w, *, smoothness=0.0, tolerance=1e-4, turns=200):
-    t, empty = times / times.max(), robertson.empty_levels(np.bincount(Z.ravel(), minlength=256), w)
-    f = robertson.line()
-    yield f, np.inf, empty
-    f = robertson.fill(robertson.update(Z, t, robertson.irradiance(Z, t, f, w)), empty)
-    yield f / f[128], 0.0, empty
+def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
+    t = times / times.max()
+    f_inv = robertson.linear()
+    yield f_inv, np.inf
+    f_inv = robertson.fill(robertson.update(Z, t, robertson.irradiance(Z, t, f_inv, w)), w)
+    yield f_inv / f_inv[128], 0.0

@@ -7,5 +7,5 @@ TASK = "update"
 
 def update(Z, t, E, n=256):
     known = ~np.isnan(E)
-    f = np.bincount(Z[known].ravel(), (E[known, None] * t).ravel(), n)
-    return np.where(np.bincount(Z[known].ravel(), minlength=n) > 0, f / len(Z), np.nan)
+    total = np.bincount(Z[known].ravel(), (E[known, None] * t).ravel(), n)
+    return np.where(np.bincount(Z[known].ravel(), minlength=n) > 0, total / len(Z), np.nan)

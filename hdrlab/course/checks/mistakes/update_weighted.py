@@ -1,4 +1,4 @@
-"""The update of f is a plain mean over the pixels of a level; with the times as weights it rests on
+"""The update of f^-1 is a plain mean over the pixels of a level; with the times as weights it rests on
 another curve."""
 
 import numpy as np

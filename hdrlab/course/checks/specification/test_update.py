@@ -1,4 +1,4 @@
-"""Robertson's new response: update(Z, t, E, n) -> f (n,)."""
+"""Robertson's new inverse response: update(Z, t, E, n) -> f^-1 (n,)."""
 
 import numpy as np
 import pytest
@@ -17,24 +17,24 @@ def drawn(rng, N=4000, P=4):
 def test_every_level_has_a_response(subject, rng):
     """One number for each level.
 
-    The answer is f (256,), whatever levels the samples have.
+    The answer is f^-1 (256,), whatever levels the samples have.
 
     np.bincount with minlength=n counts and sums by level.
     """
     Z, t, E = drawn(rng)
-    finite(subject.update(Z, t, E), (256,), what="f")
+    finite(subject.update(Z, t, E), (256,), what="f^-1")
 
 
 @pytest.mark.points(4)
 def test_each_level_gets_the_mean_exposure_of_its_pixels(subject, rng):
     """For each level m: which samples in which frames have it?
 
-    The new f(m) is the mean of E_i t_j over these.
+    The new f^-1(m) is the mean of E_i t_j over these.
 
     Divide by how many there are of this level, not by the number of samples.
     """
     Z, t, E = drawn(rng)
-    same(subject.update(Z, t, E), robertson.update(Z, t, E), 2e-3, what="f", kind="curve")
+    same(subject.update(Z, t, E), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 
 @pytest.mark.points(3)
@@ -49,25 +49,25 @@ def test_the_mean_is_a_plain_one(subject):
     expected = np.full(256, np.nan)
     expected[7], expected[200] = (3 * 1 + 5 * 2 + 4 * 1 + 4 * 2) / 4, (3 * 2 + 5 * 1) / 2
     told = ~np.isnan(expected)
-    same(subject.update(Z, t, E), expected, 1e-4, what="f at the levels 7 and 200", where=told)
+    same(subject.update(Z, t, E), expected, 1e-4, what="f^-1 at the levels 7 and 200", where=told)
 
 
 @pytest.mark.points(2)
 def test_a_sample_without_irradiance_is_left_out(subject, rng):
     """What is an E that is NaN worth in a sum?
 
-    A sample without irradiance tells nothing of f, and must not spoil the others.
+    A sample without irradiance tells nothing of f^-1, and must not spoil the others.
 
     Leave out the rows of Z where E is NaN.
     """
     Z, t, E = drawn(rng)
     more, nan = np.concatenate([Z, Z[:50]]), np.concatenate([E, np.full(50, np.nan)])
-    same(subject.update(more, t, nan), robertson.update(Z, t, E), 2e-3, what="f", kind="curve")
+    same(subject.update(more, t, nan), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 
 @pytest.mark.points(1)
 def test_a_level_without_pixels_is_nan(subject, rng):
-    """Which f has a level that no pixel has?
+    """Which f^-1 has a level that no pixel has?
 
     Nobody knows yet: 0 / 0.
 
@@ -75,4 +75,4 @@ def test_a_level_without_pixels_is_nan(subject, rng):
     """
     Z, t, E = drawn(rng)
     Z = Z // 2 * 2
-    same(subject.update(Z, t, E, n=256), robertson.update(Z, t, E), 2e-3, what="f", kind="curve")
+    same(subject.update(Z, t, E, n=256), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")

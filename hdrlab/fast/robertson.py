@@ -1,0 +1,143 @@
+"""Robertson's iterations as products with one matrix, from joint histograms of the frames.
+
+Z       pixel levels       (N, P) integers 0 ... n - 1: sample i in frame j
+t       exposure times     (P,)
+w       weights            (n,), 0 where a level is not to be trusted
+f_inv   f^-1               (n,), the exposure of each level
+d       each sample's sum of w(Z_ij) t_j^2 over its frames, (N,)
+
+An iteration goes over all pixels twice, from f^-1 to irradiances and back. But it is linear in f^-1, and what
+it adds up for a level m of one frame and a level z of another is the same number in every iteration. Summed
+once, in the frames' joint histograms with weight 1 / d, it makes an iteration a product with an (n, n)
+matrix, for a thousand samples as for a million.
+"""
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.linalg import solveh_banded
+
+from hdrlab.core.arrays import as_mask, as_stack, as_times
+from hdrlab.core.sampling import by_rank, require_two_exposures
+from hdrlab.core.types import F64, Indices
+from hdrlab.core.weights import second_differences
+from hdrlab.response import robertson
+from hdrlab.response.robertson import Fill, State
+
+# samples at a time: their indices stay in the processor's cache
+BLOCK = 2**15
+# pixels of a frame: an even choice of about so many has the ranks of all
+PIXELS = 2**16
+
+
+class Joint:
+    """The matrix S (n, n), sums of t_j t_k / d_i over Z_ij = m, Z_ik = z, and the pixels of each level.
+
+    S is symmetric, so a pair of frames is counted once. Called with f^-1 it returns the means of the next.
+    """
+
+    def __init__(self, Z: Indices, t: F64, w: F64) -> None:
+        n, P = len(w), Z.shape[1]
+        pairs, own, self.pixels, self.w = np.zeros(n * n), np.zeros(n), np.zeros(n, np.int64), w
+        for start in range(0, len(Z), BLOCK):
+            z = Z[start : start + BLOCK].T.astype(np.intp)
+            d = t**2 @ w[z]
+            z, d = (z, d) if d.all() else (z[:, d > 0], d[d > 0])
+            self.pixels += np.bincount(z.ravel(), minlength=n)
+            for j in range(P):
+                own += np.bincount(z[j], t[j] ** 2 / d, n)
+                row = z[j] * n
+                for k in range(j):
+                    pairs += np.bincount(row + z[k], t[j] * t[k] / d, n * n)
+        square = pairs.reshape(n, n)
+        self.S = square + square.T + np.diag(own)
+
+    def __call__(self, f_inv: F64) -> F64:
+        """Return sum_z S(m, z) w(z) f^-1(z) / |E_m|, what `update` makes of `irradiance`."""
+        with np.errstate(invalid="ignore"):
+            return self.S @ (self.w * f_inv) / self.pixels
+
+
+def recover_steps(
+    Z: Indices, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
+) -> Iterator[State]:
+    """Yield the States of the lesson."""
+    yield from _steps(Z, times, w, tolerance, max_iterations, robertson.fill)
+
+
+def _steps(
+    Z: ArrayLike, times: ArrayLike, w: ArrayLike, tolerance: float, max_iterations: int, complete: Fill
+) -> Iterator[State]:
+    Z, t, w = np.asarray(Z), np.asarray(times, np.float64), np.asarray(w, np.float64)
+    require_two_exposures(Z, t, w)
+    yield from robertson.iterate(Joint(Z, t / t.max(), w), w, tolerance, max_iterations, complete)
+
+
+class Smooth:
+    """`recover_steps` with a penalty on second differences, which connects what equal steps leave open.
+
+    After each iteration r = ln f^-1, less that of a linear camera, becomes the s of least
+    sum (s - r)^2 + sum (lambda w s'')^2, r at the levels that have a mean. 100 is right for photographs.
+
+    Examples
+    --------
+    >>> ramp = np.linspace(1, 100, 10_000).reshape(100, 100)  # a linear camera
+    >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
+    >>> g = recover(images, [0.01, 0.02, 0.04], steps=Smooth(100))
+    >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
+    True
+    """
+
+    def __init__(self, smoothness: float) -> None:
+        if not 0 <= smoothness < np.inf:
+            raise ValueError(f"expected a smoothness that is finite and not negative, got {smoothness}")
+        self.smoothness = smoothness
+
+    def __call__(
+        self, Z: ArrayLike, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
+    ) -> Iterator[State]:
+        """Yield the States of one channel; parameters as of `recover_steps`."""
+        matrix, line = None, robertson.linear(len(w))
+
+        def complete(means: F64, w: F64) -> F64:
+            nonlocal matrix
+            if matrix is None:  # which levels have a mean does not change
+                matrix = _smoother(means, w, self.smoothness)
+            return line * np.exp(matrix @ np.log(robertson.fill(means, w) / line))
+
+        return _steps(Z, times, w, tolerance, max_iterations, complete)
+
+
+def _smoother(means: F64, w: F64, smoothness: float) -> F64:
+    """Return the matrix from r (n,) to s."""
+    level = np.arange(len(w))
+    known = ~np.isnan(means) & (level > 0) & (level <= np.max(level[w > 0]))
+    bends, data = second_differences(w, smoothness), np.diag(np.where(known, 1.0, 1e-6))
+    A = data + bends.T @ bends  # five diagonals, of which the lower three say all
+    bands = [np.pad(np.diagonal(A, -k), (0, k)) for k in range(3)]
+    return np.asarray(solveh_banded(bands, data, lower=True))
+
+
+def _thinned(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
+    """Return the samples of `by_rank`, from an even choice of the pixels."""
+    stack = as_stack(images)
+    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / max(PIXELS, 4 * count))))
+    few = (slice(None), slice(every // 2, None, every), slice(every // 2, None, every))
+    shown = as_mask(valid, stack)
+    return by_rank(stack[few], count, valid=None if shown is None else shown[few])
+
+
+def recover(
+    images: ArrayLike,
+    times: ArrayLike,
+    *,
+    samples: int = 4_000,
+    w: ArrayLike | None = None,
+    choose: Callable[..., Indices] = _thinned,
+    valid: ArrayLike | None = None,
+    steps: Callable[..., Iterator[State]] = recover_steps,
+) -> F64:
+    """Return the response g of the lesson, whose parameters these are, with the `recover_steps` above."""
+    knobs = dict(samples=samples, w=w, choose=choose, valid=valid, steps=steps)
+    return robertson.recover(images, as_times(times, len(images)), **knobs)
