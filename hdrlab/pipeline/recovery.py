@@ -19,7 +19,7 @@ KNOBS = {"robertson": {"steps": Smooth(100)}}
 def method(response: Method) -> Recover:
     """Return a method by its name, with its KNOBS; a function is taken as it is."""
     found = catalogue.method("response", response)
-    return found if callable(response) else partial(found, **KNOBS.get(response, {}))
+    return partial(found, **KNOBS[response]) if response in KNOBS else found
 
 
 def validated(response: Method) -> Recover:

@@ -1,5 +1,5 @@
 """Levels without pixels stay 0 in your response. They lie between their neighbours: fill them, or later
-turns read 0 there."""
+iterations read 0 there."""
 
 import numpy as np
 
