@@ -8,7 +8,7 @@ Exposure, and planning a bracket       capture.exposure, capture.planning.plan
 Metering, automatic exposure           capture.metering, capture.autoexposure.expose
 Photographs in, with their exposure    io.photos.read_bracket
 Median threshold bitmaps               align.mtb.align, align.shift.shift
-From the hand: turned, tilted          align.cerman.align, align.homography.align, align.auto.align
+From the hand: turned, tilted          align.cerman.align, align.homography.align
 ... moved through linear light         align.resample.photographs, capture.hand_motion.shake
 The response by least squares          response.debevec.gsolve, response.debevec.recover
 ... by maximum likelihood              response.robertson.recover

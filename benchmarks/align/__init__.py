@@ -2,7 +2,7 @@
 
 error   how far a pair's answer is from the truth at the worst of the four corners, pixels
 failed  an error above 1 pixel, or any answer where nothing corresponds
-told    of the failures, the share that `verdicts` doubts, %
+told    of the failures, the share that the validation reports, %
 """
 
 from collections.abc import Mapping
@@ -29,7 +29,9 @@ def told(name: str, kind: str, i: int) -> tuple[float, bool]:
     """Return the error of one who registers case i, and whether the answer is doubted."""
     case = cases.KINDS[kind](i)
     move, doubted = WAYS[name](case.images, case.times)
-    return np.inf if case.truth is None else float(warp.apart(move, case.truth, cases.SHAPE)), doubted
+    return np.inf if case.truth is None else float(
+        warp.corner_distance(move, case.truth, cases.SHAPE)
+    ), doubted
 
 
 def answers(name: str, kind: str, count: int = COUNT) -> tuple[ArrayLike, ArrayLike]:

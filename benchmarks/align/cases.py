@@ -65,7 +65,7 @@ def pair(i: int, E: Array, moves: Array, rng: np.random.Generator, stops: float 
 
 def away(offset: Array) -> Float:
     """Return the moves of a pair of which the first photograph is shifted."""
-    return warp.as_moves(np.stack([offset, np.zeros_like(offset)]))
+    return warp.as_homographies(np.stack([offset, np.zeros_like(offset)]))
 
 
 def shift(i: int) -> Case:

@@ -20,7 +20,8 @@ from scipy.ndimage import binary_erosion
 
 from benchmarks.experiments import Experiment, at_least, real
 from hdrlab import pipeline
-from hdrlab.align import light, pairs
+from hdrlab.align import light
+from hdrlab.align.mtb import by_brightness
 from hdrlab.core import warp
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket, bracket
@@ -45,10 +46,11 @@ def crusader(folder: Path) -> Bracket:
     """
     paths = photographs(real(folder, "crusader") / "frames")
     images = smaller(np.stack([read_photo(path) for path in paths]))
-    order = pairs.by_brightness(images)
+    order = by_brightness(images)
     g = np.log(np.maximum(decode_srgb(np.arange(256) / 255), 1e-4))
     steps = [
-        light.ratio(images[a, ..., 1], images[b, ..., 1], g) for a, b in zip(order, order[1:], strict=False)
+        light.exposure_ratio(images[a, ..., 1], images[b, ..., 1], g)
+        for a, b in zip(order, order[1:], strict=False)
     ]
     return bracket(images[order], np.cumprod([1.0, *steps]), [paths[j].name for j in order])
 
@@ -69,12 +71,12 @@ def sharpness(X: Array, seen: NDArray[np.bool_]) -> float:
 def beside_the_sharpest(taken: Bracket, align: str) -> float:
     """Return the map's S / that of the photograph beside which it is lowest, over what both measure well."""
     found = pipeline.assemble(taken, align=align)
-    rows, columns = warp.inside(found.moves, taken.images.shape[1:3])
+    rows, columns = warp.common_rectangle(found.homographies, taken.images.shape[1:3])
     size, first = (rows.stop - rows.start, columns.stop - columns.start), [[rows.start, columns.start]]
-    back = np.linalg.inv(found.moves) @ warp.as_moves(first)
+    back = np.linalg.inv(found.homographies) @ warp.as_homographies(first)
     Z = [warp.nearest(one[..., 1].astype(float), H, size) for one, H in zip(taken.images, back, strict=True)]
     g = found.g if found.g.ndim == 1 else found.g[:, 1]
-    own = pairs.by_brightness(taken.images)[len(Z) // 2 - 1 + len(Z) % 2]
+    own = by_brightness(taken.images)[len(Z) // 2 - 1 + len(Z) % 2]
     well = [binary_erosion((one > WELL[0]) & (one < WELL[1]), iterations=2) for one in Z]
     shares = []
     for one, seen in zip(Z, well, strict=True):

@@ -17,10 +17,11 @@ from numpy.typing import ArrayLike, NDArray
 from skimage.registration import phase_cross_correlation
 
 from benchmarks import peers
-from hdrlab.align import cerman, homography, mtb
+from hdrlab.align import homography
 from hdrlab.capture.responses import true_g
 from hdrlab.core import warp
 from hdrlab.core.arrays import Array
+from hdrlab.pipeline.alignment import register
 
 Float = NDArray[np.float64]
 Answer = tuple[Float, bool]
@@ -30,30 +31,30 @@ HUGIN = "align_image_stack"
 
 def shifted(offset: ArrayLike) -> Float:
     """Return the move of an offset (dy, dx)."""
-    return np.asarray(warp.as_moves(np.asarray(offset, float)[None])[0])
+    return np.asarray(warp.as_homographies(np.asarray(offset, float)[None])[0])
 
 
 def by_mtb(images: Array, _: Float) -> Answer:
     """Answer by bitmaps."""
-    (found,) = mtb.verdicts(images)
-    return shifted(found.offset), not found.reliable
+    (found,) = register(images, "mtb").pairs
+    return found.H, not found.reliable
 
 
 def by_light(images: Array, times: Float) -> Answer:
     """Answer by correlation and simplex, the response known."""
-    (found,) = cerman.verdicts(images, times=times, g=true_g("film"))
+    (found,) = register(images, "cerman", times=times, g=true_g("film")).pairs
     return found.H, not found.reliable
 
 
 def by_histograms(images: Array, _: Float) -> Answer:
     """Answer by correlation and simplex, neither response nor times known."""
-    (found,) = cerman.verdicts(images)
+    (found,) = register(images, "cerman").pairs
     return found.H, not found.reliable
 
 
 def by_points(images: Array, _: Float) -> Answer:
     """Answer by a homography, neither response nor times known."""
-    (found,) = homography.verdicts(images)
+    (found,) = register(images, "homography").pairs
     return found.H, not found.reliable
 
 

@@ -6,9 +6,9 @@ import numpy as np
 
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
-from hdrlab.align import mtb
 from hdrlab.align.shift import shift
 from hdrlab.core.arrays import Array
+from hdrlab.fast import mtb
 
 RADIUS = 8
 

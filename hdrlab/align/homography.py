@@ -7,61 +7,59 @@ D   detail                (h, w) in [0, 1]: the logarithm of light over the mean
 q   matches               (n, 2), (x, y): points of the moving photograph, and of the fixed one
 H   homography            (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 c   corners               (4, 2): where H puts the corners, pixels; the unknowns of the last stage
-d   differences           see `criterion`
+d   differences           see `light`
 
 Points are found and described by scikit-image's SIFT, and their homography by its RANSAC, on a small level.
 Then the corners are moved until the light fits, level by level: e as in `cerman`, by least squares, for a
 simplex is slow in eight dimensions.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 from skimage.feature import SIFT, match_descriptors
 from skimage.measure import ransac
 from skimage.transform import ProjectiveTransform
 
 from hdrlab.align import light
-from hdrlab.align.criterion import differences, error, lattice
-from hdrlab.align.matches import Match, Pair, along, judge, neighbours
 from hdrlab.core import warp
-from hdrlab.core.steps import last
+from hdrlab.core.types import F32, F64, Mask
 
-Float = NDArray[np.float64]
-PIXELS = 250_000  # of the level where points are looked for, at most
-INLIER = 1.5  # pixels of that level, between a match and its homography
-ENOUGH = 10  # matches that agree: 4 make a homography out of nothing
+# pixels of the level where points are looked for, at most
+PIXELS = 250_000
+# pixels of that level, between a match and its homography
+INLIER = 1.5
+# matches that agree: 4 make a homography out of nothing
+ENOUGH = 10
+# samples of four matches
 TRIES = 2000
 
 
 class State(NamedTuple):
     """One level of one pair; first that of the points, then down to full resolution, level 0.
 
-    Image `moving` is laid on image `fixed`; X is their light, H in pixels of this level, e its error.
-    `points` (2, n, 2) are the matches of the first level, of the moving image and of the fixed one, `agree`
-    (n,) those that H explains.
+    X is the light of both images, H in pixels of this level, e its error. `points` (2, n, 2) are the matches
+    of the first level, of the moving image and of the fixed one, `agree` (n,) those that H explains.
     """
 
-    moving: int
-    fixed: int
     level: int
-    X: light.Float
-    points: Float
-    agree: NDArray[np.bool_]
-    H: Float
+    X: F32
+    points: F64
+    agree: Mask
+    H: F64
     e: float
 
 
-def detail(x: light.Float) -> Float:
+def detail(x: F32) -> F64:
     """Return D of the light x (h, w): a range of 8 to 1 around the mean fills it."""
-    over = np.log2(x / light.around(x), where=x > 0, out=np.zeros(x.shape))
+    over = np.log2(x / light.local_mean(x), where=x > 0, out=np.zeros(x.shape))
     return np.clip(np.where(np.isfinite(over), over, 0) / 6 + 0.5, 0, 1)
 
 
-def matched(X: light.Float) -> Float:
+def match_points(X: F32) -> F64:
     """Return the matches (2, n, 2), (x, y), of `moving` and of `fixed`: alike, and nothing else as alike."""
     found = []
     for x in (X[1], X[0]):
@@ -76,7 +74,7 @@ def matched(X: light.Float) -> Float:
     return np.stack([q[both[:, 0]], p[both[:, 1]]])
 
 
-def consensus(points: Float) -> tuple[Float, NDArray[np.bool_]]:
+def consensus(points: F64) -> tuple[F64, Mask]:
     """Return the H that most matches agree with, and which [Fischler and Bolles 1981]; else the identity."""
     if points.shape[1] < ENOUGH:
         return np.eye(3), np.zeros(points.shape[1], bool)
@@ -88,22 +86,26 @@ def consensus(points: Float) -> tuple[Float, NDArray[np.bool_]]:
     return np.asarray(model.params / model.params[2, 2]), agree
 
 
-def refined(X: light.Float, H: Float) -> Float:
+def refine(X: F32, H: F64) -> F64:
     """Return H with its corners moved to where the sum of d^2 is least; what lies far out counts little."""
-    shape, p = X.shape[1:], lattice(X.shape[1:])
+    shape, p = X.shape[1:], light.lattice(X.shape[1:])
     start = warp.apply(H, warp.corners(shape))
 
-    def d(c: Float) -> Float:
+    def d(c: F64) -> F64:
         moved = through(shape, start + c.reshape(4, 2))
-        return np.nan_to_num(differences(X, moved, p), nan=0.0)
+        return np.nan_to_num(light.differences(X, moved, p), nan=0.0)
 
     options = {"loss": "soft_l1", "f_scale": 0.1, "diff_step": 0.1, "x_scale": 1.0, "max_nfev": 12}
     found = least_squares(d, np.zeros(8), **options)
     better = through(shape, start + found.x.reshape(4, 2))
-    return better if error(differences(X, better, p)) < error(differences(X, H, p)) else H
+    return (
+        better
+        if light.error(light.differences(X, better, p)) < light.error(light.differences(X, H, p))
+        else H
+    )
 
 
-def through(shape: tuple[int, ...], c: Float) -> Float:
+def through(shape: tuple[int, ...], c: F64) -> F64:
     """Return the H that puts the corners of a picture at c (4, 2)."""
     rows = []
     for (x, y), (u, v) in zip(warp.corners(shape), c, strict=True):
@@ -112,67 +114,56 @@ def through(shape: tuple[int, ...], c: Float) -> Float:
     return np.append(np.linalg.solve(system[:, :8], system[:, 8]), 1).reshape(3, 3)
 
 
-def enlarged(H: Float) -> Float:
+def enlarge(H: F64) -> F64:
     """Return H in pixels half as large: pixel x of a level lies over 2 x + 1/2 of the next finer one."""
     finer = np.array([[2, 0, 0.5], [0, 2, 0.5], [0, 0, 1]])
     return np.asarray(finer @ H @ np.linalg.inv(finer))
 
 
-def search(pair: Pair) -> Iterator[State]:
+def search(pyramid: list[F32]) -> Iterator[State]:
     """Yield a State per level: points and consensus at the first, then light at each."""
-    small = next(j for j, X in enumerate(pair.X) if X[0].size <= PIXELS or j == len(pair.X) - 1)
+    small = next(j for j, X in enumerate(pyramid) if X[0].size <= PIXELS or j == len(pyramid) - 1)
     for first in (small, max(small - 1, 0)):  # twice the size has more points, and takes four times as long
-        points = matched(pair.X[first])
+        points = match_points(pyramid[first])
         H, agree = consensus(points)
         if agree.any():
             break
     for level in range(first, -1, -1):
-        X = pair.X[level]
+        X = pyramid[level]
         if agree.any():
-            H = refined(X, H)
-        e = error(differences(X, H, lattice(X.shape[1:])))
-        yield State(*pair[:2], level, X.copy(), points.copy(), agree.copy(), H.copy(), e)
-        H = enlarged(H)
+            H = refine(X, H)
+        e = light.error(light.differences(X, H, light.lattice(X.shape[1:])))
+        yield State(level, X.copy(), points.copy(), agree.copy(), H.copy(), e)
+        H = enlarge(H)
 
 
-def align_steps(
-    images: ArrayLike | Sequence[ArrayLike], *, times: ArrayLike | None = None, g: ArrayLike | None = None
-) -> Iterator[State]:
-    """Yield the States of pair after pair, from dark to bright."""
-    for pair in neighbours(images, times, g):
-        yield from search(pair)
+def align_steps(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[State]:
+    """Yield the States of pair after pair of neighbours in exposure, from dark to bright."""
+    for pyramid in light.neighbours(images, times, g):
+        yield from search(pyramid)
 
 
-def verdicts(
-    images: ArrayLike | Sequence[ArrayLike], *, times: ArrayLike | None = None, g: ArrayLike | None = None
-) -> tuple[Match, ...]:
-    """Return the Match of every pair of neighbours in brightness, from dark to bright; knobs of `align`."""
-    return tuple(judge(pair, last(search(pair)).H) for pair in neighbours(images, times, g))
-
-
-def align(
-    images: ArrayLike | Sequence[ArrayLike], *, times: ArrayLike | None = None, g: ArrayLike | None = None
-) -> Float:
-    """Return the moves that lay every image on the one in the middle of their brightness, by homographies.
+def align(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> F64:
+    """Return the homographies that lay every image on the one in the middle of their exposure.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
         Photographs of one scene with different exposures, in any order.
-    times : (P,) seconds, optional
-        Their exposures. Without them the ratios come out of the histograms.
-    g : (n,) or (n, 3), optional
-        The camera's response, ln exposure of each level. Without it the histograms of each pair are matched.
+    times : (P,) seconds
+        Their exposures.
+    g : (n,) or (n, 3)
+        The camera's response, ln exposure of each level.
 
     Returns
     -------
-    moves : (P, 3, 3)
-        Where pixel (x, y, 1) of each image lies on the one in the middle, whose move is the identity.
+    homographies : (P, 3, 3)
+        Where pixel (x, y, 1) of each image lies on the one in the middle, whose own is the identity.
 
     Raises
     ------
     ValueError
-        For images that are not a stack of photographs, and for times or a response that do not fit them.
+        For images that are not a stack of photographs, and for times that do not fit them.
 
     References
     ----------
@@ -181,13 +172,15 @@ def align(
 
     Examples
     --------
-    >>> from hdrlab.capture import camera, hand_motion, scenes
+    >>> from hdrlab import scenes
+    >>> from hdrlab.capture import camera, hand_motion, responses
     >>> room = scenes.room((220, 320))
     >>> tilted = hand_motion.shake(2, room.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7)
     >>> taken = camera.shoot(room, [0.01, 0.04], offsets=tilted)
-    >>> moves = align(taken.images)
+    >>> H = align(taken.images, taken.times, responses.true_g())
     >>> truth = hand_motion.frame_homographies(tilted, room.shape)
-    >>> bool(warp.apart(moves[0], truth[0], room.shape) < 1)  # pixels at the corners
+    >>> bool(warp.corner_distance(H[0], truth[0], room.shape) < 1)  # pixels
     True
     """
-    return along(verdicts(images, times=times, g=g))
+    steps = [state.H for state in align_steps(images, times, g) if state.level == 0]
+    return warp.chain_homographies(np.argsort(times, kind="stable"), steps)

@@ -1,72 +1,120 @@
-"""Two photographs on one scale: linear light, divided by exposure, kept within the range that both measure.
+"""Two photographs on one scale: linear light divided by exposure, and how it differs [Cerman06 sec. 6].
 
-Z        gray photograph    (H, W): the green channel
-g        response           (n,), ln exposure of each level
-k        exposure ratio     brighter / darker
-X        light              (2, H, W) float32: exp g(Z) of the brighter photograph, which stays, and of the
-                            darker, which moves, times k [Cerman06 sec. 6]; NaN where it is discarded
-low      noise level        the darker photograph's, on the common scale
-high     saturation level   the brighter photograph's
+Z      gray photograph     (H, W): the green channel
+g      response            (n,), ln exposure of each level
+f_inv  light of a level    (n,): exp g
+k      exposure ratio      brighter / darker
+X      light               (2, H, W) float32: f_inv(Z) of the brighter photograph, which stays, and
+                           k f_inv(Z) of the darker, which moves; NaN where it is discarded
+low    noise level         the darker photograph's, on the common scale
+high   saturation level    the brighter photograph's
+H      homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
+p      pixels              (n, 2), (x, y): those of the fixed photograph that are compared
+d      differences         (n,): (a - b) / max((a + b) / 2, t), relative to light; NaN where one measures none
+t      least light         a thousandth of the largest, so that darkness does not count as contrast
+e      error               mean of d^2
 
 What lies below `low` or above `high` in either photograph is discarded in both, so the same parts of the
 scene are left. Where a level of the pyramid averages, it counts as `low` and `high`, which both share.
 """
 
+from collections.abc import Iterator
+from itertools import pairwise
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.ndimage import gaussian_filter
+from numpy.typing import ArrayLike
+from scipy.ndimage import gaussian_filter, map_coordinates
+from skimage.transform import downscale_local_mean
 
-from hdrlab.core.arrays import Array, as_table, levels
-from hdrlab.core.colour import decode_srgb
+from hdrlab.core import warp
+from hdrlab.core.types import F32, F64, Array, Mask
 
-Float = NDArray[np.float32]
-Mask = NDArray[np.bool_]
-Table = NDArray[np.float64]
+# of the range of levels: noise below, saturation above
+DARK, BRIGHT = 5 / 255, 250 / 255
+# pixels: a level with a side below twice this is not halved again
+SMALLEST = 32
+# pixels: interpolation smooths the noise, so places between pixels would seem to fit better
+SMOOTH = 1.0
+# pixels of a level: the standard deviation of a local mean
+NEIGHBOURHOOD = 4.0
+# an even choice of this many pixels measures an error as well as all of them
+POINTS = 8_000
+# of those pixels both photographs must measure
+LEAST = 0.02
+# e of photographs of which one is dark wherever the other is bright
+NONE = 4.0
 
-DARK, BRIGHT = 5 / 255, 250 / 255  # of the range of levels: noise below, saturation above
-SMALLEST = 32  # pixels: a level with a side below twice this is not halved again
-SMOOTH = 1.0  # pixels: interpolation smooths the noise, so places between pixels would seem to fit better
-AROUND = 4.0  # pixels of a level: its neighbourhood
+
+def neighbours(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[list[F32]]:
+    """Yield the pyramid of X of pair after pair, from the shortest exposure to the longest."""
+    images, times, f_inv = np.asarray(images), np.asarray(times, float), np.exp(g)
+    if images.ndim < 3 or images.dtype.kind != "u" or times.shape != images.shape[:1]:
+        raise ValueError(
+            f"expected photographs (P, H, W[, 3]) and P times, got {images.shape}, {times.shape}"
+        )
+    Z = images if images.ndim == 3 else images[..., 1]
+    f_inv = f_inv if f_inv.ndim == 1 else f_inv[:, 1]
+    for moving, fixed in pairwise(np.argsort(times, kind="stable")):
+        yield pair(Z[fixed], Z[moving], f_inv, times[fixed] / times[moving] * f_inv)
 
 
-def gray(image: Array) -> Array:
-    """Return Z."""
-    return image if image.ndim == 2 else image[..., 1]
-
-
-def pair(fixed: Array, moving: Array, g: ArrayLike | None, k: float | None = None) -> list[Float]:
-    """Return X (2, H, W) of the brighter photograph `fixed` and the darker `moving`, and of smaller ones.
-
-    Each is half the size of the one before. Without g each pixel is divided by the mean around it, so that
-    what is wrong with a scale taken out of the histograms cancels.
-    """
-    dark, bright = tables(moving, fixed, g, k)
+def pair(fixed: Array, moving: Array, bright: F64, dark: F64) -> list[F32]:
+    """Return X at every size by the light (n,) of a level of `fixed`, and of `moving` on the same scale."""
     n = len(dark) - 1
     low, high = np.float32(dark[round(DARK * n)]), np.float32(bright[round(BRIGHT * n)])
     X = np.stack([bright[fixed], dark[moving]]).astype(np.float32)
-    found = pyramid(np.clip(X, low, max(low, high)), (X > low) & (X < high))
-    return found if g is not None else [np.stack([x / around(x) for x in X]) for X in found]
+    return pyramid(np.clip(X, low, max(low, high)), (X > low) & (X < high))
 
 
-def tables(dark: Array, bright: Array, g: ArrayLike | None, k: float | None = None) -> tuple[Table, Table]:
-    """Return the light of each level, of the darker photograph and of the brighter, on one scale.
+def pyramid(X: F32, kept: Mask) -> list[F32]:
+    """Return X (2, h, w) at every size, full resolution first, each half the one before; NaN unless kept."""
+    smooth = np.where(kept, gaussian_filter(X, (0, SMOOTH, SMOOTH)), np.float32(np.nan))
+    h, w = (side // 2 * 2 for side in X.shape[1:])
+    if min(h, w) < 2 * SMALLEST:
+        return [smooth]
+    X, share = (downscale_local_mean(x[:, :h, :w], (1, 2, 2)) for x in (X, kept.astype(np.float32)))
+    return [smooth, *pyramid(X, share > 0.7)]
 
-    With g, and with k out of the histograms where it is not given. Without g the darker photograph is brought
-    to the brighter one by histograms alone, and both are read by the curve of sRGB: what is wrong with that
-    is wrong in both alike.
+
+def local_mean(x: F32) -> F32:
+    """Return the mean of x (h, w) around each pixel, of what is kept."""
+    kept = np.isfinite(x)
+    total, share = (
+        gaussian_filter(one, NEIGHBOURHOOD) for one in (np.where(kept, x, 0), kept.astype(np.float32))
+    )
+    return np.asarray(total / np.maximum(share, 1e-6), np.float32)
+
+
+def lattice(shape: tuple[int, ...], points: int = POINTS) -> F64:
+    """Return about this many pixels p, spread evenly over a picture."""
+    step = max(1, int(np.sqrt(shape[0] * shape[1] / points)))
+    y, x = np.mgrid[step // 2 : shape[0] : step, step // 2 : shape[1] : step]
+    return np.stack([x.ravel(), y.ravel()], axis=-1).astype(float)
+
+
+def differences(X: F32, H: F64, p: F64) -> F64:
+    """Return d at the pixels p [Cerman06 eq. 6]."""
+    q, (x, y) = warp.apply(np.linalg.inv(H), p), p.astype(int).T
+    a = X[0][y, x].astype(np.float64)
+    b = map_coordinates(X[1], q.T[::-1], order=1, cval=np.nan, output=np.float64)
+    t = 1e-3 * np.max(X[0], where=np.isfinite(X[0]), initial=1e-9)
+    return np.asarray((a - b) / np.maximum((a + b) / 2, t))
+
+
+def error(d: F64) -> float:
+    """Return e; NONE where the two share too few pixels.
+
+    Examples
+    --------
+    >>> error(np.array([0.1, -0.3, np.nan]))
+    0.05
     """
-    n = levels(bright)
-    if g is None:
-        own = decode_srgb(np.arange(n) / (n - 1))
-        return np.interp(transfer(dark, bright), np.arange(n), own), own
-    table = as_table(g, n)
-    own = np.exp(table if table.ndim == 1 else table[:, 1])
-    return own * (ratio(dark, bright, np.log(own)) if k is None else k), own
+    measured = d[np.isfinite(d)]
+    return float(np.mean(measured**2)) if len(measured) > LEAST * len(d) else NONE
 
 
-def transfer(dark: Array, bright: Array) -> Table:
+def transfer(dark: Array, bright: Array, n: int) -> F64:
     """Return T (n,), the level in `bright` of what is z in `dark`: that of equal rank [Grossberg03]."""
-    n = levels(bright)
     ranks = []
     for Z in (dark, bright):
         h = np.bincount(Z.ravel(), minlength=n)
@@ -74,16 +122,16 @@ def transfer(dark: Array, bright: Array) -> Table:
     return np.interp(ranks[0], ranks[1], np.arange(n))
 
 
-def ratio(dark: Array, bright: Array, g: Table) -> float:
+def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     """Return k from the histograms, which need no alignment: the median of what both measure.
 
     Examples
     --------
     >>> Z = np.arange(8, 60, dtype=np.uint8).reshape(4, 13)
-    >>> round(ratio(Z, 3 * Z, np.log(np.arange(256) + 1e-9)), 3)
+    >>> round(exposure_ratio(Z, 3 * Z, np.log(np.arange(256) + 1e-9)), 3)
     3.0
     """
-    z, T, top = np.arange(len(g)), transfer(dark, bright), len(g) - 1
+    z, T, top = np.arange(len(g)), transfer(dark, bright, len(g)), len(g) - 1
     both = (np.minimum(z, T) > DARK * top) & (np.maximum(z, T) < BRIGHT * top)
     h = np.bincount(dark.ravel(), minlength=len(g))[both]
     if not h.any():
@@ -92,27 +140,3 @@ def ratio(dark: Array, bright: Array, g: Table) -> float:
     order = np.argsort(steps)
     below = np.cumsum(h[order])
     return float(np.exp(steps[order][np.searchsorted(below, below[-1] / 2)]))
-
-
-def pyramid(X: Float, kept: Mask) -> list[Float]:
-    """Return X (2, h, w) at every size, full resolution first, NaN where it is not kept."""
-    found: list[Float] = []
-    while True:
-        smooth = gaussian_filter(X, (0, SMOOTH, SMOOTH))
-        found.append(np.where(kept, smooth, np.float32(np.nan)))
-        if min(X.shape[1:]) < 2 * SMALLEST:
-            return found
-        X, kept = halved(X), halved(kept.astype(np.float32)) > 0.7
-
-
-def halved(X: Float) -> Float:
-    """Return X (2, h, w) at half the size: the mean of each 2 x 2 pixels."""
-    h, w = X.shape[1] // 2, X.shape[2] // 2
-    return np.asarray(X[:, : 2 * h, : 2 * w].reshape(2, h, 2, w, 2).mean(axis=(2, 4)))
-
-
-def around(x: Float) -> Float:
-    """Return the mean of x (h, w) around each pixel, of what is kept."""
-    kept = np.isfinite(x)
-    total, share = (gaussian_filter(one, AROUND) for one in (np.where(kept, x, 0), kept.astype(np.float32)))
-    return np.asarray(total / np.maximum(share, 1e-6), np.float32)

@@ -1,6 +1,6 @@
 """Moving photographs by fractions of pixels: through linear light, and cut to what all of them show.
 
-moves  (P, 3, 3)        where pixel (x, y, 1) of photograph j lies in the picture they share, see `core.warp`
+H      (P, 3, 3)        where pixel (x, y, 1) of photograph j lies in the picture they share, see `core.warp`
 g      (n,) or (n, 3)   response, ln exposure of each level
 Z, X   level, light     X = exp g(Z)
 
@@ -23,14 +23,14 @@ from hdrlab.core.colour import decode_srgb
 
 
 def photographs(
-    images: ArrayLike, moves: ArrayLike, g: ArrayLike | None = None, *, valid: ArrayLike | None = None
+    images: ArrayLike, homographies: ArrayLike, g: ArrayLike | None = None, *, valid: ArrayLike | None = None
 ) -> tuple[Array, NDArray[np.bool_] | None]:
     """Return the images moved and cut to what all of them show, and their masks where there are any.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
-    moves : (P, 3, 3), or offsets (P, 2)
+    homographies : (P, 3, 3), or offsets (P, 2)
         As `cerman.align` and `homography.align` return them. An image that moves by whole pixels is cut out
         as it is.
     g : (n,) or (n, 3), optional
@@ -46,7 +46,7 @@ def photographs(
     Raises
     ------
     ValueError
-        For moves that do not fit the images, or leave nothing in common.
+        For homographies that do not fit the images, or leave nothing in common.
 
     Examples
     --------
@@ -55,8 +55,8 @@ def photographs(
     [[[10, 147, 200]], [[10, 200, 200]]]
     """
     images = as_stack(images)
-    H, mask = warp.as_moves(moves, len(images)), as_mask(valid, images)
-    shown = warp.inside(H, images.shape[1:3])
+    H, mask = warp.as_homographies(homographies, len(images)), as_mask(valid, images)
+    shown = warp.common_rectangle(H, images.shape[1:3])
     table = _table(g, levels(images), images.ndim - 2)
     moved = np.stack([one_moved(image, one, shown, table) for image, one in zip(images, H, strict=True)])
     if mask is None:
@@ -96,13 +96,13 @@ def _table(g: ArrayLike | None, n: int, colours: int) -> NDArray[np.float64]:
 def _whole(H: NDArray[np.float64]) -> tuple[int, int] | None:
     """Return (dy, dx) where H shifts by whole pixels, or None."""
     dx, dy = np.round(H[:2, 2])
-    shift = warp.as_moves([[dy, dx]])[0]
+    shift = warp.as_homographies([[dy, dx]])[0]
     return (int(dy), int(dx)) if np.allclose(H, shift, rtol=0, atol=1e-9) else None
 
 
 def _back(H: NDArray[np.float64], shown: tuple[slice, slice]) -> NDArray[np.float64]:
     """Return where the pixels of the rectangle `shown` lie in an image that H moves."""
-    return np.asarray(np.linalg.inv(H) @ warp.as_moves([[shown[0].start, shown[1].start]])[0])
+    return np.asarray(np.linalg.inv(H) @ warp.as_homographies([[shown[0].start, shown[1].start]])[0])
 
 
 def _touched(mask: NDArray[np.bool_], back: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.bool_]:

@@ -2,10 +2,10 @@
 
 E        radiance (H, W[, 3]) float32, any linear unit
 offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference
-moves    (P, 3, 3) homographies: where pixel (x, y, 1) of frame j lies in the reference, see `core.warp`
+H        (P, 3, 3) homographies: where pixel (x, y, 1) of frame j lies in the reference, see `core.warp`
 
 What `align` should answer is the same whichever way it is written. Offsets of whole pixels cut views out of
-the scene; all other moves resample its light, before the sensor: a camera that moved sees the scene between
+the scene; all others resample its light, before the sensor: a camera that moved sees the scene between
 the pixels, not the photograph.
 """
 
@@ -26,25 +26,32 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     is smaller than the scene by the span of the offsets, h = H - (max dy - min dy) and w likewise: it holds
     real content everywhere, and nothing wraps around.
 
-    With moves, or fractions of pixels, frame j sees E at H_j (x, y, 1), and all of them the largest rectangle
-    within which every one finds content. `frame_homographies` gives their moves in pixels of their own.
+    With homographies, or fractions of pixels, frame j sees E at H_j (x, y, 1), and all of them the largest
+    rectangle within which every one finds content. `frame_homographies` gives these in pixels of the frames.
     """
-    moves = np.asarray(offsets)
-    if moves.ndim == 3 or (moves.ndim == 2 and moves.shape[1] == 2 and moves.dtype.kind == "f"):
-        rows, columns = _shown(moves, E.shape)
+    homographies = np.asarray(offsets)
+    if homographies.ndim == 3 or (
+        homographies.ndim == 2 and homographies.shape[1] == 2 and homographies.dtype.kind == "f"
+    ):
+        rows, columns = _shown(homographies, E.shape)
         size, first = (rows.stop - rows.start, columns.stop - columns.start), _from((rows, columns))
-        return [warp.sample(E, H @ first, size) for H in warp.as_moves(moves)]
-    if moves.ndim != 2 or moves.shape[1] != 2 or len(moves) == 0 or moves.dtype.kind not in "iu":
-        raise ValueError(f"expected offsets (P, 2) or moves (P, 3, 3), got {describe(moves)}")
-    corners = moves - moves.min(axis=0)
+        return [warp.sample(E, H @ first, size) for H in warp.as_homographies(homographies)]
+    if (
+        homographies.ndim != 2
+        or homographies.shape[1] != 2
+        or len(homographies) == 0
+        or homographies.dtype.kind not in "iu"
+    ):
+        raise ValueError(f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(homographies)}")
+    corners = homographies - homographies.min(axis=0)
     h, w = E.shape[:2] - corners.max(axis=0)
     if h < 1 or w < 1:
-        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {moves.tolist()}")
+        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {homographies.tolist()}")
     return [E[y : y + h, x : x + w] for y, x in corners]
 
 
-def frame_homographies(moves: ArrayLike, shape: tuple[int, ...]) -> F64:
-    """Return moves (P, 3, 3) of a scene of `shape` as they are in the smaller frames that `views` returns.
+def frame_homographies(homographies: ArrayLike, shape: tuple[int, ...]) -> F64:
+    """Return homographies (P, 3, 3) of a scene of `shape` in pixels of the frames that `views` returns.
 
     These begin at pixel (left, top) of the scene, so H becomes T^-1 H T with the shift T by that much. A
     shift stays what it is.
@@ -56,8 +63,8 @@ def frame_homographies(moves: ArrayLike, shape: tuple[int, ...]) -> F64:
     >>> np.allclose(frame_homographies([turned, np.eye(3)], (100, 160))[0], warp.turn((h, w), 2), atol=0.2)
     True
     """
-    first = _from(_shown(moves, shape))
-    return np.asarray(np.linalg.inv(first) @ warp.as_moves(moves) @ first)
+    first = _from(_shown(homographies, shape))
+    return np.asarray(np.linalg.inv(first) @ warp.as_homographies(homographies) @ first)
 
 
 def shake(
@@ -70,7 +77,7 @@ def shake(
     tilt: float = 0.0,
     rng: Seed = 0,
 ) -> F64:
-    """Return moves (P, 3, 3) of a shaking hand in front of a scene (H, W); frame P // 2 stays.
+    """Return homographies (P, 3, 3) of a shaking hand in front of a scene (H, W); frame P // 2 stays.
 
     Parameters
     ----------
@@ -92,27 +99,27 @@ def shake(
     if count < 1 or not np.all(np.isfinite(knobs) & (knobs >= 0)) or zoom >= 0.5 or tilt >= 0.5:
         got = f"{count} frames, radius {radius}, degrees {degrees}, zoom {zoom}, tilt {tilt}"
         raise ValueError(f"expected at least one frame, motion of at least 0, zoom and tilt < 0.5, got {got}")
-    moves = []
+    homographies = []
     for dy, dx, phi, grown, across, down in rng.uniform(-1, 1, (count, 6)):
         about = warp.turn(shape, degrees * phi, (radius * dy, radius * dx), scale=1 + zoom * grown)
-        moves.append(about @ _tilted(shape, tilt * across, tilt * down))
-    moves[count // 2] = np.eye(3)
-    return np.array(moves)
+        homographies.append(about @ _tilted(shape, tilt * across, tilt * down))
+    homographies[count // 2] = np.eye(3)
+    return np.array(homographies)
 
 
 def _tilted(shape: tuple[int, ...], across: float, down: float) -> F64:
-    """Return the move that grows the right side by a share `across`, the bottom by `down`, not the middle."""
+    """Return the H that grows the right side by a share `across`, the bottom by `down`, not the middle."""
     y, x = (np.array(shape[:2]) - 1) / 2
     middle = np.array([[1, 0, -x], [0, 1, -y], [0, 0, 1]])
     lean = np.array([[1, 0, 0], [0, 1, 0], [-across / max(x, 1), -down / max(y, 1), 1]])
     return np.asarray(np.linalg.inv(middle) @ lean @ middle)
 
 
-def _shown(moves: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
+def _shown(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     """Return the rectangle of pixels that all of them see within the scene: H p inside, so p inside H^-1."""
-    return warp.inside(np.linalg.inv(warp.as_moves(moves)), shape)
+    return warp.common_rectangle(np.linalg.inv(warp.as_homographies(homographies)), shape)
 
 
 def _from(shown: tuple[slice, slice]) -> F64:
     """Return the shift T from a frame to the scene."""
-    return warp.as_moves([[shown[0].start, shown[1].start]])[0]
+    return warp.as_homographies([[shown[0].start, shown[1].start]])[0]

@@ -51,7 +51,7 @@ def given(response: str | Path) -> str | Callable[..., Any]:
 )
 @click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
-@click.option("--align", type=click.Choice([*catalogue.names("align"), "none"]), default="mtb")
+@click.option("--align", type=click.Choice(["auto", *catalogue.names("align"), "none"]), default="mtb")
 @click.option("--response", type=click.Choice([*METHODS, "all"]), default="debevec")
 @click.option("--plot", type=common.FILE, help="Picture of curve, band and residuals: .png or .svg.")
 @click.option("--rounds", type=click.IntRange(0), default=50, help="Of the bootstrap; 0 for no band.")

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--align",
-    type=click.Choice([*catalogue.names("align"), "none"]),
+    type=click.Choice(["auto", *catalogue.names("align"), "none"]),
     default="mtb",
     help="mtb shifts; cerman turns, too; homography takes scale and tilt; auto takes what fits best.",
 )

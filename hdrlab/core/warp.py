@@ -1,50 +1,51 @@
 """Pictures moved by homographies: resampled in linear light, and cut to what all of them show.
 
-H        homography (3, 3): H (x, y, 1) is where pixel (x, y) of one picture lies in another, up to a factor
-moves    (P, 3, 3), one for each photograph: where its pixels lie in the picture that they share
-offsets  (P, 2), (dy, dx) pixels, down and right: moves that only shift
+H        homography (3, 3): H (x, y, 1) is where pixel (x, y) of one picture lies in another, up to a factor;
+         (P, 3, 3), one for each photograph: where its pixels lie in the picture that they share
+offsets  (P, 2), (dy, dx) pixels, down and right: homographies that only shift
 a, b     half-planes (n, 2) and (n,): the points p with a p <= b
 
 Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV and scikit-image have it.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 from skimage.transform import warp
 
-from hdrlab.core.arrays import Array, describe
+from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64, Array
 
-Float = NDArray[np.float64]
-SLACK = (
-    1e-3  # pixels: so far beyond its last pixel a picture goes on; one that is a pixel wide has sides, too
-)
+# pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has sides, too
+SLACK = 1e-3
 
 
-def as_moves(moves: ArrayLike, count: int | None = None) -> Float:
-    """Return `moves` as float64 (P, 3, 3) with H[2, 2] = 1, offsets (P, 2) as shifts, or raise a ValueError.
+def as_homographies(homographies: ArrayLike, count: int | None = None) -> F64:
+    """Return float64 (P, 3, 3) with H[2, 2] = 1, of offsets (P, 2) the shifts, or raise a ValueError.
 
     Examples
     --------
-    >>> as_moves([[3, -1]])[0].tolist()
+    >>> as_homographies([[3, -1]])[0].tolist()
     [[1.0, 0.0, -1.0], [0.0, 1.0, 3.0], [0.0, 0.0, 1.0]]
     """
-    given = np.asarray(moves)
+    given = np.asarray(homographies)
     numbers = given.dtype.kind in "iuf" and given.size > 0 and bool(np.isfinite(given).all())
     if not numbers or given.shape[1:] not in ((2,), (3, 3)):
-        raise ValueError(f"expected finite moves (P, 3, 3) or offsets (P, 2), got {describe(given)}")
+        raise ValueError(f"expected finite homographies (P, 3, 3) or offsets (P, 2), got {describe(given)}")
     if count is not None and len(given) != count:
-        raise ValueError(f"expected {count} moves, one per image, got {len(given)}")
+        raise ValueError(f"expected {count} homographies, one per image, got {len(given)}")
     if given.ndim == 2:
         shifts = np.tile(np.eye(3), (len(given), 1, 1))
         shifts[:, :2, 2] = given[:, ::-1]
         return shifts
     if np.any(np.abs(np.linalg.det(given)) < 1e-12) or np.any(np.abs(given[:, 2, 2]) < 1e-12):
-        raise ValueError("expected moves that can be undone, got a matrix without an inverse")
+        raise ValueError("expected homographies that can be undone, got a matrix without an inverse")
     return given / given[:, 2:, 2:].astype(np.float64)
 
 
-def turn(shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0) -> Float:
+def turn(shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, scale: float = 1.0) -> F64:
     """Return H of a picture (H, W) turned about its middle, clockwise as seen, enlarged, then shifted."""
     (dy, dx), phi = np.asarray(offset, float), np.deg2rad(degrees)
     cos, sin = scale * np.cos(phi), scale * np.sin(phi)
@@ -54,13 +55,13 @@ def turn(shape: tuple[int, ...], degrees: float, offset: ArrayLike = (0, 0), *, 
     )
 
 
-def corners(shape: tuple[int, ...]) -> Float:
+def corners(shape: tuple[int, ...]) -> F64:
     """Return (x, y) of a picture's four corner pixels, (4, 2), in turn."""
     h, w = shape[0] - 1, shape[1] - 1
     return np.array([[0, 0], [w, 0], [w, h], [0, h]], float)
 
 
-def apply(H: ArrayLike, points: ArrayLike) -> Float:
+def apply(H: ArrayLike, points: ArrayLike) -> F64:
     """Return where points (..., n, 2), (x, y), lie after H (..., 3, 3)."""
     H, points = np.asarray(H, float), np.asarray(points, float)
     x, y = points[..., 0], points[..., 1]
@@ -68,19 +69,33 @@ def apply(H: ArrayLike, points: ArrayLike) -> Float:
     return np.stack([u / w, v / w], axis=-1)
 
 
-def apart(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) -> Float:
-    """Return how far two moves (..., 3, 3) are apart at the worst corner of a picture, pixels.
+def corner_distance(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) -> F64:
+    """Return how far two homographies (..., 3, 3) put the worst corner of a picture apart, pixels.
 
     Examples
     --------
-    >>> float(apart(turn((101, 101), 1), np.eye(3), (101, 101)).round(2))  # 70.7 pixels x pi / 180
+    >>> float(corner_distance(turn((101, 101), 1), np.eye(3), (101, 101)).round(2))  # 70.7 pixels x pi / 180
     1.23
     """
     off = apply(found, corners(shape)) - apply(truth, corners(shape))
     return np.asarray(np.hypot(off[..., 0], off[..., 1]).max(axis=-1))
 
 
-def inside(moves: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
+def chain_homographies(order: ArrayLike, steps: Sequence[F64 | None]) -> F64:
+    """Return the H (P, 3, 3) that lay every image on the middle one of `order`: products of the P - 1 steps.
+
+    Step k lays image order[k] on order[k + 1]. None breaks the chain: the image beyond stays where it is.
+    """
+    H, order = np.tile(np.eye(3), (len(steps) + 1, 1, 1)), np.asarray(order)
+    middle = len(order) // 2
+    for k in reversed(range(middle)):
+        H[order[k]] = np.eye(3) if (one := steps[k]) is None else H[order[k + 1]] @ one
+    for k in range(middle, len(steps)):
+        H[order[k + 1]] = np.eye(3) if (one := steps[k]) is None else H[order[k]] @ np.linalg.inv(one)
+    return np.asarray(H / H[:, 2:, 2:])
+
+
+def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     """Return the rectangle (rows, columns) of shared pixels that every moved picture of `shape` covers.
 
     It is the largest one of the pictures' own proportions, then widened as far as its sides go.
@@ -90,22 +105,22 @@ def inside(moves: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     ValueError
         Where no pixel is covered by all of them.
     """
-    H, around = as_moves(moves), corners(shape) + SLACK * np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])
-    if np.any(around @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
-        raise ValueError("expected moves that keep a picture in front of the camera, got one that does not")
-    quads = apply(H, around)
+    H, wide = as_homographies(homographies), corners(shape) + SLACK * np.sign(corners((3, 3)) - 1)
+    if np.any(wide @ np.swapaxes(H[:, 2:, :2], 1, 2) + 1 <= 0):
+        raise ValueError("expected homographies that keep a picture in front of the camera, got another")
+    quads = apply(H, wide)
     edges = np.roll(quads, -1, axis=1) - quads
     a = np.stack([edges[..., 1], -edges[..., 0]], axis=-1)  # outwards, unless a picture is mirrored
     a *= np.sign(np.linalg.det(H[:, :2, :2]))[:, None, None] / np.hypot(*np.moveaxis(a, -1, 0))[..., None]
     left, top, right, bottom = _largest(a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape)
     if left > right or top > bottom:
         raise ValueError(
-            f"expected images that overlap, got moves that leave nothing of images of {shape[:2]} pixels"
+            f"expected images that overlap, got homographies that leave nothing of {shape[:2]} pixels"
         )
     return slice(top, bottom + 1), slice(left, right + 1)
 
 
-def _largest(a: Float, b: Float, shape: tuple[int, ...]) -> list[int]:
+def _largest(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
     """Return the first and last pixel, x, y, x, y, of the rectangle within half-planes: a linear program.
 
     Of all points of a rectangle a p is largest at a corner: at the high x where a_x > 0, and so on. So each

@@ -28,7 +28,7 @@ class Assembly(NamedTuple):
     medians : (P, C, 256), what each frame says of each level: see `diagnostics.consistency`
     notes : sentences, what to know about this map
     doubts : sentences, reasons not to trust it
-    moves : (P, 3, 3), where each photograph was moved, rotation, scale and fractions of pixels included
+    homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions included
     moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
     glare : (h, w) bool, where veiling glare was removed; None where nobody asked
     """
@@ -42,7 +42,7 @@ class Assembly(NamedTuple):
     medians: NDArray[np.float64] = None  # type: ignore[assignment]
     notes: tuple[str, ...] = ()
     doubts: tuple[str, ...] = ()
-    moves: NDArray[np.float64] = None  # type: ignore[assignment]
+    homographies: NDArray[np.float64] = None  # type: ignore[assignment]
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
 

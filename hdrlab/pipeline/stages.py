@@ -45,11 +45,11 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     bracket : Bracket
         At least two photographs of different exposure.
     align : str or function
-        A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels or moves
-        (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is. "cerman" turns too and
-        "homography" takes scale and tilt; both compare light, and resample it, by a provisional response
+        A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels or
+        homographies (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is. "cerman" turns
+        too, and "homography" takes scale and tilt; both resample light, by a provisional response
         out of the histograms. "auto" takes whichever lays the photographs on each other best, see
-        `align.auto`.
+        `pipeline.alignment`.
     response : str or function
         A method of `response`, "auto" (linear where the bracket is, else Debevec), or your own
         `recover(images, times, *, valid) -> g`.

@@ -7,14 +7,15 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from hdrlab import pipeline, scenes
-from hdrlab.align import auto, cerman, homography, matches, mtb, resample
+from hdrlab.align import homography, mtb, resample
 from hdrlab.align.shift import shift
 from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
 from hdrlab.core import warp
 from hdrlab.core.bracket import bracket
-from hdrlab.pipeline import registration
-from hdrlab.radiance.merge import Quality
+from hdrlab.diagnostics.registration import LOST
+from hdrlab.pipeline import alignment, registration
+from hdrlab.radiance.bounds import Seen
 
 SHAPE = (150, 220)
 CAMERA = camera.Camera(full_well=20_000, read_noise=5)
@@ -41,8 +42,8 @@ def test_a_homography_goes_through_four_corners():
 
 
 def test_a_homography_of_a_level_is_that_of_the_next_in_its_pixels():
-    H = warp.as_moves([[1.25, -3]])[0]
-    assert np.allclose(homography.enlarged(H), warp.as_moves([[2.5, -6]])[0])
+    H = warp.as_homographies([[1.25, -3]])[0]
+    assert np.allclose(homography.enlarge(H), warp.as_homographies([[2.5, -6]])[0])
 
 
 def test_points_that_do_not_agree_make_no_homography():
@@ -55,16 +56,16 @@ def test_points_that_do_not_agree_make_no_homography():
 def test_a_step_ahead_with_a_tilted_camera_is_found():
     E = scenes.room((220, 320))
     taken, truth = shoot(E, hand_motion.shake(2, E.shape, radius=12, degrees=4, zoom=0.05, tilt=0.05, rng=7))
-    found = homography.align(taken.images)
+    found = homography.align(taken.images, taken.times, true_g())
     truth = np.linalg.inv(truth[-1]) @ truth
-    assert warp.apart(np.linalg.inv(found[-1]) @ found, truth, E.shape).max() < 1
-    (one,) = homography.verdicts(taken.images)
+    assert warp.corner_distance(np.linalg.inv(found[-1]) @ found, truth, E.shape).max() < 1
+    (one,) = alignment.register(taken.images, "homography").pairs
     assert one.reliable and one.confidence > 0.6
 
 
 def test_where_there_is_no_point_the_photographs_stay_and_that_is_told():
     images = np.stack([np.full((90, 120), level, np.uint8) for level in (60, 120)])
-    (one,) = homography.verdicts(images)
+    (one,) = alignment.register(images, "homography").pairs
     assert np.array_equal(one.H, np.eye(3)) and not one.reliable
 
 
@@ -81,22 +82,22 @@ def test_where_there_is_no_point_the_photographs_stay_and_that_is_told():
 )
 def test_the_simplest_way_that_fits_is_taken(room, moves, ways):
     taken, _ = shoot(room, moves)
-    choice = auto.choose(taken.images, times=taken.times, g=true_g())
-    assert choice.way in ways and choice.errors[choice.way] <= choice.errors["none"]
+    choice = alignment.register(taken.images, times=taken.times, g=true_g())
+    assert choice.method in ways and choice.errors[choice.method] <= choice.errors["none"]
 
 
-@given(st.dictionaries(st.sampled_from(auto.WAYS), st.floats(0, 4)), st.floats(0, 4))
+@given(st.dictionaries(st.sampled_from(alignment.CHOICES), st.floats(0, 4)), st.floats(0, 4))
 def test_the_choice_is_never_worse_than_none_by_its_own_measure(e, none):
     e = e | {"none": none}
-    assert e[auto.chosen(e)] <= none and e[auto.chosen(e)] <= 1.05 * min(e.values())
+    assert e[alignment.simplest(e)] <= none and e[alignment.simplest(e)] <= 1.05 * min(e.values())
 
 
 @given(st.integers(0, 2**32 - 1))
 @settings(max_examples=2)
 def test_photographs_of_nothing_in_common_stay_where_they_are(seed):
     images = np.random.default_rng(seed).integers(0, 256, (2, 80, 90), dtype=np.uint8)
-    choice = auto.choose(images, times=[1, 2], g=true_g())
-    assert choice.errors[choice.way] <= choice.errors["none"]
+    choice = alignment.register(images, times=[1, 2], g=true_g())
+    assert choice.errors[choice.method] <= choice.errors["none"]
 
 
 # photographs that move
@@ -144,7 +145,7 @@ def test_what_is_no_picture_takes_part_in_no_mean():
 
 def test_moves_that_do_not_fit_the_images_are_refused():
     images = np.zeros((2, 20, 24), np.uint8)
-    for moves, said in (([[0, 0.5]], "expected 2 moves"), ([[0, 0], [0, 99.5]], "overlap")):
+    for moves, said in (([[0, 0.5]], "expected 2 homographies"), ([[0, 0], [0, 99.5]], "overlap")):
         with pytest.raises(ValueError, match=said):
             resample.photographs(images, moves)
 
@@ -160,10 +161,10 @@ def turned(room):
 
 def map_error(found, room, taken):
     """Return the median relative error of a map on edges, where misalignment shows."""
-    rows, columns = warp.inside(found.moves, taken.images.shape[1:3])
+    rows, columns = warp.common_rectangle(found.homographies, taken.images.shape[1:3])
     scene = hand_motion.views(room, hand_motion.shake(3, SHAPE, **HAND))[1][rows, columns]
     slope = np.hypot(*np.gradient(np.log(scene[..., 1] + 1e-4)))
-    well = (found.quality == Quality.MEASURED) & (slope > np.quantile(slope, 0.8))
+    well = (found.seen == Seen.MEASURED) & (slope > np.quantile(slope, 0.8))
     ratio = found.E[well] / scene[well]
     return np.median(np.abs(ratio / np.median(ratio, axis=0) - 1))
 
@@ -178,17 +179,17 @@ def test_the_assembly_tells_the_moves_and_auto_tells_its_choice(turned):
     taken, truth = turned
     found = next(pipeline.assemble_steps(taken, align="auto"))
     relative = np.linalg.inv(truth[1]) @ truth
-    assert warp.apart(found.moves, relative, taken.images.shape[1:3]).max() < 0.5
+    assert warp.corner_distance(found.homographies, relative, taken.images.shape[1:3]).max() < 0.5
     assert found.offsets.dtype == np.int64 and 'aligned by "cerman"' in found.notes[0]
     still = next(pipeline.assemble_steps(taken, align="mtb"))
-    assert np.array_equal(still.moves, warp.as_moves(mtb.align(taken.images)))
+    assert np.array_equal(still.homographies, warp.as_homographies(mtb.align(taken.images)))
 
 
 def test_a_function_of_the_readers_own_may_answer_with_moves(turned):
     taken, truth = turned
     moves = np.linalg.inv(truth[1]) @ truth
     found = next(pipeline.assemble_steps(taken, align=lambda images: moves))
-    assert np.allclose(found.moves, moves) and found.bracket.images.shape[1] < taken.images.shape[1]
+    assert np.allclose(found.homographies, moves) and found.bracket.images.shape[1] < taken.images.shape[1]
 
 
 def test_masks_follow_the_warp(turned):
@@ -209,7 +210,7 @@ def test_photographs_of_two_scenes_are_a_doubt(room):
         pipeline.assemble_steps(bracket(np.stack(images), times, ["a.jpg", "b.jpg"]), align="cerman")
     )
     assert any("b.jpg" in doubt and "leave one out" in doubt for doubt in found.doubts)
-    assert found.moves.shape == (2, 3, 3) and matches.DOUBT == 0.3
+    assert found.homographies.shape == (2, 3, 3) and LOST == 0.3
 
 
 # real photographs
@@ -219,7 +220,7 @@ def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(phot
     taken = photographs("stlouis_arch")
     small = taken.images[:, ::4, ::4]  # shifts of 1, 7.5 and 2 pixels at full size
     g = registration.provisional(taken._replace(images=small), "auto")
-    found = cerman.verdicts(small, times=taken.times, g=g)
+    found = alignment.register(small, "cerman", times=taken.times, g=g).pairs
     across = np.abs([one.offset[1] for one in found])
     assert np.all(np.abs(across - np.array([1, 7.5, 2]) / 4) < 0.35)
     assert all(abs(one.offset[0]) < 0.4 and abs(one.degrees) < 0.1 and one.confidence > 0.6 for one in found)
@@ -228,7 +229,7 @@ def test_the_arch_is_registered_to_the_measured_shifts_and_turns_by_nothing(phot
 def test_a_walk_around_the_crusader_fits_better_by_homographies_than_by_shifts_and_turns(shared):
     paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
     images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(4)) for path in paths])
-    turned, tilted = (way.verdicts(images) for way in (cerman, homography))
+    turned, tilted = (alignment.register(images, way).pairs for way in ("cerman", "homography"))
     better = [one.after < other.after for one, other in zip(tilted, turned, strict=True)]
     assert sum(better) >= 4 and all(one.after <= one.before for one in tilted)
     assert np.mean([one.after for one in tilted]) < 0.5 * np.mean([one.before for one in tilted])

@@ -53,10 +53,10 @@ def best_corner(waves, still):
     return min(tries, key=lambda at: np.abs(still - waves(x + at[0], y + at[1])).max())
 
 
-def test_shifts_written_as_moves_cut_the_same_views_as_offsets(E):
+def test_shifts_written_as_homographies_cut_the_same_views_as_offsets(E):
     offsets = [[3, -4], [0, 0], [-6, 9]]
     for one, other in zip(
-        hand_motion.views(E, offsets), hand_motion.views(E, warp.as_moves(offsets)), strict=True
+        hand_motion.views(E, offsets), hand_motion.views(E, warp.as_homographies(offsets)), strict=True
     ):
         assert np.allclose(one, other, atol=1e-6)
     assert camera.views is hand_motion.views
@@ -67,9 +67,9 @@ def test_photographs_of_a_turning_camera_lie_on_each_other_once_they_are_turned_
     moves = [warp.turn(room.shape, 2.5, (3, 5)), np.eye(3)]
     taken = camera.shoot(room, [1e-3, 1.001e-3], camera.Camera(response="linear", bits=16), offsets=moves)
     own = hand_motion.frame_homographies(moves, room.shape)
-    rows, columns = warp.inside(own, taken.images.shape[1:3])
+    rows, columns = warp.common_rectangle(own, taken.images.shape[1:3])
     still = taken.images[1][rows, columns].astype(float)
-    first = warp.as_moves([[rows.start, columns.start]])[0]
+    first = warp.as_homographies([[rows.start, columns.start]])[0]
     turned = warp.sample(taken.images[0].astype(float), np.linalg.inv(own[0]) @ first, still.shape)
     off = np.abs(turned - taken.images[0][rows, columns])
     assert np.abs(turned - still).mean() < off.mean() / 4
@@ -112,16 +112,16 @@ def test_resampled_light_stays_between_the_light_around_it(seed):
 
 
 def test_whole_pixels_are_not_resampled(E):
-    H = warp.as_moves([[2, 3]])[0]
+    H = warp.as_homographies([[2, 3]])[0]
     assert np.allclose(warp.sample(E, H, (50, 60)), E[2:52, 3:63], atol=1e-6)
     assert np.array_equal(warp.nearest(E, H, (50, 60)), E[2:52, 3:63])
 
 
 @given(st.lists(st.tuples(st.integers(-9, 9), st.integers(-9, 9)), min_size=1, max_size=5))
 def test_of_shifted_pictures_the_rectangle_is_the_crop(offsets):
-    rows, columns = warp.inside(offsets, (30, 40))
+    rows, columns = warp.common_rectangle(offsets, (30, 40))
     kept = crop([*offsets, (0, 0)], (30, 40))
-    with_first = warp.inside([*offsets, (0, 0)], (30, 40))
+    with_first = warp.common_rectangle([*offsets, (0, 0)], (30, 40))
     assert with_first == kept and rows.stop - rows.start >= kept[0].stop - kept[0].start
 
 
@@ -129,7 +129,7 @@ def test_of_shifted_pictures_the_rectangle_is_the_crop(offsets):
 @settings(max_examples=25)
 def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
     moves = hand_motion.shake(3, SHAPE, radius=9, degrees=5, zoom=0.05, tilt=0.03, rng=seed)
-    rows, columns = warp.inside(moves, SHAPE)
+    rows, columns = warp.common_rectangle(moves, SHAPE)
 
     def beyond(grow):
         box = np.array([[x, y] for x in columns_of(grow[:2]) for y in rows_of(grow[2:])])
@@ -148,27 +148,29 @@ def test_the_rectangle_lies_in_every_picture_and_touches_their_sides(seed):
 
 
 def test_how_far_moves_are_apart_is_told_at_the_worst_corner():
-    assert warp.apart(warp.as_moves([[3, 4]]), np.eye(3), SHAPE) == pytest.approx([5])
+    assert warp.corner_distance(warp.as_homographies([[3, 4]]), np.eye(3), SHAPE) == pytest.approx([5])
     half = np.hypot(119, 169) / 2
-    assert warp.apart(warp.turn(SHAPE, 1), np.eye(3), SHAPE) == pytest.approx(half * np.pi / 180, rel=1e-3)
+    assert warp.corner_distance(warp.turn(SHAPE, 1), np.eye(3), SHAPE) == pytest.approx(
+        half * np.pi / 180, rel=1e-3
+    )
 
 
 @pytest.mark.parametrize(
     ("moves", "said"),
     [
-        ([[0, 0, 0]], "expected finite moves"),
-        ([[np.nan, 0]], "expected finite moves"),
-        ([], "expected finite moves"),
-        ([["a", "b"]], "expected finite moves"),
+        ([[0, 0, 0]], "expected finite homographies"),
+        ([[np.nan, 0]], "expected finite homographies"),
+        ([], "expected finite homographies"),
+        ([["a", "b"]], "expected finite homographies"),
         (np.zeros((2, 3, 3)), "without an inverse"),
-        (np.ones((1, 3, 4)), "expected finite moves"),
+        (np.ones((1, 3, 4)), "expected finite homographies"),
         ([[[1, 0, 0], [0, 1, 0], [-0.02, 0, 1]]], "in front of the camera"),
         ([[0, 0], [0, 500]], "expected images that overlap"),
     ],
 )
 def test_moves_that_mean_nothing_are_refused(moves, said):
     with pytest.raises(ValueError, match=said):
-        warp.inside(moves, SHAPE)
+        warp.common_rectangle(moves, SHAPE)
 
 
 @pytest.mark.parametrize("knobs", [dict(count=0), dict(radius=-1), dict(degrees=np.nan), dict(tilt=0.5)])

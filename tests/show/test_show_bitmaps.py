@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from hdrlab.align import bitmaps, mtb
+from hdrlab.align import mtb
+from hdrlab.pipeline.alignment import register
 from hdrlab.show.plots import bitmaps as drawn
 from hdrlab.show.widgets import pictures
 
@@ -42,17 +43,17 @@ def test_bitmaps_of_two_sizes_are_refused(b, compared):
 
 def test_at_the_true_offset_nothing_is_orange_and_the_title_says_so():
     state = STATES[-1]
-    ax = drawn.difference(*state.bits, state.offset, state.width)
+    ax = drawn.difference(state.fixed, state.moving, state.offset)
     assert titles(ax) == [f"moved by ({state.offset[0]}, {state.offset[1]}): 0.00 % of the bits differ"]
     shown = ax.images[0].get_array()
     assert not np.all(shown == drawn.DIFFER, axis=-1).any()
-    beside = drawn.difference(*state.bits, (0, 0), state.width).images[0].get_array()
+    beside = drawn.difference(state.fixed, state.moving, (0, 0)).images[0].get_array()
     assert np.all(beside == drawn.DIFFER, axis=-1).mean() > 0.1
 
 
 def test_the_error_in_a_title_is_the_share_of_orange_among_what_is_compared():
     state = STATES[-1]
-    ax = drawn.difference(*state.bits, (1, 1), state.width)
+    ax = drawn.difference(state.fixed, state.moving, (1, 1))
     shown = ax.images[0].get_array()
     orange = np.all(shown == drawn.DIFFER, axis=-1).sum()
     compared = (~np.all(shown == drawn.OUTSIDE, axis=-1)).sum()
@@ -68,23 +69,22 @@ def test_of_nine_differences_the_frame_of_the_best_is_orange(state):
         for ax in figure.axes
         if ax.spines["top"].get_linewidth() == 3 and ax.spines["top"].get_edgecolor()[0] > 0.8
     ]
-    best = 100 * state.errors.min()
+    best = 100 * min(state.errors.values())
     assert framed == [f"({state.offset[0]}, {state.offset[1]}): {best:.2f} %"]
 
 
 def test_in_a_tie_the_centre_is_framed():
     flat = np.zeros((2, 40, 64), bool)
     flat[1] = True  # all compared, and equal
-    words = bitmaps.pack(flat)
-    state = STATES[0]._replace(bits=(words, words), width=64, errors=np.zeros((3, 3)), offset=(0, 0))
+    state = mtb.State(0, flat, flat, mtb.step(flat, flat, (0, 0)), (0, 0))
     widths = [ax.spines["top"].get_linewidth() for ax in drawn.nine(state).axes]
     assert np.flatnonzero(np.array(widths) == 3).tolist() == [4]
 
 
-def test_a_verdict_stands_above_its_picture_and_all_are_of_one_height():
-    state, verdict = STATES[-1], mtb.verdicts(PAIR)[0]._replace(trouble="")
-    good, bad = drawn.judged(state, verdict), drawn.judged(state, verdict._replace(trouble="it " * 30))
-    assert "nothing speaks against it" in titles(good)[0] and titles(bad)[0].count("it it") > 1
+def test_a_validation_stands_above_its_picture_and_all_are_of_one_height():
+    state, found = STATES[-1], register(PAIR, "mtb").pairs[0]._replace(failure="")
+    good, bad = drawn.validated(state, found), drawn.validated(state, found._replace(failure="it " * 30))
+    assert "no reason not to trust it" in titles(good)[0] and titles(bad)[0].count("it it") > 1
     assert pictures.render(good).shape == pictures.render(bad).shape
 
 

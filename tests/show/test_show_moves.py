@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.align import cerman, matches
+from hdrlab.align import cerman
 from hdrlab.core import warp
 from hdrlab.show.plots import moves as drawn
 from hdrlab.show.widgets import pictures
@@ -11,7 +11,7 @@ from hdrlab.show.widgets import pictures
 RNG = np.random.default_rng(0)
 WALL = np.kron(RNG.uniform(0.5, 2, (14, 18)), np.ones((8, 8))).astype(np.float32)
 X = np.stack([WALL[8:104, 8:136], WALL[5:101, 12:140]])  # which lies on the first moved by (-3, 4)
-TRUE = warp.as_moves([[-3, 4]])[0]
+TRUE = warp.as_homographies([[-3, 4]])[0]
 
 
 def title(drawn):
@@ -37,14 +37,14 @@ def test_the_brighter_photograph_is_told_by_its_colour():
 
 
 def test_the_highest_correlation_is_drawn_where_it_is():
-    figure = drawn.correlation(matches.correlation(X), marks={"true": (-3, 4)})
+    figure = drawn.correlation(cerman.correlation(X), marks={"true": (-3, 4)})
     image, (line,) = figure.axes[0].images[0], figure.axes[0].lines
     y, x = np.unravel_index(np.argmax(image.get_array()), image.get_array().shape)
     assert (y - X.shape[1] + 1, x - X.shape[2] + 1) == (-3, 4) == (line.get_ydata()[0], line.get_xdata()[0])
 
 
 def test_a_level_shows_its_picture_and_every_step_of_its_error():
-    state = cerman.State(0, 1, 2, X, np.zeros((5, 3)), np.geomspace(0.1, 0.01, 5), TRUE)
+    state = cerman.State(2, X, np.zeros((5, 3)), np.geomspace(0.1, 0.01, 5), TRUE)
     figure = drawn.level(state)
     assert "level 2" in title(figure) and "e = 0.0000" in title(figure)
     assert figure.axes[1].lines[0].get_ydata().tolist() == (1000 * state.errors).tolist()

@@ -1,6 +1,6 @@
 """Alignment by bitmaps -> pictures and drawings: where two bitmaps differ, nine offsets at once, all.
 
-bits     of one photograph   (2, H, ceil(W / 64)) uint64: bitmap, and exclusion bitmap, 1 where compared
+bits     of one photograph   (2, H, W) bool: bitmap, and exclusion bitmap, True where compared
 state    of `align.mtb`      one level of one pair
 errors   (2 n + 1, 2 n + 1)  bits that differ / bits compared, dy down and dx across, -n to n pixels
 
@@ -16,15 +16,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.align import bitmaps, judge
-from hdrlab.align.bitmaps import Offset, Words
+from hdrlab.align import mtb
 from hdrlab.align.mtb import State
-from hdrlab.align.pairs import Verdict
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import Mask
+from hdrlab.diagnostics.registration import Validation
 from hdrlab.show.plots import picture_axes
 from hdrlab.show.plots.nearest import show
 
 Image = NDArray[np.uint8]
+Offset = tuple[int, int]
 AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
 DIFFER, OUTSIDE = (230, 159, 0), (0, 90, 160)
 CENTRE, BEST = "#808080", "#D55E00"
@@ -43,48 +44,43 @@ def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = Non
     return picture
 
 
-def difference(fixed: Words, moving: Words, offset: Offset, width: int, *, title: str = "") -> Axes:
+def difference(fixed: Mask, moving: Mask, offset: Offset, *, title: str = "") -> Axes:
     """Draw the difference of two photographs' bits, the second moved by an offset, under its error."""
-    moved = judge.move(moving, offset)
-    error = float(bitmaps.error(bitmaps.disagreement(fixed, moved)))
-    ax = _under(fixed.shape[1] / width, above=0.32 + 0.21 * title.count("\n"))
-    show(ax, _picture(fixed, moved, width))
-    ax.set_title(title or f"moved by {_pair(offset)}: {100 * error:.2f} % of the bits differ", fontsize=11)
+    ax = _under(fixed.shape[1] / fixed.shape[2], above=0.32 + 0.21 * title.count("\n"))
+    show(ax, _picture(fixed, moving, offset))
+    off = 100 * mtb.error(fixed, moving, offset)
+    ax.set_title(title or f"moved by {_pair(offset)}: {off:.2f} % of the bits differ", fontsize=11)
     return ax
 
 
-def judged(state: State, verdict: Verdict) -> Axes:
-    """Draw what still differs at the end of a search, under what was found and why to doubt it."""
-    found = f"found {_pair(state.offset)}, {100 * verdict.after:.2f} % of the bits differ"
-    said = wrap(verdict.trouble or "nothing speaks against it", 68)
+def validated(state: State, validation: Validation) -> Axes:
+    """Draw what still differs at the end of a search, under what was found and why not to trust it."""
+    found = f"found {_pair(state.offset)}, {100 * validation.after:.2f} % of the bits differ"
+    said = wrap(validation.failure or "no reason not to trust it", 68)
     title = "\n".join([found, *said, *[""] * (2 - len(said))])  # of one height, whatever it says
-    return difference(*state.bits, state.offset, state.width, title=title)
+    return difference(state.fixed, state.moving, state.offset, title=title)
 
 
 def nine(state: State) -> Figure:
     """Return the nine offsets that a level compares, the centre in a gray frame and the best in an orange."""
-    fixed, moving = state.bits
-    height, gap = fixed.shape[1], 0.06
-    i, j = np.unravel_index(np.argmin(state.errors), (3, 3))
-    best = (int(i), int(j)) if state.errors.min() < state.errors[1, 1] else (1, 1)
-    centre = state.offset[0] - best[0] + 1, state.offset[1] - best[1] + 1
+    (height, width), gap = state.fixed.shape[1:], 0.06
+    centre = next(iter(state.errors))
     side = (WIDTH - 4 * gap) / 3
-    tall = side * height / state.width
+    tall = side * height / width
     figure = Figure(figsize=(WIDTH, 3 * (tall + 0.25) + 0.45), dpi=100)
     total = figure.get_size_inches()[1]
-    for (row, column), error in np.ndenumerate(state.errors):
-        offset = centre[0] + row - 1, centre[1] + column - 1
+    for offset, error in sorted(state.errors.items()):
+        row, column = offset[0] - centre[0] + 1, offset[1] - centre[1] + 1
         left, top = gap + column * (side + gap), 0.4 + row * (tall + 0.25)
         place = (left / WIDTH, 1 - (top + 0.22 + tall) / total, side / WIDTH, tall / total)
         ax = figure.add_axes(place)
-        picture = _picture(fixed, judge.move(moving, offset), state.width)
-        show(ax, picture)
+        show(ax, _picture(state.fixed, state.moving, offset))
         ax.set_title(f"{_pair(offset)}: {100 * error:.2f} %", fontsize=10, pad=2)
         ax.set(xticks=(), yticks=())
-        framed = BEST if (row, column) == best else CENTRE if (row, column) == (1, 1) else "#D9D9D9"
+        framed = BEST if offset == state.offset else CENTRE if offset == centre else "#D9D9D9"
         for edge in ax.spines.values():
             edge.set(color=framed, linewidth=1 if framed == "#D9D9D9" else 3)
-    said = f"level {state.level}, {state.width} × {height} pixels: offsets (dy, dx), and how many bits differ"
+    said = f"level {state.level}, {width} × {height} pixels: offsets (dy, dx), and how many bits differ"
     figure.suptitle(said, fontsize=11, y=1 - 0.12 / total, va="top")
     return figure
 
@@ -137,9 +133,13 @@ def words(rows: dict[str, ArrayLike], *, marked: ArrayLike | None = None) -> Fig
     return figure
 
 
-def _picture(fixed: Words, moved: Words, width: int) -> Image:
-    masks = bitmaps.unpack(np.stack([fixed, moved]), width)
-    return overlay(masks[0, 0], masks[1, 0], masks[0, 1] & masks[1, 1])
+def _picture(fixed: Mask, moving: Mask, offset: Offset) -> Image:
+    moved = np.zeros_like(moving)
+    (dy, dx), (H, W) = offset, moving.shape[1:]
+    moved[:, max(dy, 0) : max(H + dy, 0), max(dx, 0) : max(W + dx, 0)] = moving[
+        :, max(-dy, 0) : max(H - dy, 0), max(-dx, 0) : max(W - dx, 0)
+    ]
+    return overlay(fixed[0], moved[0], fixed[1] & moved[1])
 
 
 def _under(ratio: float, *, above: float) -> Axes:

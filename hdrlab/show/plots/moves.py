@@ -1,7 +1,7 @@
 """Registration by light, drawn: what differs after a move, correlation at every shift, the simplex's way.
 
 X      light               (2, h, w): a fixed and a moving photograph on one scale, NaN where discarded
-H      move                (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
+H      homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 d      difference          (a - b) / mean of the two: orange where the fixed one is brighter, violet where the
                            moving one is, white where they agree, gray where one of them shows nothing
 state  of `align.cerman`   one level of one pair
@@ -14,8 +14,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.align import criterion
 from hdrlab.align.cerman import State
+from hdrlab.align.light import differences as compare
+from hdrlab.align.light import error, lattice
 from hdrlab.core.arrays import describe
 from hdrlab.show.plots import bare, picture_axes
 from hdrlab.show.plots.figures import false_colour
@@ -32,9 +33,9 @@ def differences(X: ArrayLike, H: ArrayLike) -> tuple[NDArray[np.float64], float]
     light = np.asarray(X, np.float32)
     if light.ndim != 3 or len(light) != 2:
         raise ValueError(f"expected the light of two photographs (2, h, w), got {describe(light)}")
-    p = criterion.lattice(light.shape[1:], light[0].size)
-    d = criterion.differences(light, np.asarray(H, float), p)
-    return d.reshape(light.shape[1:]), criterion.error(d)
+    p = lattice(light.shape[1:], light[0].size)
+    d = compare(light, np.asarray(H, float), p)
+    return d.reshape(light.shape[1:]), error(d)
 
 
 def difference(X: ArrayLike, H: ArrayLike, *, title: str = "") -> Axes:

@@ -1,25 +1,23 @@
 """You make the bitmap of the whole picture small, instead of the picture: at the coarse levels fine texture
 is noise then."""
 
-import numpy as np
+from itertools import pairwise
 
-from hdrlab.align import mtb, pairs
-from hdrlab.align.bitmaps import pack
+from hdrlab.align import mtb
 
 TASK = "align"
 
 
 def align(images, *, bits=6, luma=False):
-    return pairs.along([found(*pair) for pair in mtb.neighbours(images, bits, luma)])
+    order = mtb.by_brightness(images)
+    Y = [mtb.gray(images[image], luma=luma) for image in order]
+    return mtb.chain_offsets(order, [offset_of(fixed, moving, bits) for moving, fixed in pairwise(Y)])
 
 
-def found(fixed, moving):
-    masks = []
-    for one in (fixed, moving):
-        t = int(mtb.threshold(one.h[0], 0.5))
-        masks.append(np.stack([mtb.bitmap(one.Y[0], t), mtb.exclusion(one.Y[0], t)]))
-    offset = (0, 0)
-    for level in reversed(range(len(fixed.Y))):
-        A, B = (pack(np.ascontiguousarray(mask[:, :: 2**level, :: 2**level])) for mask in masks)
-        _, offset = mtb.step(A, B, (2 * offset[0], 2 * offset[1]))
-    return pairs.Verdict(moving.image, fixed.image, offset, 0, 0, 1, True, "")
+def offset_of(fixed, moving, bits):
+    A, B = mtb.bitmaps(fixed), mtb.bitmaps(moving)
+    y, x = 0, 0
+    for level in reversed(range(len(list(mtb.search(fixed, moving, bits=bits))))):
+        errors = mtb.step(A[:, :: 2**level, :: 2**level], B[:, :: 2**level, :: 2**level], (2 * y, 2 * x))
+        y, x = min(errors, key=errors.get)
+    return y, x

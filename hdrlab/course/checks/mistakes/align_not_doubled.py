@@ -1,17 +1,21 @@
 """A pixel of a level is two of the next finer one: double the offset before you look around it."""
 
-from hdrlab.align import mtb, pairs
+from itertools import pairwise
+
+from hdrlab.align import mtb
 
 TASK = "align"
 
 
 def align(images, *, bits=6, luma=False):
-    return pairs.along([found(*pair) for pair in mtb.neighbours(images, bits, luma)])
+    order = mtb.by_brightness(images)
+    Y = [mtb.gray(images[image], luma=luma) for image in order]
+    return mtb.chain_offsets(order, [offset_of(fixed, moving, bits) for moving, fixed in pairwise(Y)])
 
 
-def found(fixed, moving):
+def offset_of(fixed, moving, bits):
     offset = (0, 0)
-    for level in reversed(range(len(fixed.Y))):
-        A, B = (mtb.cut(one.Y[level], int(mtb.threshold(one.h[level], 0.5))) for one in (fixed, moving))
-        _, offset = mtb.step(A, B, offset)
-    return pairs.Verdict(moving.image, fixed.image, offset, 0, 0, 1, True, "")
+    for state in mtb.search(fixed, moving, bits=bits):
+        errors = mtb.step(state.fixed, state.moving, offset)
+        offset = min(errors, key=errors.get)
+    return offset
