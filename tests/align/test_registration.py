@@ -15,7 +15,7 @@ from hdrlab.core import warp
 from hdrlab.core.bracket import bracket
 from hdrlab.diagnostics.registration import LOST
 from hdrlab.pipeline import alignment, registration
-from hdrlab.radiance.bounds import Seen
+from hdrlab.radiance.merge import Quality
 
 SHAPE = (150, 220)
 CAMERA = camera.Camera(full_well=20_000, read_noise=5)
@@ -164,7 +164,7 @@ def map_error(found, room, taken):
     rows, columns = warp.common_rectangle(found.homographies, taken.images.shape[1:3])
     scene = hand_motion.views(room, hand_motion.shake(3, SHAPE, **HAND))[1][rows, columns]
     slope = np.hypot(*np.gradient(np.log(scene[..., 1] + 1e-4)))
-    well = (found.seen == Seen.MEASURED) & (slope > np.quantile(slope, 0.8))
+    well = (found.quality == Quality.MEASURED) & (slope > np.quantile(slope, 0.8))
     ratio = found.E[well] / scene[well]
     return np.median(np.abs(ratio / np.median(ratio, axis=0) - 1))
 
