@@ -158,7 +158,7 @@ def shoot(
     camera : Camera
     offsets : (P, 2), (dy, dx) of each of the times, or None for a tripod: what `align` should answer,
         relative to a frame of (0, 0). Frame j moved by offsets[j] lies on that frame; the radiance that it
-        saw is `hand_motion.views(E, offsets)[j]`. Homographies (P, 3, 3) of `hand_motion.shake` turn and tilt.
+        saw is `hand_motion.views(E, offsets)[j]`. Those (P, 3, 3) of `hand_motion.shake` turn and tilt.
     rng : seed, or a generator, which is advanced
 
     Returns
