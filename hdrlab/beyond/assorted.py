@@ -21,11 +21,13 @@ from hdrlab.core.arrays import as_radiance, describe, levels
 from hdrlab.core.mosaic import BAYER, as_channels, sample
 from hdrlab.core.types import F64, Array
 
-FOUR = np.array([[1.0, 1 / 4], [1 / 64, 1 / 16]])  # four exposures, two stops apart, in a square
-FULL = 0.995  # of the highest level: from here a pixel may have been full
+# four transparencies, two stops apart, in a square
+FOUR_EXPOSURES = np.array([[1.0, 1 / 4], [1 / 64, 1 / 16]])
+# of the highest level: from here a pixel may have been full
+CLIPPING_LEVEL = 0.995
 
 
-def colours_and_exposures(exposures: ArrayLike = FOUR[0]) -> tuple[Array, Array]:
+def colours_and_exposures(exposures: ArrayLike = FOUR_EXPOSURES[0]) -> tuple[Array, Array]:
     """Return patterns (4, 4) of channels and transparencies: Bayer cells, clear and dark in turn.
 
     Each colour is seen through each filter, at the same number of pixels.
@@ -97,7 +99,7 @@ def weight(Z: Array, e: F64, *, full_well: float = np.inf, read_noise: float = 0
     top = levels(Z) - 1
     X = Z / top
     noise = X / full_well + (read_noise / full_well) ** 2 + 1 / (12 * top**2)
-    return np.where(X < FULL, e**2 / noise, 0)
+    return np.where(X < CLIPPING_LEVEL, e**2 / noise, 0)
 
 
 def normalised_convolution(values: F64, w: F64, sigma: float) -> tuple[F64, F64]:
@@ -143,7 +145,7 @@ def reconstruct(
     Examples
     --------
     >>> from hdrlab.core.mosaic import tile
-    >>> e = tile(FOUR, (8, 8))
+    >>> e = tile(FOUR_EXPOSURES, (8, 8))
     >>> E = reconstruct(shoot(np.full((8, 8), 20.0), e), e)
     >>> bool(np.abs(E / 20 - 1).max() < 0.02)
     True
@@ -156,11 +158,11 @@ def reconstruct(
     values = Z / (levels(Z) - 1) / e
     if c is None:
         return _fill(values, w, e, sigma)
-    seen = [as_channels(c, Z.shape) == k for k in range(3)]
-    return np.stack([_fill(values, w * m, e, sigma, m) for m in seen], axis=-1)
+    masks = [as_channels(c, Z.shape) == k for k in range(3)]
+    return np.stack([_fill(values, w * m, e, sigma, m) for m in masks], axis=-1)
 
 
-def _fill(values: F64, w: F64, e: F64, sigma: float, seen: Array | bool = True) -> F64:
+def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) -> F64:
     """Return E^ from the pixels in reach, from farther ones where none knows, at last the bound 1 / min e."""
     E, total = normalised_convolution(values, w, sigma)
     for wider in (2 * sigma, 4 * sigma):
@@ -169,7 +171,7 @@ def _fill(values: F64, w: F64, e: F64, sigma: float, seen: Array | bool = True) 
             break
         more, more_total = normalised_convolution(values, w, wider)
         E, total = np.where(unknown, more, E), np.where(unknown, more_total, total)
-    return np.where(total > 0, E, 1 / e[np.broadcast_to(seen, e.shape)].min())
+    return np.where(total > 0, E, 1 / e[np.broadcast_to(mask, e.shape)].min())
 
 
 def _transparency(e: ArrayLike, shape: tuple[int, ...]) -> F64:

@@ -47,25 +47,25 @@ def search(
     T: F32,
     S: F32,
     price: F32,
-    begun: tuple[Indices, tuple[Indices, ...]],
-    knobs: Search,
+    at: tuple[Indices, tuple[Indices, ...]],
+    settings: Search,
     rng: np.random.Generator,
 ) -> Matches:
     """Return the matches of both ways, looked for from where they begin."""
-    P, Q = patchmatch.cut_patches(T, knobs.side), patchmatch.make_sources(S, knobs.side, price)
-    back = patchmatch.make_sources(T[None], knobs.side)
+    P, Q = patchmatch.cut_patches(T, settings.side), patchmatch.make_sources(S, settings.side, price)
+    back = patchmatch.make_sources(T[None], settings.side)
     rows = Q.rows.reshape(*Q.shape, -1)
-    coherence = search_one_way(P, Q, begun[0], knobs, rng)
-    completeness = (search_one_way(rows[q], back, at, knobs, rng) for q, at in enumerate(begun[1]))
+    coherence = search_one_way(P, Q, at[0], settings, rng)
+    completeness = (search_one_way(rows[q], back, one, settings, rng) for q, one in enumerate(at[1]))
     return Matches(coherence, tuple(completeness))
 
 
-def search_one_way(P: F32, Q: Sources, at: Indices, knobs: Search, rng: np.random.Generator) -> Field:
+def search_one_way(P: F32, Q: Sources, at: Indices, settings: Search, rng: np.random.Generator) -> Field:
     """Return the field after some rounds of PatchMatch from `at`, of this scale or of a coarser one."""
     at = at if at.shape[:2] == P.shape[:2] else patchmatch.upscale_field(at, (P.shape[0], P.shape[1]))
-    begun = patchmatch.start_field(P, Q, at)
-    steps = patchmatch.search_steps(P, Q, begun, radius=knobs.radius, rng=rng)
-    return last(field for _, field in zip(range(knobs.rounds), steps, strict=False))
+    first = patchmatch.start_field(P, Q, at)
+    steps = patchmatch.search_steps(P, Q, first, radius=settings.radius, rng=rng)
+    return last(field for _, field in zip(range(settings.rounds), steps, strict=False))
 
 
 def vote(S: F32, w: F32, matches: Matches, side: int) -> F32:

@@ -18,8 +18,9 @@ from scipy.linalg import solve
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64
 
-RASKAR = np.array([int(chop) for chop in "1010000111000001010000110011110111010111001001100111"])  # 52 chops
-FREQUENCIES = 4096
+# 52 chops
+RASKAR_CODE = np.array([int(chop) for chop in "1010000111000001010000110011110111010111001001100111"])
+FREQUENCY_COUNT = 4096
 
 
 def as_code(h: ArrayLike) -> F64:
@@ -35,7 +36,7 @@ def box(m: int) -> F64:
     return np.ones(m)
 
 
-def transfer(h: ArrayLike, count: int = FREQUENCIES) -> F64:
+def transfer(h: ArrayLike, count: int = FREQUENCY_COUNT) -> F64:
     """Return |H(w)| at `count` frequencies from 0 to pi (half a cycle per pixel)."""
     code = as_code(h)
     return np.asarray(np.abs(np.fft.rfft(code / len(code), 2 * (count - 1))), np.float64)
@@ -104,9 +105,9 @@ def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> F64:
     n = len(y) - len(code) + 1
     if y.ndim < 1 or n < 1 or not np.all(np.isfinite(y)):
         raise ValueError(f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}")
-    lit = y - background
+    moving = y - background
     A = matrix(code, n)
-    x: F64 = solve(A.T @ A, A.T @ lit.reshape(len(lit), -1), assume_a="pos")
+    x: F64 = solve(A.T @ A, A.T @ moving.reshape(len(moving), -1), assume_a="pos")
     return x.reshape(n, *y.shape[1:])
 
 

@@ -18,8 +18,10 @@ from hdrlab.core.arrays import as_stack, as_table, as_times, levels
 from hdrlab.core.types import F32, F64, Array, Mask
 
 GAMMA = 2.2
-WITHIN = 3  # levels
-FULL = 0.98  # of the top level: above it a pixel may have been full, as in `radiance.merge`
+# levels
+LEVEL_TOLERANCE = 3
+# of the top level: above it a pixel may have been full, as in `radiance.merge`
+CLIPPING_LEVEL = 0.98
 
 
 class Values(NamedTuple):
@@ -65,11 +67,11 @@ def boost(v: F32, ratio: float) -> F32:
 
 
 def consistent_range(v: F32, noise: F32, clipped: Mask, t: float, full: F32) -> tuple[F32, F32]:
-    """Return the least and the most radiance that fits a photograph: within WITHIN levels of what it shows.
+    """Return the least and the most radiance that fits a photograph: within 3 levels of what it shows.
 
     Where it is clipped it says "at least", and nothing of the most.
     """
-    few = np.float32(WITHIN) * noise
+    few = np.float32(LEVEL_TOLERANCE) * noise
     least = radiance(np.where(clipped, v, np.maximum(v - few, 0)), t, full)
     return least, np.where(clipped, np.float32(np.inf), radiance(v + few, t, full))
 
@@ -97,4 +99,6 @@ def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
     v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
     z = (Z / (n - 1)).astype(np.float32)
     full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])
-    return Values(look_up_levels(v, Z), z, look_up_levels(np.gradient(v, axis=0), Z), z > FULL, t, full)
+    return Values(
+        look_up_levels(v, Z), z, look_up_levels(np.gradient(v, axis=0), Z), z > CLIPPING_LEVEL, t, full
+    )

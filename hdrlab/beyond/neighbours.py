@@ -2,7 +2,8 @@
 
 from collections import deque
 from collections.abc import Iterable, Iterator
-from typing import TypeVar
+from itertools import chain, repeat
+from typing import Any, TypeVar
 
 Item = TypeVar("Item")
 
@@ -17,19 +18,10 @@ def slide_windows(items: Iterable[Item], span: int) -> Iterator[tuple[int, tuple
     >>> list(slide_windows("abc", 1))
     [(0, ('a', 'b')), (1, ('a', 'b', 'c')), (1, ('b', 'c'))]
     """
-    held: deque[Item] = deque()
-    place = 0  # in `held`, of the next item to be yielded
-    for item in items:
-        held.append(item)
-        if len(held) - place > span:
-            yield place, tuple(held)
-            place += 1
-            if place > span:
-                held.popleft()
-                place -= 1
-    while place < len(held):
-        yield place, tuple(held)
-        place += 1
-        if place > span:
-            held.popleft()
-            place -= 1
+    blank: Any = object()
+    window = deque([blank] * (2 * span + 1), maxlen=2 * span + 1)  # whose middle is the item
+    for item in chain(items, repeat(blank, span)):
+        window.append(item)
+        if window[span] is not blank:
+            before = sum(one is not blank for one in list(window)[:span])
+            yield before, tuple(one for one in window if one is not blank)

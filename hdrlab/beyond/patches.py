@@ -43,9 +43,13 @@ from hdrlab.core.bracket import short_to_long
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, F64, Array, Indices
 
-Begun = tuple[Indices, tuple[Indices, ...]]  # where the search of both ways begins
+# where the search of both ways begins
+Fields = tuple[Indices, tuple[Indices, ...]]
 
-RATIO = 2**0.5  # of the sides of a scale to those of the next coarser one
+# of the sides of a scale to those of the next coarser one
+SCALE_RATIO = 2**0.5
+# levels, 1 the top, between which the reference begins to be trusted, and ceases to be
+TRUSTED_LEVELS: tuple[Ramp, Ramp] = ((0.05, 0.2), (0.85, 0.95))
 
 
 class State(NamedTuple):
@@ -67,14 +71,14 @@ class State(NamedTuple):
 
 
 def improve(
-    state: State, scene: Scene, begun: list[Begun], knobs: Search, rng: np.random.Generator
-) -> tuple[State, list[Begun]]:
+    state: State, scene: Scene, fields: list[Fields], settings: Search, rng: np.random.Generator
+) -> tuple[State, list[Fields]]:
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
     pictures, found, unlike = [], [], []
-    for k, (T, at) in enumerate(zip(state.I, begun, strict=True)):
+    for k, (T, at) in enumerate(zip(state.I, fields, strict=True)):
         S, price = boost_photographs(k, scene)
-        w, both = weigh_patches(k, scene, price, knobs.side), search(T, S, price, at, knobs, rng)
-        pictures.append(vote(S, w, both, knobs.side))
+        w, both = weigh_patches(k, scene, price, settings.side), search(T, S, price, at, settings, rng)
+        pictures.append(vote(S, w, both, settings.side))
         found.append((both.coherence.at, tuple(field.at for field in both.completeness)))
         unlike.append(similarity(w, both))
     H = blend_reference(merge_exposures(np.stack(pictures), scene), scene)
@@ -83,24 +87,24 @@ def improve(
 
 def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
     """Return the sides of every scale, coarse to fine; the shorter is about `coarsest` pixels at first."""
-    count = max(0, round(np.log(min(shape) / coarsest) / np.log(RATIO)))
-    return [(round(shape[0] / RATIO**j), round(shape[1] / RATIO**j)) for j in range(count, -1, -1)]
+    count = max(0, round(np.log(min(shape) / coarsest) / np.log(SCALE_RATIO)))
+    return [
+        (round(shape[0] / SCALE_RATIO**j), round(shape[1] / SCALE_RATIO**j)) for j in range(count, -1, -1)
+    ]
 
 
-def as_scene(
-    images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None, low: Ramp, high: Ramp
-) -> Scene:
+def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None) -> Scene:
     """Return the Scene of photographs in any order, checked."""
-    seen = as_values(images, times, g)
-    order = short_to_long(np.asarray(images), seen.t)
+    each = as_values(images, times, g)
+    order = short_to_long(np.asarray(images), each.t)
     place = len(order) // 2
     if reference is not None:
         if not 0 <= reference < len(order):
             raise ValueError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
         place = int(np.flatnonzero(order == reference)[0])
-    alpha = trapezoid(seen.z[order[place]], low, high)
-    v, noise, clipped, t = seen.v[order], seen.noise[order], seen.clipped[order], seen.t[order]
-    return Scene(v, noise, clipped, t, seen.full, place, alpha)
+    alpha = trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
+    v, noise, clipped, t = each.v[order], each.noise[order], each.clipped[order], each.t[order]
+    return Scene(v, noise, clipped, t, each.full, place, alpha)
 
 
 def synthesise_steps(
@@ -112,26 +116,24 @@ def synthesise_steps(
     side: int = 5,
     coarsest: int = 24,
     rounds: tuple[int, int] = (8, 2),
-    low: Ramp = (0.05, 0.2),
-    high: Ramp = (0.85, 0.95),
     rng: int | np.random.Generator = 0,
 ) -> Iterator[State]:
     """Yield the State of every scale before its first round and after each; parameters as of `synthesise`."""
-    finest = as_scene(images, times, g, reference, low, high)
+    finest = as_scene(images, times, g, reference)
     sizes = plan_scales(finest.L.shape[1:3], coarsest)
     if side % 2 == 0 or not 3 <= side <= min(sizes[0]):
         raise ValueError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
-    generator, state, begun = np.random.default_rng(rng), None, None
+    generator, state, fields = np.random.default_rng(rng), None, None
     for scale, (shape, count) in enumerate(zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)):
         scene = resize_scene(finest, shape)
         H = resize_picture(guess_radiance(finest) if state is None else state.H, shape)
         H = H if state is None else blend_reference(H, scene)
         state = State(scale, 0, H, extract_exposures(H, scene), np.full(len(scene.t), np.nan))
         yield state
-        begun = start_fields(shape, len(scene.t), side) if begun is None else begun
-        knobs = Search(side, 2, max(shape) if scale == 0 else 4)
+        fields = start_fields(shape, len(scene.t), side) if fields is None else fields
+        settings = Search(side, 2, max(shape) if scale == 0 else 4)
         for _ in range(count):
-            state, begun = improve(state, scene, begun, knobs, generator)
+            state, fields = improve(state, scene, fields, settings, generator)
             yield state
 
 
@@ -154,8 +156,6 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
         Shorter side of the coarsest scale, pixels.
     rounds : (int, int)
         Of search and vote at the coarsest scale and at the finest; those between lie between.
-    low, high : (float, float)
-        Levels, 1 the top, between which the reference begins to be trusted, and ceases to be.
     rng : int or Generator
         Where PatchMatch looks by chance.
 
@@ -196,7 +196,7 @@ def plan_rounds(rounds: tuple[int, int], count: int) -> list[int]:
     return np.rint(np.linspace(*rounds, count)).astype(int).tolist()
 
 
-def start_fields(shape: tuple[int, int], count: int, side: int) -> list[Begun]:
+def start_fields(shape: tuple[int, int], count: int, side: int) -> list[Fields]:
     """Return where each search begins: where the patch stands, in the photograph of the same exposure."""
     h, w = (n - side + 1 for n in shape)
     return [(identity_field(h, w, k), (identity_field(h, w),) * count) for k in range(count)]

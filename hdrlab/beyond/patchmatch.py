@@ -21,8 +21,10 @@ from numpy.lib.stride_tricks import sliding_window_view
 from hdrlab.core.types import F32, Indices
 
 NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
-LARGE = (1 << 30, 1 << 30)
-CHUNK = 2048  # patches at a time, which stay in the processor's cache
+# places, beyond any picture's
+UNBOUNDED = (1 << 30, 1 << 30)
+# patches at a time, which stay in the processor's cache
+PATCHES_PER_CHUNK = 2048
 
 
 class Field(NamedTuple):
@@ -64,8 +66,8 @@ def distance(P: F32, Q: Sources, at: Indices) -> F32:
     _, h, w = Q.shape
     index = ((at[..., 0] * h + at[..., 1]) * w + at[..., 2]).ravel()
     rows, d = P.reshape(-1, P.shape[-1]), np.empty(index.size, np.float32)
-    for start in range(0, index.size, CHUNK):
-        part = slice(start, start + CHUNK)
+    for start in range(0, index.size, PATCHES_PER_CHUNK):
+        part = slice(start, start + PATCHES_PER_CHUNK)
         apart = rows[part] - Q.rows[index[part]]
         d[part] = np.einsum("ij,ij->i", apart, apart)
     return (d + Q.price[index]).reshape(at.shape[:2])
@@ -115,7 +117,7 @@ def search_steps(
         for step in NEIGHBOURS:
             field = keep_nearer(field, P, Q, propagate(field.at, step))
         for source in range(1, Q.shape[0]):  # the same place in another picture
-            field = keep_nearer(field, P, Q, (field.at + (source, 0, 0)) % (Q.shape[0], *LARGE))
+            field = keep_nearer(field, P, Q, (field.at + (source, 0, 0)) % (Q.shape[0], *UNBOUNDED))
         reach = radius
         while reach:
             field = keep_nearer(field, P, Q, random_places(field.at, reach, Q.shape[0], rng))

@@ -16,7 +16,8 @@ the others come in where it fills, gently, for their noise is greater: [Tocci11 
 """
 
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from functools import partial
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -28,9 +29,12 @@ from hdrlab.core.mosaic import as_channels, demosaic
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64, Array, Mask
 
-REFLECTED = (0.08, 0.055)  # by the first pellicle, and by the second of what the first reflected
-FULL = 0.9  # of the top level: from here on a pixel counts as full
-WINDOW = 5  # pixels
+# shares of the light, by the first pellicle, and by the second of what the first reflected
+REFLECTANCES = (0.08, 0.055)
+# of the top level: from here on a pixel counts as full
+CLIPPING_LEVEL = 0.9
+# pixels
+WINDOW_SIDE = 5
 
 
 class State(NamedTuple):
@@ -48,7 +52,7 @@ class State(NamedTuple):
     case: NDArray[np.uint8]
 
 
-def shares(reflected: ArrayLike = REFLECTED) -> F64:
+def shares(reflected: ArrayLike = REFLECTANCES) -> F64:
     """Return e (3,): 1 - r1, r1 (1 - r2), r1 r2; the third is what the second reflects  [Tocci11 sec. 3].
 
     Examples
@@ -98,15 +102,15 @@ def shoot(
     E, each, rng = as_radiance(E), as_shares(e), np.random.default_rng(rng)
     if not 8 <= bits <= 16:
         raise ValueError(f"expected 8 to 16 bits, got {bits}")
-    knobs: dict[str, Any] = {"full_well": full_well, "read_noise": read_noise, "bits": 16, "rng": rng}
-    Z = np.stack([assorted.shoot(E, np.full(E.shape[:2], share), c, **knobs) for share in each])
+    shoot_one = partial(assorted.shoot, full_well=full_well, read_noise=read_noise, bits=16, rng=rng)
+    Z = np.stack([shoot_one(E, np.full(E.shape[:2], share), c) for share in each])
     step = 65535 / (2**bits - 1)
     return np.round(np.round(Z / step) * step).astype(np.uint16)
 
 
 def full_share(full: Mask) -> F64:
     """Return u, the share of the window's pixels that are full."""
-    return uniform_filter(full.astype(np.float64), WINDOW, mode="nearest")
+    return uniform_filter(full.astype(np.float64), WINDOW_SIDE, mode="nearest")
 
 
 def predict_full(B: F64, D: F64, full: Mask) -> F64:
@@ -114,7 +118,7 @@ def predict_full(B: F64, D: F64, full: Mask) -> F64:
 
     The paper takes the mean of the quotients B / D; that of the sums does not suffer from a D near zero.
     """
-    b, d = (uniform_filter(np.where(full, 0, one), WINDOW, mode="nearest") for one in (B, D))
+    b, d = (uniform_filter(np.where(full, 0, one), WINDOW_SIDE, mode="nearest") for one in (B, D))
     return np.where(d > 0, D * b / np.where(d > 0, d, 1), D)
 
 
@@ -133,7 +137,7 @@ def join_sensors(B: F64, D: F64, full: Mask) -> tuple[F64, NDArray[np.uint8]]:
     return E, np.where(full, np.where(every, 4, 3), np.where(some, 2, 1)).astype(np.uint8)
 
 
-def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = FULL) -> Iterator[State]:
+def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = CLIPPING_LEVEL) -> Iterator[State]:
     """Yield the State from the darkest sensor alone to all of them; parameters are those of `merge`."""
     each, stack = as_shares(e), np.asarray(Z)
     if stack.ndim != 3 or stack.dtype not in (np.uint8, np.uint16) or len(stack) != len(each):
@@ -148,7 +152,7 @@ def merge_steps(Z: ArrayLike, e: ArrayLike, *, full: float = FULL) -> Iterator[S
         yield State(j, E, case)
 
 
-def merge(Z: ArrayLike, e: ArrayLike, c: ArrayLike | None = None, *, full: float = FULL) -> Array:
+def merge(Z: ArrayLike, e: ArrayLike, c: ArrayLike | None = None, *, full: float = CLIPPING_LEVEL) -> Array:
     """Return the radiance of one moment, from all sensors.
 
     Parameters

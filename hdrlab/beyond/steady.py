@@ -26,7 +26,7 @@ from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.core.extremes import robust_maximum
 from hdrlab.core.types import F32
 
-TINY = float(np.finfo(np.float32).tiny)
+SMALLEST_LUMINANCE = float(np.finfo(np.float32).tiny)
 
 
 class State(NamedTuple):
@@ -37,7 +37,7 @@ class State(NamedTuple):
     E : the frame itself, float32
     Ld : (H, W) float32, 0 to 1
     own : log average of the frame by itself
-    average : Lav, of the frames around too
+    average : Lav, with the frames around
     white : scaled luminance that became white
     """
 
@@ -48,7 +48,7 @@ class State(NamedTuple):
     white: float
 
 
-class Measured(NamedTuple):
+class FrameStatistics(NamedTuple):
     """A frame, its luminance, the mean of ln(delta + L), and its brightest luminance."""
 
     E: F32
@@ -57,18 +57,20 @@ class Measured(NamedTuple):
     high: float
 
 
-def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> Measured:
+def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> FrameStatistics:
     """Return mean(ln(delta + L)), delta in medians of L as in `tonemap.reinhard`, and the brightest L."""
     E = as_radiance(E)
     L = luminance(E)
-    floor = max(delta * robust_maximum(L, cut=0.5), TINY)
-    return Measured(E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), robust_maximum(L))
+    floor = max(delta * robust_maximum(L, cut=0.5), SMALLEST_LUMINANCE)
+    return FrameStatistics(
+        E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), robust_maximum(L)
+    )
 
 
-def adapt(around: Sequence[Measured], *, key: float) -> tuple[float, float]:
+def adapt(around: Sequence[FrameStatistics], *, key: float) -> tuple[float, float]:
     """Return Lav = exp(mean of the frames' logarithms), and white, at least 1  [Kang03 sec. 5]."""
     average = float(np.exp(np.mean([one.log for one in around])))
-    high = float(np.exp(np.mean(np.log([max(one.high, TINY) for one in around]))))
+    high = float(np.exp(np.mean(np.log([max(one.high, SMALLEST_LUMINANCE) for one in around]))))
     return average, max(1.0, key * high / average)
 
 

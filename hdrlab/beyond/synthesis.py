@@ -21,8 +21,10 @@ from hdrlab.core.types import F32, F64, Mask
 
 Ramp = tuple[float, float]
 
-PRICE = 2.0  # of noise: a noisy picture of a patch is as far from a clean one as its own noise is large
-LEAST = 1e-4  # weight of a value that hardly tells: where no photograph knows, it still decides
+# of noise: a noisy picture of a patch is as far from a clean one as its own noise is large
+NOISE_PRICE = 2.0
+# weight of a value near black or clipping: where no photograph measures, it still decides
+LEAST_WEIGHT = 1e-4
 
 
 class Scene(NamedTuple):
@@ -68,11 +70,11 @@ def triangle(v: F32) -> F32:
 def trust_weights(I: F32) -> F32:  # noqa: E741
     """Return Lambda(I_k), the triangle; but 1 in the shortest's highlights and the longest's shadows.
 
-    Nobody knows better there.
+    No other photograph measures more there.
     """
     w = triangle(I)
     w[0], w[-1] = np.where(I[0] > 0.5, 1, w[0]), np.where(I[-1] < 0.5, 1, w[-1])
-    return np.maximum(w, LEAST)
+    return np.maximum(w, LEAST_WEIGHT)
 
 
 def merge_exposures(I: F32, scene: Scene) -> F32:  # noqa: E741
@@ -98,11 +100,11 @@ def guess_radiance(scene: Scene) -> F32:
     """Return what to begin with: h(L_ref), or where it is clipped what a shorter exposure has, if more.
 
     The paper begins with the reference alone. But a flat, clipped region is like any other flat thing, and
-    would be filled with the nearest wall; so nothing is looked for where staying put explains what is seen.
+    would be filled with the nearest wall; so nothing is searched where staying put explains the photographs.
     """
     k = scene.reference
-    seen = [radiance(v, t, scene.full) for v, t in zip(scene.L[: k + 1], scene.t, strict=False)]
-    return np.where(scene.clipped[k], np.max(seen, axis=0), seen[k])
+    H = [radiance(v, t, scene.full) for v, t in zip(scene.L[: k + 1], scene.t, strict=False)]
+    return np.where(scene.clipped[k], np.max(H, axis=0), H[k])
 
 
 def extract_exposures(H: F32, scene: Scene) -> F32:
@@ -122,7 +124,7 @@ def boost_photographs(k: int, scene: Scene) -> tuple[F32, F32]:
     noise = np.stack([boost(one, ratio) for one, ratio in zip(scene.noise, ratios, strict=True)])
     noise = np.where(g < 1, noise, 0)
     unknown = scene.clipped.any(axis=-1) & (scene.t > scene.t[k])[:, None, None]
-    return g, np.where(unknown, np.float32(np.inf), PRICE * (noise**2).sum(axis=-1))
+    return g, np.where(unknown, np.float32(np.inf), NOISE_PRICE * (noise**2).sum(axis=-1))
 
 
 def weigh_patches(k: int, scene: Scene, price: F32, side: int) -> F32:

@@ -17,7 +17,7 @@ follow; but the neighbours are exposed alike, and half-way between their moments
 
 from collections.abc import Iterable, Iterator
 from itertools import cycle
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -37,8 +37,12 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import as_table, as_times, levels
 from hdrlab.core.types import F32, Array, Mask
 
-APART = np.float32(16 / 255)  # of values: a neighbour that is farther off counts for nothing
-LEAST = np.float32(1e-4)  # weight of B at least: where all are clipped, the shorter one knows more
+# of values: a neighbour that is farther off counts for nothing
+VALUE_TOLERANCE = np.float32(16 / 255)
+# weight of B at least: where all are clipped, the shorter one is the better bound
+LEAST_WEIGHT = np.float32(1e-4)
+# levels, 1 the top, between which a frame begins to be well exposed, and ceases to be
+EXPOSED_LEVELS: tuple[Ramp, Ramp] = ((0.02, 0.1), (0.85, 0.95))
 
 
 class Frame(NamedTuple):
@@ -94,8 +98,8 @@ def warp_frame(frame: Frame, u: F32) -> Term:
 
 
 def consistency(v: F32, v_: F32) -> F32:
-    """Return f_MW = 2 d^3 - 3 d^2 + 1, d the channels' greatest difference over APART, at most 1 [Kang03]."""
-    d = np.minimum(np.abs(v - v_).max(axis=-1, keepdims=True) / APART, 1)
+    """Return f_MW = 2 d^3 - 3 d^2 + 1, d the channels' greatest difference in 16 / 255, at most 1."""
+    d = np.minimum(np.abs(v - v_).max(axis=-1, keepdims=True) / VALUE_TOLERANCE, 1)
     return (2 * d - 3) * d * d + 1
 
 
@@ -126,7 +130,7 @@ def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> F32
 
     B is asked whether frame i allows it: a badly exposed pixel still says "at least" or "at most".
     """
-    half = [(R, (1 - i.alpha) * np.maximum(clip_to_frame(i, R)[1] * w, LEAST)) for R, w in between]
+    half = [(R, (1 - i.alpha) * np.maximum(clip_to_frame(i, R)[1] * w, LEAST_WEIGHT)) for R, w in between]
     terms = [(i.R, i.w), *along, *half]
     total = np.sum([w for _, w in terms], axis=0)
     mean = np.sum([w * R for R, w in terms], axis=0) / np.where(total > 0, total, 1)
@@ -139,8 +143,6 @@ def merge_steps(
     g: ArrayLike,
     w: ArrayLike | None = None,
     *,
-    low: Ramp = (0.02, 0.1),
-    high: Ramp = (0.85, 0.95),
     flow: Flow = tvl1,
 ) -> Iterator[State]:
     """Yield the State of each frame as soon as the next one is there; the parameters are those of `merge`.
@@ -150,9 +152,9 @@ def merge_steps(
     turn = np.atleast_1d(np.asarray(times, np.float64))
     turn = as_times(turn, max(turn.size, 1))
     pairs = zip(frames, cycle(turn), strict=False)
-    seen = require_one_size(as_frame(Z, float(t), g, w, low, high) for Z, t in pairs)
-    for number, (place, around) in enumerate(slide_windows(seen, 1)):
-        i, beside = around[place], [*around[:place], *around[place + 1 :]]
+    sized = require_one_size(as_frame(Z, float(t), g, w) for Z, t in pairs)
+    for number, (place, window) in enumerate(slide_windows(sized, 1)):
+        i, beside = window[place], [*window[:place], *window[place + 1 :]]
         there = [warp_frame(j, estimate_motion(i, j, flow)) for j in beside]
         between = warp_half_way(beside[0], beside[1], flow) if len(beside) == 2 else tuple(there)
         along = tuple(weigh_neighbour(i, term) for term in there)
@@ -165,7 +167,8 @@ def merge(
     times: ArrayLike,
     g: ArrayLike,
     w: ArrayLike | None = None,
-    **knobs: Any,
+    *,
+    flow: Flow = tvl1,
 ) -> Array:
     """Return the radiance of every frame of a video whose exposures take turns.
 
@@ -179,8 +182,6 @@ def merge(
         Response, ln exposure of each level.
     w : (n,) float, optional
         Weights f_W; signal over noise by default, 0 above the cut.
-    low, high : (float, float)
-        Levels, 1 the top, between which a frame begins to be well exposed, and ceases to be.
     flow : function
         (a, b) -> (2, H, W), for which a(p) is b(p + flow); another one may be put in its place.
 
@@ -205,22 +206,22 @@ def merge(
     >>> bool(np.allclose(merge(frames, [1, 4], g), 32 / 128, rtol=1e-3))
     True
     """
-    found = [state.E for state in merge_steps(frames, times, g, w, **knobs)]
+    found = [state.E for state in merge_steps(frames, times, g, w, flow=flow)]
     if not found:
         raise ValueError("expected at least one frame, got none")
     return np.stack(found)
 
 
-def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None, low: Ramp, high: Ramp) -> Frame:
+def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None) -> Frame:
     """Return one photograph as a Frame, checked."""
     stack = np.asarray(Z)[None]
-    seen = as_values(stack, [t], g)
+    values = as_values(stack, [t], g)
     n = levels(stack)
     table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n).reshape(n, -1)
-    f_W = look_up_levels(table.astype(np.float32), stack.reshape(seen.v.shape))[0]
-    R = radiance(seen.v[0], t, seen.full)
-    alpha = trapezoid(seen.z[0], low, high)
-    return Frame(seen.v[0], seen.noise[0], seen.clipped[0], R, f_W, alpha, t, seen.full)
+    f_W = look_up_levels(table.astype(np.float32), stack.reshape(values.v.shape))[0]
+    R = radiance(values.v[0], t, values.full)
+    alpha = trapezoid(values.z[0], *EXPOSED_LEVELS)
+    return Frame(values.v[0], values.noise[0], values.clipped[0], R, f_W, alpha, t, values.full)
 
 
 def require_one_size(frames: Iterable[Frame]) -> Iterator[Frame]:

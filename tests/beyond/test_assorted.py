@@ -12,7 +12,7 @@ from hdrlab.core.colour import decode_srgb, encode_srgb
 
 WELL = dict(full_well=20_000, read_noise=5)
 SHAPE = (64, 64)
-FOUR = mosaic.tile(assorted.FOUR, SHAPE)
+FOUR = mosaic.tile(assorted.FOUR_EXPOSURES, SHAPE)
 
 
 def error(L, e, *, sigma=0.5, seed=0):
@@ -120,13 +120,15 @@ def waves(frequency, level, e, *, length=256):
 
 @pytest.mark.parametrize("level", [0.3, 20.0])
 def test_a_wave_that_the_filters_sample_often_enough_comes_back(level):
-    seen = waves(16 / 256, level, assorted.FOUR)
+    seen = waves(16 / 256, level, assorted.FOUR_EXPOSURES)
     assert seen[16] > 0.75 and np.delete(seen, [0, 16]).max() < 0.12
 
 
 def test_where_the_light_is_strong_a_fine_wave_becomes_a_coarse_one():
     """Only every second column knows: 112 waves in 256 pixels look like 16; not so on an even sensor."""
-    plain, strong = (waves(112 / 256, *pair) for pair in ((0.3, np.ones((2, 2))), (40.0, assorted.FOUR)))
+    plain, strong = (
+        waves(112 / 256, *pair) for pair in ((0.3, np.ones((2, 2))), (40.0, assorted.FOUR_EXPOSURES))
+    )
     assert plain[16] < 0.01 and plain[112] > 0.5 and strong[16] > 0.9 and strong[112] < 0.1
 
 

@@ -7,7 +7,7 @@ from skimage import data
 from hdrlab.beyond import flutter
 from hdrlab.core.colour import decode_srgb
 
-CODE, BOX = flutter.RASKAR, flutter.box(52)
+CODE, BOX = flutter.RASKAR_CODE, flutter.box(52)
 ONE = np.eye(52)[0]  # open for one chop of 52
 SIGMA = 0.0005
 

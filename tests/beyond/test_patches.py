@@ -145,7 +145,7 @@ def test_a_photograph_allows_what_it_could_have_been_made_of(walk):
 
 
 def test_a_pixel_clipped_in_a_longer_exposure_cannot_be_a_source_for_a_shorter_one(walk):
-    scene = patches.as_scene(walk.bracket.images, walk.bracket.times, G, None, (0.05, 0.2), (0.85, 0.95))
+    scene = patches.as_scene(walk.bracket.images, walk.bracket.times, G, None)
     for k in range(3):
         _, price = synthesis.boost_photographs(k, scene)
         barred = np.isinf(price)

@@ -53,7 +53,7 @@ def test_the_seams_are_gentler_than_those_of_a_hard_cut():
     wrong = E_SHARES * [1, 0.95, 1]
     back = splitter.merge(Z, wrong)[10] / E[10]
     X = Z[0, 10] / 65535
-    hard = np.where(X < splitter.FULL, X / wrong[0], Z[1, 10] / 65535 / wrong[1]) / E[10]
+    hard = np.where(X < splitter.CLIPPING_LEVEL, X / wrong[0], Z[1, 10] / 65535 / wrong[1]) / E[10]
     assert np.abs(np.diff(hard)).max() > 0.045 > 2 * np.abs(np.diff(back)).max()
 
 
