@@ -85,7 +85,7 @@ def errors(one: tuple[int, Float, Float], used: dict[str, Method], off: float) -
     """Return method -> error on the curve (k, exposure, brightness); NaN where it refuses."""
     k, exposure, brightness = one
     bracket, found = photographs(exposure, brightness, off=off, k=k), {}
-    true = families.ln_inverses(exposure, brightness)[0]
+    true = families.invert_curves(exposure, brightness)[0]
     for name, method in used.items():
         try:
             found[name] = float(response_rmse(method(bracket), true)[0])

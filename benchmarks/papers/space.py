@@ -33,8 +33,8 @@ def projection(curves: Float, basis: space.Space, counts: tuple[int, ...] = (3, 
     """Return the mean RMS of the curves projected on the first components; held: 0.0057, 0.0023, 0.0005."""
     mean = {}
     for count in counts:
-        part = space.first(basis, count)
-        mean[count] = float(rms(curves, space.rebuild(space.project(curves, part), part)).mean())
+        part = space.truncate(basis, count)
+        mean[count] = float(rms(curves, space.reconstruct(space.project(curves, part), part)).mean())
     return mean
 
 
@@ -56,9 +56,9 @@ def five_samples(
     rng, own = np.random.default_rng(seed), np.linspace(0, 1, curves.shape[1])
     found = []
     for k, curve in enumerate(curves):
-        prior = space.principal(without(curves, k, near), count)
+        prior = space.fit_space(without(curves, k, near), count)
         values = np.interp(places, own, curve) + noise * rng.standard_normal(len(places))
-        found.append(space.from_samples(places, values, prior))
+        found.append(space.fit_samples(places, values, prior))
     return rms(curves, np.array(found))
 
 
@@ -74,7 +74,7 @@ def components(folder: Path) -> Mapping[str, ArrayLike]:
     """Return what the published components leave of 201 curves, and what those computed here do."""
     curves, emor = measured(folder), read_emor(real(folder, "crf_curves") / "emor.txt")
     published = space.Space(emor.mean, emor.components, np.ones(len(emor.components)))
-    bases = {EMOR: published, OURS: space.principal(curves, 11)}
+    bases = {EMOR: published, OURS: space.fit_space(curves, 11)}
     return {who: list(projection(curves, basis).values()) for who, basis in bases.items()}
 
 

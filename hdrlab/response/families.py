@@ -1,4 +1,4 @@
-"""A family of responses by formula: what a prior is made of where no measured curves are at hand.
+"""A family of responses by formula, for a prior where no measured curves are at hand.
 
 M  brightness   0 to 1
 X  exposure     f^-1(M), X(0) = 0, X(1) = 1, rising
@@ -17,14 +17,13 @@ cubic       X = (M + k M^3) / (1 + k)                       nearly linear sensor
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
 
-
-def power(M: Float, gamma: float) -> Float:
+def power(M: F64, gamma: float) -> F64:
     """Return X = M^gamma.
 
     Examples
@@ -35,7 +34,7 @@ def power(M: Float, gamma: float) -> Float:
     return M**gamma
 
 
-def toe(M: Float, gamma: float, start: float) -> Float:
+def toe(M: F64, gamma: float, start: float) -> F64:
     """Return ((M + a) / (1 + a))^gamma above M = `start`, and below it its tangent, which goes through 0.
 
     The tangent does if start gamma = start + a.
@@ -45,49 +44,53 @@ def toe(M: Float, gamma: float, start: float) -> Float:
     return np.where(start < M, ((M + a) / (1 + a)) ** gamma, line)
 
 
-def film(M: Float, a: float, gamma: float) -> Float:
+def film(M: F64, a: float, gamma: float) -> F64:
     """Return X = (a M / (1 + a - M))^(1 / gamma)."""
     return (a * M / (1 + a - M)) ** (1 / gamma)
 
 
-def logarithm(M: Float, k: float) -> Float:
+def logarithm(M: F64, k: float) -> F64:
     """Return X = (e^(k M) - 1) / (e^k - 1)."""
     return np.expm1(k * M) / np.expm1(k)
 
 
-def cubic(M: Float, k: float) -> Float:
+def cubic(M: F64, k: float) -> F64:
     """Return X = (M + k M^3) / (1 + k), rising for k >= -1/3."""
     return (M + k * M**3) / (1 + k)
 
 
-def shoulder(M: Float, strength: float) -> Float:
+def shoulder(M: F64, strength: float) -> F64:
     """Return M drawn towards the S-curve M^2 (3 - 2 M), or for a negative strength away from it."""
     return M + strength * (M**2 * (3 - 2 * M) - M)
 
 
-def formulas(M: Float) -> Iterator[Float]:
+def generate_curves(M: F64) -> Iterator[F64]:
     """Yield X of every curve of the five kinds."""
     yield from (power(M, gamma) for gamma in np.arange(0.4, 3.01, 0.1))
-    yield from (toe(M, gamma, at) for gamma in (1.6, 2.0, 2.4, 2.8) for at in (0.02, 0.04, 0.08))
+    yield from (toe(M, gamma, start) for gamma in (1.6, 2.0, 2.4, 2.8) for start in (0.02, 0.04, 0.08))
     yield from (film(M, a, gamma) for a in (0.03, 0.1, 0.3, 1.0) for gamma in (0.7, 0.9, 1.1, 1.3, 1.5))
     yield from (logarithm(M, k) for k in (0.5, 1, 2, 3, 4, 5, 6))
     yield from (cubic(M, k) for k in (-0.3, -0.15, 0, 0.3, 1, 3, 8))
 
 
-def exposures(n: int = 256) -> Float:
-    """Return X (C, n) of all curves, at the middles of the levels' cells; level 0 has half a one."""
-    M = np.arange(n) / (n - 1)
-    M[0] = 0.25 / (n - 1)
-    return np.stack([X for strength in (-0.4, 0.0, 0.4) for X in formulas(shoulder(M, strength))])
+def level_brightness(n: int) -> F64:
+    """Return M (n,) in the middles of the levels' cells; level 0 has half a cell."""
+    return np.r_[0.25, np.arange(1, n)] / (n - 1)
 
 
-def ln_exposures(X: ArrayLike) -> Float:
+def tabulate(n: int = 256) -> F64:
+    """Return X (C, n) of all curves."""
+    M = level_brightness(n)
+    return np.stack([X for strength in (-0.4, 0.0, 0.4) for X in generate_curves(shoulder(M, strength))])
+
+
+def to_log(X: ArrayLike) -> F64:
     """Return g = ln X - ln X[n // 2] of curves (C, n)."""
     g = np.log(np.asarray(X, np.float64))
     return g - g[:, g.shape[1] // 2, None]
 
 
-def ln_inverses(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -> Float:
+def invert_curves(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -> F64:
     """Return g (C, n) of measured curves: exposure (C, m), 0 to 1, and the brightness it gives, both rising.
 
     A g has one value where the curve is flat: the middle of the exposures that give this level.
@@ -98,18 +101,17 @@ def ln_inverses(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -> 
         For curves that do not rise from 0 to 1.
     """
     X, M = np.atleast_2d(np.asarray(exposure, np.float64)), np.atleast_2d(np.asarray(brightness, np.float64))
-    if X.shape != M.shape or not np.all(np.isfinite(X)) or not np.all(np.isfinite(M)):
+    if X.shape != M.shape or not np.all(np.isfinite([X, M])):
         raise ValueError(
             f"expected exposure and brightness (C, m), finite, got {describe(X)} and {describe(M)}"
         )
-    if np.any(np.diff(X, axis=1) < 0) or np.any(np.diff(M, axis=1) < 0) or not np.all(M[:, 0] < M[:, -1]):
+    if np.any(np.diff([X, M]) < 0) or not np.all(M[:, 0] < M[:, -1]):
         raise ValueError("expected curves that rise, got one that falls or is flat")
-    at = np.arange(n) / (n - 1)
-    at[0] = 0.25 / (n - 1)
-    return ln_exposures(np.maximum([_inverse(at, x, m) for x, m in zip(X, M, strict=True)], 1e-6))
+    levels = level_brightness(n)
+    return to_log(np.maximum([_invert(levels, x, m) for x, m in zip(X, M, strict=True)], 1e-6))
 
 
-def _inverse(at: Float, X: Float, M: Float) -> Float:
-    """Return X at the brightnesses `at`; of a flat stretch, the mean of its ends."""
+def _invert(levels: F64, X: F64, M: F64) -> F64:
+    """Return X at these brightnesses; of a flat stretch, the mean of its ends."""
     values, start, counts = np.unique(M, return_index=True, return_counts=True)
-    return np.interp(at, values, (X[start] + X[start + counts - 1]) / 2)
+    return np.interp(levels, values, (X[start] + X[start + counts - 1]) / 2)

@@ -1,4 +1,4 @@
-"""The space of camera responses, and what it says beforehand (Grossberg and Nayar, CVPR 2003).
+"""The space of camera responses as a prior (Grossberg and Nayar, CVPR 2003).
 
 curves  (C, n)   many responses at the same n places: g over the pixel levels, or brightness over exposure
 mean    (n,)     of the curves
@@ -6,34 +6,33 @@ H       (K, n)   principal components, orthonormal rows
 sd      (K,)     how far the curves spread along each
 c       (K,)     coefficients: curve = mean + c H  [Grossberg03 eq. 6]
 
-Responses are alike. A handful of numbers tells them apart, and a few samples of a curve, or a poor bracket,
-are enough when the rest is filled in by what responses look like: c ~ Normal(0, sd).
+Responses are alike. A handful of numbers distinguishes them, and a few samples of a curve, or a poor bracket,
+are enough with the prior c ~ Normal(0, sd): the answer is the maximum a posteriori (MAP) estimate.
 """
 
 from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
+from hdrlab.core.types import F64, Indices
 from hdrlab.core.weights import make_monotone
 from hdrlab.response import families
-
-Float = NDArray[np.float64]
 
 
 class Space(NamedTuple):
     """mean (n,), components H (K, n), and the spread sd (K,) along each."""
 
-    mean: Float
-    H: Float
-    sd: Float
+    mean: F64
+    H: F64
+    sd: F64
 
 
-def principal(curves: ArrayLike, count: int) -> Space:
+def fit_space(curves: ArrayLike, count: int) -> Space:
     """Return the Space of the `count` directions along which the curves (C, n) spread most.
 
     With the SVD curves - mean = U S V^T, H is the first rows of V^T and sd = S / sqrt(C).
@@ -46,8 +45,8 @@ def principal(curves: ArrayLike, count: int) -> Space:
     Examples
     --------
     >>> x = np.linspace(0, 1, 11)
-    >>> space = principal([x, x**2, (x + x**2) / 2], 1)
-    >>> bool(np.allclose(rebuild(project(x**2, space), space), x**2))
+    >>> space = fit_space([x, x**2, (x + x**2) / 2], 1)
+    >>> bool(np.allclose(reconstruct(project(x**2, space), space), x**2))
     True
     """
     curves = np.asarray(curves, np.float64)
@@ -58,14 +57,14 @@ def principal(curves: ArrayLike, count: int) -> Space:
     return Space(mean, V[:count], S[:count] / np.sqrt(len(curves)))
 
 
-def first(space: Space, count: int) -> Space:
+def truncate(space: Space, count: int) -> Space:
     """Return the Space of the first `count` components alone."""
     if not 1 <= count <= len(space.H):
         raise ValueError(f"expected 1 to {len(space.H)} components, got {count}")
     return Space(space.mean, space.H[:count], space.sd[:count])
 
 
-def project(curve: ArrayLike, space: Space) -> Float:
+def project(curve: ArrayLike, space: Space) -> F64:
     """Return c = H (curve - mean), the nearest point of the space; curves (..., n) give (..., K)."""
     curve = np.asarray(curve, np.float64)
     if curve.shape[-1:] != space.mean.shape:
@@ -73,19 +72,19 @@ def project(curve: ArrayLike, space: Space) -> Float:
     return (curve - space.mean) @ space.H.T
 
 
-def rebuild(c: ArrayLike, space: Space) -> Float:
+def reconstruct(c: ArrayLike, space: Space) -> F64:
     """Return mean + c H [Grossberg03 eq. 6]."""
     return space.mean + np.asarray(c, np.float64) @ space.H
 
 
-def likeliest(A: Float, b: Float, sd: Float) -> Float:
+def solve_map(A: F64, b: F64, sd: F64) -> F64:
     """Return c that minimises |A c - b|^2 + |c / sd|^2: the rows have unit noise, and c ~ Normal(0, sd)."""
     rows = np.vstack([A, np.diag(1 / np.maximum(sd, 1e-12))])
-    return np.asarray(np.linalg.lstsq(rows, np.r_[b, np.zeros(len(sd))], rcond=None)[0], np.float64)
+    return np.linalg.lstsq(rows, np.r_[b, np.zeros(len(sd))])[0]
 
 
-def from_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: float = 0.002) -> Float:
-    """Return the likeliest curve (n,) through a few samples.
+def fit_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: float = 0.002) -> F64:
+    """Return the MAP estimate of a curve (n,) from a few of its samples.
 
     Parameters
     ----------
@@ -106,8 +105,8 @@ def from_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: f
     Examples
     --------
     >>> x = np.linspace(0, 1, 256)
-    >>> space = principal([x**gamma for gamma in np.arange(0.3, 1, 0.05)], 4)
-    >>> curve = from_samples([0.2, 0.6], [0.2**0.45, 0.6**0.45], space)
+    >>> space = fit_space([x**gamma for gamma in np.arange(0.3, 1, 0.05)], 4)
+    >>> curve = fit_samples([0.2, 0.6], [0.2**0.45, 0.6**0.45], space)
     >>> bool(np.abs(curve - x**0.45).max() < 0.03)
     True
     """
@@ -118,30 +117,31 @@ def from_samples(places: ArrayLike, values: ArrayLike, space: Space, *, noise: f
         )
     if not np.all(np.isfinite(values)) or not noise > 0:
         raise ValueError(f"expected finite values and a positive noise, got {describe(values)} and {noise}")
-    own = np.linspace(0, 1, len(space.mean))
-    A = np.column_stack([np.interp(places, own, row) for row in space.H])
-    b = values - np.interp(places, own, space.mean)
-    return rebuild(likeliest(A / noise, b / noise, space.sd), space)
+    grid = np.linspace(0, 1, len(space.mean))
+    A = np.column_stack([np.interp(places, grid, row) for row in space.H])
+    b = values - np.interp(places, grid, space.mean)
+    return reconstruct(solve_map(A / noise, b / noise, space.sd), space)
 
 
-def default(count: int = 12, n: int = 256) -> Space:
+def default_space(count: int = 12, n: int = 256) -> Space:
     """Return the Space of g of the curves in `families`."""
-    return principal(families.ln_exposures(families.exposures(n)), count)
+    return fit_space(families.to_log(families.tabulate(n)), count)
 
 
-def rows(Z: NDArray[np.intp], B: Float, w: Float, space: Space) -> tuple[Float, Float]:
+def build_equations(Z: Indices, B: F64, w: F64, space: Space) -> tuple[F64, F64]:
     """Return A and b of sum_ij w^2 (g(Z_ij) - lE_i - B_j)^2 = |A c - b|^2, g = mean + c H [Debevec97 eq. 3].
 
-    Each sample's own unknown lE_i takes up the weighted mean of its rows; what is left has the K unknowns
-    alone.
+    The best lE_i of each sample is a weighted mean; what its rows miss of that has the K unknowns alone.
     """
     W = w[Z] ** 2
     W = W / np.maximum(W.sum(axis=1, keepdims=True), 1e-300)
-    target = B - space.mean[Z]
-    b = w[Z] * (target - np.sum(W * target, axis=1, keepdims=True))
-    heights = [row[Z] for row in space.H]
-    A = np.stack([w[Z] * (h - np.sum(W * h, axis=1, keepdims=True)) for h in heights], axis=-1)
-    return A.reshape(-1, len(space.H)), b.ravel()
+    columns = [x - np.sum(W * x, axis=1, keepdims=True) for x in (B + 0 * Z, space.mean[Z], *space.H[:, Z])]
+    if not np.any(W * columns[0] ** 2 > 1e-12):
+        raise ValueError(
+            "expected samples measured well in two exposures, which connect the levels; got none"
+        )
+    B, mean, *H = (w[Z] * column for column in columns)
+    return np.stack(H, axis=-1).reshape(-1, len(H)), (B - mean).ravel()
 
 
 def recover(
@@ -152,10 +152,10 @@ def recover(
     noise: float = 0.02,
     samples: int = 1000,
     w: ArrayLike | None = None,
-    choose: Callable[..., NDArray[np.intp]] = by_rank,
+    choose: Callable[..., Indices] = by_rank,
     valid: ArrayLike | None = None,
-) -> Float:
-    """Return the likeliest response g in a space of responses, each channel by itself.
+) -> F64:
+    """Return the MAP estimate of the response g in a space of responses, each channel by itself.
 
     Debevec's equations with a curve of K coefficients in place of 256 levels and a smoothness.
 
@@ -166,11 +166,11 @@ def recover(
     times : (P,) float
         Exposure times in seconds, at least two different ones.
     basis : Space, optional
-        Of g over 256 levels, `principal(families.ln_inverses(exposure, brightness), count)` of curves that
+        Of g over 256 levels, `fit_space(families.invert_curves(exposure, brightness), count)` of curves that
         were measured; those of `families` by default.
     noise : float
         Standard deviation of ln exposure at the level of greatest weight. More noise gives the prior more
-        say.
+        weight.
     samples : int
         How many pixels to choose.
     w : (256,) float, optional
@@ -206,25 +206,15 @@ def recover(
     """
     stack = as_stack(images)
     times = as_times(times, len(stack), distinct=2)
-    space = default() if basis is None else basis
+    space = default_space() if basis is None else basis
     if space.mean.shape != (256,) or not noise > 0:
         raise ValueError(
             f"expected a basis of 256 levels and a positive noise, got {len(space.mean)} and {noise}"
         )
     w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
     Z = choose(stack, samples, valid=valid)
-    Z = Z.reshape(*Z.shape[:2], -1)
-    g = np.stack(
-        [_one(Z[..., c], np.log(times), w / w.max(), space, noise) for c in range(Z.shape[-1])], axis=-1
-    )
-    return g.reshape(256, *stack.shape[3:])
-
-
-def _one(Z: NDArray[np.intp], B: Float, w: Float, space: Space, noise: float) -> Float:
-    """Return g (256,) of one channel's samples Z (N, P)."""
-    shown = np.where(w[Z] > 0, B, np.nan)
-    if not np.any(np.nanmax(shown, axis=1, initial=-np.inf) > np.nanmin(shown, axis=1, initial=np.inf)):
-        raise ValueError("expected samples seen well in two exposures, which tie levels together; got none")
-    A, b = rows(Z, B, w, space)
-    g = rebuild(likeliest(A / noise, b / noise, space.sd), space)
-    return make_monotone(g - g[128])
+    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
+    systems = [build_equations(own, np.log(times), w / w.max(), space) for own in channels]
+    c = np.stack([solve_map(A / noise, b / noise, space.sd) for A, b in systems])
+    g = reconstruct(c, space).T
+    return make_monotone(g - g[128]).reshape(256, *stack.shape[3:])

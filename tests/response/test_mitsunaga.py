@@ -2,15 +2,15 @@
 
 import numpy as np
 import pytest
+from laws import photographs as shots
 from numpy.polynomial.polynomial import polyval
 
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.metrics import response_rmse
-from hdrlab.course.checks.laws import photographs as shots
 from hdrlab.io.emor import read_curves
 from hdrlab.response import ambiguity, mitsunaga, polynomial
-from hdrlab.response.families import ln_inverses
+from hdrlab.response.families import invert_curves
 from hdrlab.response.pairs import HIGHEST, average, both, held, moments
 
 STATED = np.full(3, 0.5)
@@ -168,7 +168,7 @@ def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, ph
 def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(shared):
     """51 of them: 95 in 100 are within 3.8 % with order 5, 7 % with order 10, 3.1 % with the one chosen."""
     exposure, brightness = read_curves(shared("crf_curves") / "dorf_201.npz")
-    true, errors = ln_inverses(exposure, brightness)[::4], {None: [], 5: [], 10: []}
+    true, errors = invert_curves(exposure, brightness)[::4], {None: [], 5: [], 10: []}
     for g, x, m in zip(true, exposure[::4], brightness[::4], strict=True):
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
         for order, found in errors.items():

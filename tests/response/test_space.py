@@ -2,10 +2,10 @@
 
 import numpy as np
 import pytest
+from laws import photographs as shots
 
 from hdrlab.capture import camera, responses
 from hdrlab.core.metrics import response_rmse
-from hdrlab.course.checks.laws import photographs as shots
 from hdrlab.io.emor import read_curves, read_emor
 from hdrlab.response import families, space
 
@@ -32,36 +32,36 @@ def curves(measured):
 
 
 def test_components_are_orthonormal_and_ordered_by_spread():
-    found = space.principal(POWERS, 5)
+    found = space.fit_space(POWERS, 5)
     assert np.allclose(found.H @ found.H.T, np.eye(5), atol=1e-12)
     assert np.all(np.diff(found.sd) < 0)
 
 
 def test_as_many_components_as_the_curves_span_lose_nothing():
-    found = space.principal(POWERS, len(POWERS) - 1)
-    assert np.allclose(space.rebuild(space.project(POWERS, found), found), POWERS, atol=1e-12)
+    found = space.fit_space(POWERS, len(POWERS) - 1)
+    assert np.allclose(space.reconstruct(space.project(POWERS, found), found), POWERS, atol=1e-12)
 
 
 def test_the_spread_is_that_of_the_coefficients():
-    found = space.principal(POWERS, 4)
+    found = space.fit_space(POWERS, 4)
     assert np.allclose(space.project(POWERS, found).std(axis=0), found.sd)
 
 
 def test_more_samples_than_components_and_no_noise_find_the_curve_exactly():
-    found = space.principal(POWERS, 3)
-    curve = space.rebuild([0.4, -0.2, 0.05], found)
+    found = space.fit_space(POWERS, 3)
+    curve = space.reconstruct([0.4, -0.2, 0.05], found)
     at = np.linspace(0.05, 0.95, 9)
-    again = space.from_samples(at, np.interp(at, X, curve), found, noise=1e-9)
+    again = space.fit_samples(at, np.interp(at, X, curve), found, noise=1e-9)
     assert np.allclose(again, curve, atol=1e-6)
 
 
 def test_without_trust_in_the_samples_the_mean_is_the_likeliest():
-    found = space.principal(POWERS, 3)
-    assert np.allclose(space.from_samples([0.5], [0.9], found, noise=1e6), found.mean, atol=1e-9)
+    found = space.fit_space(POWERS, 3)
+    assert np.allclose(space.fit_samples([0.5], [0.9], found, noise=1e6), found.mean, atol=1e-9)
 
 
 def test_every_formula_rises_from_zero_to_one():
-    curves = families.exposures()
+    curves = families.tabulate()
     assert np.all(np.diff(curves, axis=1) > 0) and np.allclose(curves[:, -1], 1) and np.all(curves[:, 0] > 0)
 
 
@@ -75,21 +75,19 @@ def test_the_straight_start_is_a_tangent(gamma):
 
 @pytest.mark.parametrize("name", sorted(responses.RESPONSES))
 def test_the_family_holds_every_response_of_the_simulated_camera(name):
-    basis, g = space.default(), responses.true_g(name)
-    apart = np.exp(space.rebuild(space.project(g, basis), basis)) - np.exp(g)
+    basis, g = space.default_space(), responses.true_g(name)
+    apart = np.exp(space.reconstruct(space.project(g, basis), basis)) - np.exp(g)
     assert np.abs(apart).max() < 0.01 * np.exp(g).max()
 
 
 def test_the_inverse_of_a_measured_curve_is_its_g():
     x = np.linspace(0, 1, 4096) ** 3
-    g = families.ln_inverses(x, x ** (1 / 2.2))[0]
+    g = families.invert_curves(x, x ** (1 / 2.2))[0]
     assert np.allclose(g[2:], responses.true_g("gamma")[2:], atol=1e-3)
 
 
 def test_a_basis_of_ones_own_answers_in_its_span():
-    basis = space.principal(
-        families.ln_exposures(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2
-    )
+    basis = space.fit_space(families.to_log(np.stack([families.power(X + 1e-3, k) for k in (1, 2, 3)])), 2)
     E = np.geomspace(0.01, 1, 2400).reshape(40, 60)
     taken = camera.shoot(E, [0.25, 0.5, 1.0], camera.Camera(response="gamma"))
     g = space.recover(taken.images, taken.times, basis=basis)
@@ -98,17 +96,17 @@ def test_a_basis_of_ones_own_answers_in_its_span():
 
 def test_what_is_no_space_is_refused():
     for call in (
-        lambda: space.principal(POWERS, 0),
-        lambda: space.principal(POWERS, 99),
-        lambda: space.principal(POWERS * np.nan, 2),
-        lambda: space.project(np.ones(5), space.default()),
-        lambda: space.first(space.default(), 13),
-        lambda: space.from_samples([0.5, 0.6], [0.5], space.default()),
-        lambda: space.from_samples([1.5], [0.5], space.default()),
-        lambda: space.from_samples([0.5], [0.5], space.default(), noise=0),
-        lambda: families.ln_inverses(X[None], X[None, ::-1]),
+        lambda: space.fit_space(POWERS, 0),
+        lambda: space.fit_space(POWERS, 99),
+        lambda: space.fit_space(POWERS * np.nan, 2),
+        lambda: space.project(np.ones(5), space.default_space()),
+        lambda: space.truncate(space.default_space(), 13),
+        lambda: space.fit_samples([0.5, 0.6], [0.5], space.default_space()),
+        lambda: space.fit_samples([1.5], [0.5], space.default_space()),
+        lambda: space.fit_samples([0.5], [0.5], space.default_space(), noise=0),
+        lambda: families.invert_curves(X[None], X[None, ::-1]),
         lambda: space.recover(
-            np.zeros((2, 4, 4), np.uint8), [1, 2], basis=space.principal(POWERS[:, :99], 2)
+            np.zeros((2, 4, 4), np.uint8), [1, 2], basis=space.fit_space(POWERS[:, :99], 2)
         ),
         lambda: space.recover(np.zeros((2, 4, 4), np.uint8), [1, 2]),
         lambda: space.recover(np.full((2, 4, 4), 100, np.uint8), [1, 1]),
@@ -161,7 +159,7 @@ def test_the_published_components_leave_of_201_curves_what_is_known(shared, pape
 
 
 def test_our_own_components_leave_more_than_theirs(papers, curves):
-    left = papers.projection(curves, space.principal(curves, 11))
+    left = papers.projection(curves, space.fit_space(curves, 11))
     assert left[3] < 0.0057 and left[5] < 0.00231 and left[11] < 0.00053
 
 
@@ -171,14 +169,14 @@ def test_five_gray_patches_and_the_prior_find_a_response_to_a_percent(papers, cu
 
 
 def test_the_inverses_of_measured_curves_are_finite_and_rise(measured):
-    g = families.ln_inverses(*measured)
+    g = families.invert_curves(*measured)
     assert g.shape == (201, 256) and np.all(np.isfinite(g)) and np.all(np.diff(g, axis=1) >= -1e-12)
 
 
 def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prior(measured):
     """51 of the 201, none of them among the formulas, and of 8 bits with noise: 0.4 % is typical."""
     errors = []
-    for g, x, m in zip(families.ln_inverses(*measured)[::4], *(one[::4] for one in measured), strict=True):
+    for g, x, m in zip(families.invert_curves(*measured)[::4], *(one[::4] for one in measured), strict=True):
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
         errors.append(response_rmse(space.recover(taken.images, taken.times), g)[0])
     assert np.median(errors) < 0.6 and np.percentile(errors, 95) < 2 and max(errors) < 3
