@@ -1,14 +1,14 @@
 """Durand and Dorsey's operator, fast: the bilateral filter on its grid; bands where all is certain stay."""
 
-from hdrlab.core.bands import banded
 from hdrlab.core.bilateral import Filtered
 from hdrlab.core.types import F32
 from hdrlab.fast import with_parts
+from hdrlab.fast._bands import banded
 from hdrlab.fast.bilateral import bilateral
 from hdrlab.fast.blur import gaussian
 from hdrlab.tonemap import durand
 
-(_fix,) = with_parts(__name__, durand.fix_uncertain, gaussian_filter=gaussian)
+_fix = with_parts(__name__, durand.fix_uncertain, gaussian_filter=gaussian)
 
 
 def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
@@ -16,5 +16,5 @@ def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
     return banded(lambda *rows: _fix(Filtered(*rows), sigma_s=sigma_s), *found, margin=4 * durand.NEAR)
 
 
-parts = {"bilateral": bilateral, "fix_uncertain": fix_uncertain}
-layers, tonemap = with_parts(__name__, durand.layers, durand.tonemap, **parts)
+layers = with_parts(__name__, durand.layers, bilateral=bilateral, fix_uncertain=fix_uncertain)
+tonemap = with_parts(__name__, durand.tonemap, layers=layers)

@@ -49,8 +49,13 @@ def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold:
     return V1
 
 
-parts = {"log_average": log_average, "scale_to_key": scale_to_key, "white_point": white_point}
-lessons = (reinhard.automatic_key, reinhard.tonemap)
-automatic_key, tonemap = with_parts(
-    __name__, *lessons, local_adaptation=local_adaptation, as_light=as_luminance, **parts
+automatic_key = with_parts(__name__, reinhard.automatic_key, log_average=log_average)
+tonemap = with_parts(
+    __name__,
+    reinhard.tonemap,
+    as_light=as_luminance,
+    automatic_key=automatic_key,
+    scale_to_key=scale_to_key,
+    white_point=white_point,
+    local_adaptation=local_adaptation,
 )

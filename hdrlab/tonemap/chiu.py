@@ -73,7 +73,7 @@ def smooth(s: F32, L: F32) -> F32:
 
     The weights 1 2 1 are those of 1 1, twice: the sum of each pair, and of each pair of sums.
     """
-    s = np.pad(s, 1, mode="edge") / 16
+    s = np.pad(s, 1, mode="edge") * np.float32(1 / 16)
     for _ in range(2):
         s = s[:-1] + s[1:]
         s = s[:, :-1] + s[:, 1:]

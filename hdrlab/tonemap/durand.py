@@ -48,7 +48,7 @@ class Layers(NamedTuple):
 def logarithm(L: F32) -> F32:
     """Return lL = log10 L, and for black the level of a millionth of the median."""
     floor = np.float32(max(DARK * positive_median(L), 1e-37))
-    return np.log(np.maximum(L, floor)) / np.float32(math.log(10))
+    return np.log(np.maximum(L, floor)) * np.float32(1 / math.log(10))
 
 
 def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.types import F32, F64, Flags, Mask
+from hdrlab.core.types import F32, Array, Flags, Mask
 
 LAWS = ("monotone", "exposure")
 # eight centres, and the surround of the last
@@ -99,7 +99,7 @@ def scale_steps(
     blurred: Iterable[F32], *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05
 ) -> Iterator[Scale]:
     """Yield the Scale of each width, from small to large, given V1 at every width [Reinhard02]."""
-    even, adaptation = np.True_, np.float32(0)
+    even, adaptation = np.array(True), np.zeros(1, np.float32)
     for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
         V = response(V1, V2, width=width, key=key, phi=phi)
         even = even & (np.abs(V) < threshold)
@@ -167,7 +167,7 @@ def tonemap(
     return np.asarray(display(Lm, V1, white), np.float32)
 
 
-def as_light(L: ArrayLike) -> F64:
+def as_light(L: ArrayLike) -> Array:
     """Return L as float64 (H, W), finite and not negative, or raise a ValueError."""
     L = np.asarray(L)
     if L.ndim != 2 or L.dtype.kind not in "iuf" or not (L.size and L.min() >= 0 and L.max() < np.inf):
