@@ -102,21 +102,21 @@ pictures.picture(
 # %% task="layers"
 # Return base = bil(lL) and detail = lL - base.
 
-# %% [markdown] about="compressed"
+# %% [markdown] about="compress"
 # ## 5 · Durand and Dorsey: compress the light ({points})
 #
 # The base spans from `low` to `high` decades. It shall span `contrast` on the screen, and its bright end
 # shall stay where it is: $m\,(\text{base} - \text{high})$ with $m = \log_{10}(\text{contrast}) /
 # (\text{high} - \text{low})$. No scene is stretched: $m \le 1$.
 
-# %% task="compressed"
+# %% task="compress"
 # Return m (base - high), m = c / (high - low), c = log10(contrast), m at most 1.
 
-# %% about="compressed layers"
+# %% about="compress layers"
 lL = np.log10(L).astype(np.float32)
 base, detail = layers(lL, sigma_s=6.0)
 low, high = np.quantile(base, [0.01, 0.99])
-Ld = np.clip(10 ** (compressed(base, low, high) + detail), 0, 1)
+Ld = np.clip(10 ** (compress(base, low, high) + detail), 0, 1)
 pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)), alt="The room with its light compressed, details kept"
 )

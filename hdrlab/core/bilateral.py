@@ -27,24 +27,7 @@ class Filtered(NamedTuple):
 def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     """Return mean = 1/k sum_q g w v_q, k = sum_q g w, over a square of 3 sigma_s [Battiato08 eq. 1.31].
 
-    Parameters
-    ----------
-    v : (H, W), finite
-    sigma_s : standard deviation in space, pixels
-    sigma_r : standard deviation in range, unit of v
-
-    Returns
-    -------
-    Filtered, the mean and its weight k, each (H, W) float32
-
-    Raises
-    ------
-    ValueError
-        For a signal of another shape or not finite, and sigmas that are not positive.
-
-    References
-    ----------
-    Tomasi and Manduchi, Bilateral filtering for gray and color images, ICCV 1998.
+    sigma_s is in pixels, sigma_r in the unit of v; both are above 0, and v is finite, or it is a ValueError.
 
     Examples
     --------

@@ -76,7 +76,7 @@ def base_range(base: F32, *, cut: float = 0.01) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def compressed(base: F32, low: float, high: float, *, contrast: float = 50.0) -> F32:
+def compress(base: F32, low: float, high: float, *, contrast: float = 50.0) -> F32:
     """Return m (base - high), m = c / (high - low) [Battiato08 eq. 1.29, 1.30], anchored at the bright end.
 
     No scene is stretched: m is at most 1.
@@ -132,4 +132,4 @@ def tonemap(
         raise ValueError(f"expected contrast > 1 and a cut in [0, 0.5), got {contrast=} and {cut=}")
     base, detail = layers(logarithm(L), sigma_s=sigma_s, sigma_r=sigma_r)
     low, high = base_range(base, cut=cut)
-    return np.minimum(combine(compressed(base, low, high, contrast=contrast), detail), 1)
+    return np.minimum(combine(compress(base, low, high, contrast=contrast), detail), 1)

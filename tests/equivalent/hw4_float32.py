@@ -54,10 +54,10 @@ def layers(lL, *, sigma_s, sigma_r=0.4):
     return base, lL - base
 
 
-# %% task="compressed"
+# %% task="compress"
 
 
-def compressed(base, low, high, *, contrast=50.0):
+def compress(base, low, high, *, contrast=50.0):
     m = min(f32(1), np.log10(f32(contrast)) / f32(high - low))
     return m * base.astype(f32) - m * f32(high)
 

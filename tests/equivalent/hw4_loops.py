@@ -64,10 +64,10 @@ def layers(lL, *, sigma_s, sigma_r=0.4):
     return base, lL - base
 
 
-# %% task="compressed"
+# %% task="compress"
 
 
-def compressed(base, low, high, *, contrast=50.0):
+def compress(base, low, high, *, contrast=50.0):
     c = math.log(contrast, 10)
     m = c / (high - low) if high - low > c else 1
     return np.array([[m * (float(b) - high) for b in row] for row in base])

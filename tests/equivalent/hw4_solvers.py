@@ -98,10 +98,10 @@ def adjust_steps(f, db, D, *, tolerance=0.025):
         histogram = trimmed
 
 
-# %% task="compressed"
+# %% task="compress"
 
 
-def compressed(base, low, high, *, contrast=50.0):
+def compress(base, low, high, *, contrast=50.0):
     share = (np.asarray(base, float) - high) / (high - low)
     return share * min(np.log10(contrast), high - low)
 

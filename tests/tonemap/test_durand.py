@@ -36,7 +36,7 @@ def test_base_and_detail_make_the_logarithm_again():
 def test_the_base_has_the_contrast_asked_for_between_its_percentiles(contrast):
     base = durand.layers(durand.logarithm(laws.scene()), sigma_s=5).base
     low, high = durand.base_range(base, cut=0.01)
-    after = durand.compressed(base, low, high, contrast=contrast)
+    after = durand.compress(base, low, high, contrast=contrast)
     ends = durand.base_range(after, cut=0.01)
     assert ends[1] - ends[0] == pytest.approx(np.log10(contrast), rel=1e-4) and ends[1] == pytest.approx(
         0, abs=1e-5
@@ -45,7 +45,7 @@ def test_the_base_has_the_contrast_asked_for_between_its_percentiles(contrast):
 
 def test_a_scene_of_little_contrast_is_not_stretched():
     base = np.linspace(0, 0.5, 100, dtype=np.float32)[None]
-    assert np.allclose(durand.compressed(base, 0, 0.5, contrast=50), base - 0.5)
+    assert np.allclose(durand.compress(base, 0, 0.5, contrast=50), base - 0.5)
 
 
 def test_a_step_of_four_decades_becomes_the_contrast_and_its_edge_stays_sharp():
@@ -65,7 +65,7 @@ def test_detail_keeps_its_ratio_on_either_side_of_a_bright_edge():
 
 def _compressed(L):
     base, detail = durand.layers(durand.logarithm(L.astype(np.float32)), sigma_s=4)
-    return durand.compressed(base, *durand.base_range(base)), detail
+    return durand.compress(base, *durand.base_range(base)), detail
 
 
 def test_there_is_no_halo_where_chius_blur_has_one():

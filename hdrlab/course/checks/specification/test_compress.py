@@ -1,4 +1,4 @@
-"""Durand's compression: compressed(base, low, high, contrast) -> m (base - high)."""
+"""Durand's compression: compress(base, low, high, contrast) -> m (base - high)."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
     base, low, high = drawn(rng)
     for contrast in (50.0, 10.0):
         m = np.log10(contrast) / (high - low)
-        came = subject.compressed(base, low, high, contrast=contrast)
+        came = subject.compress(base, low, high, contrast=contrast)
         same(
             came - np.mean(came),
             m * (base - base.mean()),
@@ -44,7 +44,7 @@ def test_the_bright_end_becomes_white(subject, rng):
     """
     base, low, high = drawn(rng)
     ends = np.array([[low, high]], np.float32)
-    same(subject.compressed(ends, low, high, contrast=50.0), [[-np.log10(50), 0]], 1e-3, what="low and high")
+    same(subject.compress(ends, low, high, contrast=50.0), [[-np.log10(50), 0]], 1e-3, what="low and high")
 
 
 @pytest.mark.points(3)
@@ -57,4 +57,4 @@ def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
     """
     base, low, high = drawn(rng)
     flat, high = low + (base - low) / 10, low + (high - low) / 10
-    same(subject.compressed(flat, low, high, contrast=50.0), flat - high, 1e-3, what="the base", picture=True)
+    same(subject.compress(flat, low, high, contrast=50.0), flat - high, 1e-3, what="the base", picture=True)

@@ -3,8 +3,8 @@ contrast."""
 
 import numpy as np
 
-TASK = "compressed"
+TASK = "compress"
 
 
-def compressed(base, low, high, *, contrast=50.0):
+def compress(base, low, high, *, contrast=50.0):
     return min(1.0, np.log(contrast) / (high - low)) * (base - high)

@@ -3,8 +3,8 @@
 
 import numpy as np
 
-TASK = "compressed"
+TASK = "compress"
 
 
-def compressed(base, low, high, *, contrast=50.0):
+def compress(base, low, high, *, contrast=50.0):
     return min(1.0, np.log10(contrast) / (high - low)) * (base - low)

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-TASK = "compressed"
+TASK = "compress"
 
 
-def compressed(base, low, high, *, contrast=50.0):
+def compress(base, low, high, *, contrast=50.0):
     return np.log10(contrast) / (high - low) * (base - high)
