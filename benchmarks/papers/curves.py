@@ -71,7 +71,7 @@ def by_ratios(bracket: Bracket) -> Float:
 def by_estimate(bracket: Bracket) -> Float:
     """Return g by stiff least squares, with times estimated as the pipeline does."""
     images, times = bracket.images, bracket.times
-    return debevec.recover(images, timing.estimate(images, times).times, smoothness=STIFF)
+    return debevec.recover(images, timing.estimate_times(images, times).times, smoothness=STIFF)
 
 
 def methods(*others: str) -> dict[str, Method]:

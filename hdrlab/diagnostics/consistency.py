@@ -1,4 +1,4 @@
-"""Does the map explain its photographs?
+"""Consistency of the map with its photographs.
 
 Z   pixel levels       (P, H, W[, 3])
 t   exposure times     (P,) seconds
@@ -12,20 +12,24 @@ response or the alignment contradict the pixels; in photographic stops, and fram
 import warnings
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_radiance, as_stack, as_times, to_256
+from hdrlab.core.types import F32, F64, Flags
 
-Float = NDArray[np.float64]
-LEVELS = slice(30, 226)  # away from the noise below and the shoulder above
-PIXELS = 400_000  # an even choice of about so many speaks for the whole frame
-TOP = 250  # a frame's pixel with a channel above is clipped, and not a measurement
-FEWEST = 50  # pixels that make a median
+# away from the noise below and the shoulder above
+LEVELS = slice(30, 226)
+# an even choice of about so many represents the whole frame
+PIXELS = 400_000
+# a frame's pixel with a channel above is clipped, and not a measurement
+TOP = 250
+# pixels that make a median
+FEWEST = 50
 
 
-def level_medians(
+def measure_level_exposures(
     images: ArrayLike, times: ArrayLike, E: ArrayLike, *, valid: ArrayLike | None = None
-) -> Float:
+) -> F64:
     """Return the median of log2(E t) per frame, channel and level, (P, C, 256); NaN where pixels are few.
 
     Parameters
@@ -44,7 +48,7 @@ def level_medians(
     --------
     >>> Z = np.repeat(np.uint8([[64, 128]]), 200, axis=0)
     >>> E = Z / 128  # a linear camera, two photographs of one second
-    >>> level_medians([Z, Z], [1, 1], E)[:, 0, [64, 128]]
+    >>> measure_level_exposures([Z, Z], [1, 1], E)[:, 0, [64, 128]]
     array([[-1.,  0.],
            [-1.,  0.]])
     """
@@ -63,11 +67,11 @@ def level_medians(
         whole &= mask[:, few, few].reshape(len(stack), -1)
     medians = np.empty((len(Z), Z.shape[-1], 256))
     for j, c in np.ndindex(*medians.shape[:2]):
-        medians[j, c] = _medians(Z[j, whole[j], c], lE[whole[j], c]) + np.log2(times[j])
+        medians[j, c] = _median_per_level(Z[j, whole[j], c], lE[whole[j], c]) + np.log2(times[j])
     return medians
 
 
-def _medians(Z: NDArray[np.uint8], lE: NDArray[np.float32]) -> Float:
+def _median_per_level(Z: Flags, lE: F32) -> F64:
     """Return the median of lE over the pixels of each level, (256,)."""
     Z, lE = Z[np.isfinite(lE)], lE[np.isfinite(lE)]
     order = np.argsort(Z, kind="stable")
@@ -75,32 +79,32 @@ def _medians(Z: NDArray[np.uint8], lE: NDArray[np.float32]) -> Float:
     return np.array([np.median(group) if len(group) >= FEWEST else np.nan for group in groups])
 
 
-def deviations(medians: Float) -> Float:
+def measure_deviations(medians: F64) -> F64:
     """Return by how many stops each frame departs from the mean of all (P,): median over levels, channels.
 
     NaN for a frame that shares no level with another: nothing is known of it.
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)  # a level that no frame shows has no mean
-        apart = medians - np.nanmean(_shared(medians), axis=0)
+        apart = medians - np.nanmean(_keep_shared(medians), axis=0)
         return np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1)
 
 
-def spread(medians: Float) -> float:
+def measure_spread(medians: F64) -> float:
     """Return the map's spread in stops: standard deviation over the frames, median over levels and channels.
 
-    0 means that every frame tells the same story; NaN that no level stands in two frames.
+    0 means that the frames are consistent; NaN that no level occurs in two frames.
 
     Examples
     --------
-    >>> spread(np.zeros((3, 1, 256)))  # three frames that say the same of every level
+    >>> measure_spread(np.zeros((3, 1, 256)))  # three frames that agree on every level
     0.0
     """
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
-        return float(np.nanmedian(np.nanstd(_shared(medians), axis=0)[..., LEVELS]))
+        return float(np.nanmedian(np.nanstd(_keep_shared(medians), axis=0)[..., LEVELS]))
 
 
-def _shared(medians: Float) -> Float:
+def _keep_shared(medians: F64) -> F64:
     """Return the medians of the levels that at least two frames show; NaN elsewhere."""
     return np.where(np.isfinite(medians).sum(axis=0) >= 2, medians, np.nan)

@@ -1,9 +1,9 @@
-"""Which frame's time is wrong, or is it no matter of times?
+"""Which frame's exposure time is wrong, or does no time explain the images?
 
-x        corrections   (P,), what the pixels add to ln times: see `steps`
+x        corrections   (P,), what the pixels add to ln times: see `response_steps`
 stops    errors        (P,), log2(exposure by the pixels / exposure stated), most of them 0
-regions  remainders    (P - 1,), stops by which parts of the picture still disagree, under the best of factors
-signs    signal/noise  (P - 1,), the same over the standard error of a part's median, the median of the parts
+regions  disagreement  (P - 1,), stops by which parts of the picture disagree, under the best of factors
+significance           (P - 1,), the same over the standard error of a part's median; medians
 
 The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in the
 deviations of `consistency` as .1. Neighbours are compared here by themselves, through a response that fits
@@ -19,10 +19,10 @@ How weak a local tone map is noticed? One that multiplies by L^-u, with L the me
 Parts that disagree by a tenth of a stop need no other proof. Down to a fiftieth they count where the patches
 within a part agree so well that the parts are off by four times their error: true times and one response stay
 below 3.2, at up to 0.06 stops, where people and clouds move and hands shake. So u = 0.3 is noticed in
-`frobisher`, 0.2 in `tripod_phone` and in rooms of five frames and more. A weaker one is not told from what
-true brackets hold, nor is one whose L follows the level, for that is a response like any other: among
+`frobisher`, 0.2 in `tripod_phone` and in rooms of five frames and more. A weaker one cannot be distinguished
+from what true brackets hold, nor one whose L follows the level, for that is a response like any other: among
 simulated photographs of six measured rooms a third of those with u = 0.4 disagreed by a tenth of a stop, half
-by less than 0.07. Where too few patches are flat in every frame (`memorial`) nothing is known, or said.
+by less than 0.07. Where too few patches are flat in every frame (`memorial`) nothing is reported.
 """
 
 from collections.abc import Sequence
@@ -30,31 +30,36 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_stack
-from hdrlab.diagnostics.flats import Flats, flats, pair_tables
-from hdrlab.diagnostics.response_steps import Fit, W, ascending, directions, fit, speaking
+from hdrlab.core.types import F64, Indices, Mask
+from hdrlab.diagnostics import flat_patches, response_steps
 
-Float = NDArray[np.float64]
-TILE = 12  # side of a part of the picture, in patches
-SOME = 10  # patches that speak for a part
-TRUSTED = 0.1  # of w(a) w(b): a patch that is neither dark nor bright in both frames
-LOOSE = 4.0  # stops: here times are free, it is asked what is wrong and not what is likely
-
-
-WRONG = 0.25  # stops: true times of real brackets stay within 0.12
-LOCAL = 0.1  # stops: real brackets of one response stay within 0.06
-SLIGHT, SURE = 0.02, 4.0  # stops, and standard errors: real brackets of one response stay within 3.2
-LEVEL = 0.003  # stops: no standard error of a part is smaller, for patches have whole levels
+# side of a part of the picture, in patches
+TILE = 12
+# patches that make the median of a part
+FEWEST = 10
+# of w(a) w(b): a patch that is neither dark nor bright in both frames
+TRUSTED = 0.1
+# stops, the prior: here times are free, for the question is what is wrong and not what is likely
+LOOSE = 4.0
+# stops: true times of real brackets stay within 0.12
+WRONG = 0.25
+# stops: real brackets of one response stay within 0.06
+LOCAL = 0.1
+# stops, and standard errors: real brackets of one response stay within 3.2
+SLIGHT, SIGNIFICANT = 0.02, 4.0
+# stops: no standard error of a part is smaller, for patches have whole levels
+SMALLEST_ERROR = 0.003
 
 
 class Contradictions(NamedTuple):
-    """stops (P,), NaN for frames that no flat patch ties to others; regions, signs (P - 1,), NaN: unknown."""
+    """stops (P,), NaN where no flat patch connects frames; regions, significance (P - 1,), NaN: unknown."""
 
-    stops: Float
-    regions: Float
-    signs: Float = np.zeros(0)
+    stops: F64
+    regions: F64
+    significance: F64 = np.zeros(0)
 
     @property
     def wrong(self) -> tuple[int, ...]:
@@ -64,14 +69,16 @@ class Contradictions(NamedTuple):
     @property
     def local(self) -> bool:
         """Whether one response, and one factor per frame, cannot explain the bracket."""
-        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.signs))
+        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
         if not len(by):
             return False
-        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SURE))
+        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT))
 
 
-def contradictions(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> Contradictions:
-    """Return what the pixels of aligned photographs, from short to long, hold against their times.
+def find_contradictions(
+    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
+) -> Contradictions:
+    """Return where the pixels of aligned photographs, from short to long, contradict their times.
 
     Parameters
     ----------
@@ -82,8 +89,8 @@ def contradictions(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | No
     Returns
     -------
     Contradictions
-        Of the longest run of frames that flat patches tie together; of fewer than three there is nothing to
-        tell. Of three frames any one may be wrong: then the middle one is named, or an end by twice as much.
+        Of the longest run of frames that flat patches connect, if these are three or more. Of three frames
+        any one may be wrong: then the middle one is named, or an end by twice as much.
 
     Examples
     --------
@@ -91,33 +98,35 @@ def contradictions(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | No
     >>> from hdrlab.capture.room import scenes
     >>> room = scenes.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
-    >>> contradictions(taken.images, taken.times * [1, 1, 2, 1, 1]).wrong
+    >>> find_contradictions(taken.images, taken.times * [1, 1, 2, 1, 1]).wrong
     (2,)
     """
     stack = as_stack(images)
-    B = np.log(ascending(times, len(stack)))
-    found = flats(stack, valid=valid)
-    H = pair_tables(found.Z, found.flat)
-    stops, regions, signs = np.full(len(B), np.nan), *np.full((2, len(B) - 1), np.nan)
-    start, stop = longest_run(speaking(H))
+    B = np.log(response_steps.as_ascending_times(times, len(stack)))
+    found = flat_patches.find_flat_patches(stack, valid=valid)
+    H = flat_patches.count_pairs(found.Z, found.flat)
+    stops, regions, significance = np.full(len(B), np.nan), *np.full((2, len(B) - 1), np.nan)
+    start, stop = find_longest_run(response_steps.find_informative(H))
     frames, pairs = slice(start, stop + 1), slice(start, stop)
     if stop - start < 2 or np.ptp(B[frames]) == 0:
-        return Contradictions(stops, regions, signs)
-    best = fit(H[pairs], B[frames], directions(B[frames]), sd=LOOSE)
-    stops[frames] = outstanding(best.x, B[frames]) / np.log(2)
-    regions[pairs], signs[pairs] = remainders(found._replace(Z=found.Z[frames]), B[frames], best)
-    return Contradictions(stops, regions, signs)
+        return Contradictions(stops, regions, significance)
+    best = response_steps.fit_steps(H[pairs], B[frames], response_steps.free_directions(B[frames]), sd=LOOSE)
+    stops[frames] = remove_trend(best.x, B[frames]) / np.log(2)
+    regions[pairs], significance[pairs] = measure_disagreement(
+        found._replace(Z=found.Z[frames]), B[frames], best
+    )
+    return Contradictions(stops, regions, significance)
 
 
-def longest_run(speaks: NDArray[np.bool_]) -> tuple[int, int]:
+def find_longest_run(informative: Mask) -> tuple[int, int]:
     """Return start and stop of the longest run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], speaks, [False]]).astype(int)))
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], informative, [False]]).astype(int)))
     runs = edges.reshape(-1, 2).tolist()
     start, stop = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
     return start, stop
 
 
-def outstanding(x: Float, B: Float) -> Float:
+def remove_trend(x: F64, B: F64) -> F64:
     """Return x less a straight line in B: that of two frames, which leaves the least sum of sqrt |x|."""
     left = [
         x - x[i] - (x[k] - x[i]) / (B[k] - B[i]) * (B - B[i])
@@ -127,7 +136,9 @@ def outstanding(x: Float, B: Float) -> Float:
     return min(left, key=lambda r: float(np.round(np.sqrt(np.abs(r)).sum(), 6)))
 
 
-def remainders(found: Flats, B: Float, best: Fit) -> tuple[Float, Float]:
+def measure_disagreement(
+    found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit
+) -> tuple[F64, F64]:
     """Return each pair's disagreement by place, (P - 1,), twice.
 
     In stops, where a quarter of the tiles are off by more; and in standard errors, where half of them are.
@@ -139,28 +150,28 @@ def remainders(found: Flats, B: Float, best: Fit) -> tuple[Float, Float]:
     out = np.full((2, len(B) - 1), np.nan)
     for j, step in enumerate(np.diff(B + best.x)):
         a, b = found.Z[j], found.Z[j + 1]
-        told = (W[a] * W[b] > TRUSTED).all(axis=0) & found.flat
-        r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0)[told] - step
-        medians, errors = _medians(r / np.log(2), tile[told])
+        trusted = (response_steps.W[a] * response_steps.W[b] > TRUSTED).all(axis=0) & found.flat
+        r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0)[trusted] - step
+        medians, errors = _tile_medians(r / np.log(2), tile[trusted])
         if len(medians):
             out[:, j] = np.quantile(np.abs(medians), 0.75), np.median(np.abs(medians) / errors)
     return out[0], out[1]
 
 
-def _medians(r: Float, tile: NDArray[np.intp]) -> tuple[Float, Float]:
-    """Return the median of r over each tile that SOME patches speak for, and its standard error.
+def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
+    """Return the median of r over each tile of at least FEWEST patches, and its standard error.
 
     That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal errors.
     """
     order = np.argsort(tile, kind="stable")
     groups = np.split(r[order], np.flatnonzero(np.diff(tile[order])) + 1)
-    told = [group for group in groups if len(group) >= SOME]
-    medians = np.array([np.median(group) for group in told])
-    sigma = np.array([1.48 * np.median(np.abs(group - np.median(group))) for group in told])
-    return medians, np.maximum(1.25 * sigma / np.sqrt([len(group) for group in told]), LEVEL)
+    large = [group for group in groups if len(group) >= FEWEST]
+    medians = np.array([np.median(group) for group in large])
+    sigma = np.array([1.48 * np.median(np.abs(group - np.median(group))) for group in large])
+    return medians, np.maximum(1.25 * sigma / np.sqrt([len(group) for group in large]), SMALLEST_ERROR)
 
 
-def doubt(found: Contradictions, names: Sequence[str]) -> str:
+def warn_of_contradictions(found: Contradictions, names: Sequence[str]) -> str:
     """Return the sentence on what is wrong, at which frame, by how much, and what to do; "" for nothing."""
     if found.local:
         j = int(np.nanargmax(found.regions))
@@ -173,8 +184,8 @@ def doubt(found: Contradictions, names: Sequence[str]) -> str:
     if not found.wrong:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)
-    told = np.isfinite(found.stops).sum()
-    other = " (of three it may also be the first or the last, by twice as much)" if told == 3 else ""
+    known = np.isfinite(found.stops).sum()
+    other = " (of three it may also be the first or the last, by twice as much)" if known == 3 else ""
     return (
         f"the photographs contradict their exposure times, in stops of exposure by the pixels over exposure "
         f"stated: {off}{other}; a factor for each frame explains them: correct these times, or estimate them "

@@ -1,31 +1,32 @@
 """Exposure times from the pixels, where the stated ones are rough.
 
 B       ln stated times   (P,)
-x       corrections       (P,), ln(time / stated time), as `steps` fits them: see there, for the gauge too
-spread  how far the frames contradict each other in the map that times make, stops: a function of the caller
+x       corrections       (P,), ln(time / stated time): see `response_steps`, for the gauge too
+spread  of the frames in the map that times make, stops: a function of the caller
 
 An estimate fits the pixels that it was made from better than any stated times, and may still be worse:
-motion, flare and a response that differs from frame to frame pass for wrong times. So it has to prove itself
-twice: on tiles of the picture that it has not seen, and in the map. Otherwise the stated times stay.
+motion, flare and a response that differs from frame to frame pass for wrong times. So it is validated
+twice: on held-out tiles of the picture, and in the map. Otherwise the stated times stay.
 """
 
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_stack, as_table
-from hdrlab.diagnostics.flats import Flats, flats, pair_tables, tiles
-from hdrlab.diagnostics.response_steps import ascending, biases, directions, fit, speaking
+from hdrlab.core.arrays import as_stack, as_table
+from hdrlab.core.types import F64
+from hdrlab.diagnostics import flat_patches, response_steps
 
-Float = NDArray[np.float64]
-FAR = 0.5  # stops: a time that was this far off is more than rough
-EXACT = 0.005  # stops of bias: times that agree so well are left alone
+# stops: a time that was this far off is more than rough
+FAR = 0.5
+# stops of bias: times that agree so well are left alone
+EXACT = 0.005
 
 
 class Estimate(NamedTuple):
-    """What the pixels say of the times.
+    """Exposure times by the pixels, and whether to use them.
 
     Attributes
     ----------
@@ -34,11 +35,11 @@ class Estimate(NamedTuple):
     accepted : whether the estimate is better, by pixels that it was not made from and by the spread
     reason : a sentence, why or why not
     bias_before, bias_after : stops by which pairs of frames disagree in held-out tiles
-    spread_before, spread_after : stops, as the caller's `spread` says; NaN where it was not asked
+    spread_before, spread_after : stops, by the caller's `spread`; NaN where it was not asked
     """
 
-    times: Float
-    stops: Float
+    times: F64
+    stops: F64
     accepted: bool
     reason: str
     bias_before: float = float("nan")
@@ -47,17 +48,17 @@ class Estimate(NamedTuple):
     spread_after: float = float("nan")
 
 
-def estimate(
+def estimate_times(
     images: ArrayLike,
     times: ArrayLike,
-    spread: Callable[[Float], float] | None = None,
+    spread: Callable[[F64], float] | None = None,
     *,
     g: ArrayLike | None = None,
     sd: float = 1 / 6,
     gain: float = 0.1,
     valid: ArrayLike | None = None,
 ) -> Estimate:
-    """Return the exposure times of a bracket, as its pixels have them where they prove it, else as stated.
+    """Return the exposure times of a bracket by its pixels where held-out ones confirm them, else as stated.
 
     Parameters
     ----------
@@ -93,33 +94,34 @@ def estimate(
     >>> from hdrlab.capture.room import scenes
     >>> room = scenes.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
-    >>> estimate(taken.images, taken.times * [1, 1, 1.1, 1, 1]).accepted
+    >>> estimate_times(taken.images, taken.times * [1, 1, 1.1, 1, 1]).accepted
     True
     """
     stack = as_stack(images)
-    times = ascending(times, len(stack))
+    times = response_steps.as_ascending_times(times, len(stack))
     B, nothing = np.log(times), np.zeros((len(times), 0))
-    Q = directions(B, known=g is not None)
-    table = None if g is None else _channels(g, stack)
+    Q = response_steps.free_directions(B, known=g is not None)
+    if g is not None:
+        g = np.broadcast_to(as_table(g, 256).reshape(256, -1).T, (stack[0, 0, 0].size, 256))
     kept = Estimate(times, np.zeros(len(times)), False, "")
     if Q.shape[1] == 0:
-        return kept._replace(reason="two photographs cannot tell their times from their response")
-    found = flats(stack, valid=valid)
-    H = pair_tables(found.Z, found.best)
-    if not speaking(H).any():
+        return kept._replace(reason="two photographs do not determine both their times and their response")
+    found = flat_patches.find_flat_patches(stack, valid=valid)
+    H = flat_patches.count_pairs(found.Z, found.best)
+    if not response_steps.find_informative(H).any():
         return kept._replace(reason="too few patches are flat in every photograph")
-    x = fit(H, B, Q, g=table, sd=sd).x
-    before, after = (held_out(found, B, one, g=table, sd=sd) for one in (nothing, Q))
+    x = response_steps.fit_steps(H, B, Q, g=g, sd=sd).x
+    before, after = (cross_validate(found, B, one, g=g, sd=sd) for one in (nothing, Q))
     kept = kept._replace(stops=x / np.log(2), bias_before=before, bias_after=after)
     if before <= EXACT:
         return kept._replace(reason=f"the stated times agree with the pixels to {before:.3f} stops")
     change = f"from {before:.3f} to {after:.3f} stops"
     if not after <= (1 - gain) * before:
         return kept._replace(reason=f"held-out pixels would agree no better ({change})")
-    return _judged(kept, np.exp(B + x), change, spread)
+    return _check_spread(kept, np.exp(B + x), change, spread)
 
 
-def _judged(kept: Estimate, times: Float, change: str, spread: Callable[[Float], float] | None) -> Estimate:
+def _check_spread(kept: Estimate, times: F64, change: str, spread: Callable[[F64], float] | None) -> Estimate:
     """Return the Estimate with other times, unless they raise the spread."""
     if spread is not None:
         kept = kept._replace(spread_before=spread(kept.times), spread_after=spread(times))
@@ -129,20 +131,13 @@ def _judged(kept: Estimate, times: Float, change: str, spread: Callable[[Float],
     return kept._replace(times=times, accepted=True, reason=f"held-out pixels disagree less, {change}")
 
 
-def _channels(g: ArrayLike, stack: Array) -> Float:
-    """Return a known response as (C, 256)."""
-    table = as_table(g, 256).reshape(256, -1).T
-    return np.broadcast_to(table, (stack[0, 0, 0].size, 256))
-
-
-def held_out(found: Flats, B: Float, Q: Float, **knobs: Any) -> float:
-    """Return the mean absolute bias, in stops, of each half's Fit in the other half's flat patches."""
-    half = tiles(found.flat.shape)
-    seen = []
-    for mine in (half, ~half):
-        own = fit(pair_tables(found.Z, found.best & mine), B, Q, **knobs)
-        seen.append(biases(pair_tables(found.Z, found.best & ~mine), B, own))
-    return float(np.nanmean(np.abs(seen))) if np.isfinite(seen).any() else float("nan")
+def cross_validate(found: flat_patches.FlatPatches, B: F64, Q: F64, *, g: F64 | None, sd: float) -> float:
+    """Return the mean absolute bias, in stops, of the fit to each half of the flat patches in the other."""
+    half = flat_patches.checkerboard(found.flat.shape)
+    H = [flat_patches.count_pairs(found.Z, found.best & part) for part in (half, ~half)]
+    fits = [response_steps.fit_steps(one, B, Q, g=g, sd=sd) for one in H]
+    biases = [response_steps.measure_biases(one, B, fit) for one, fit in zip(H[::-1], fits, strict=True)]
+    return float(np.nanmean(np.abs(biases))) if np.isfinite(biases).any() else float("nan")
 
 
 def note(found: Estimate, names: Sequence[str]) -> str:

@@ -7,22 +7,15 @@ from importlib import import_module
 from typing import Any
 
 PLACES = {
-    "Assembly": "assembly",
-    "Method": "assembly",
-    "aligned": "registration",
-    "moved": "registration",
-    "assemble": "stages",
-    "assemble_steps": "stages",
-    "STAGES": "stages",
-    "WEIGHTS": "stages",
-    "CONTRADICTION": "stages",
-    "develop": "pictures",
-    "own_saturation": "pictures",
+    "assembly": ("Assembly", "Method"),
+    "pictures": ("develop", "own_saturation"),
+    "registration": ("aligned", "moved"),
+    "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps"),
 }
-__all__ = list(PLACES)  # names, all of them
 
 
 def __getattr__(name: str) -> Any:
-    if name not in PLACES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{PLACES[name]}"), name)
+    for module, names in PLACES.items():
+        if name in names:
+            return getattr(import_module(f"{__name__}.{module}"), name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

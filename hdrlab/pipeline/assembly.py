@@ -25,7 +25,7 @@ class Assembly(NamedTuple):
     g : (n,) or (n, 3), response, ln exposure of each level
     E : (h, w) or (h, w, 3) float32, radiance
     quality : (h, w) uint8, how each pixel is known: flags of `radiance.merge.Quality`
-    medians : (P, C, 256), what each frame says of each level: see `diagnostics.consistency`
+    medians : (P, C, 256), log2 exposure of each level by each frame: see `diagnostics.consistency`
     notes : sentences, what to know about this map
     doubts : sentences, reasons not to trust it
     homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions included
@@ -49,4 +49,4 @@ class Assembly(NamedTuple):
     @property
     def spread(self) -> float:
         """How far the frames contradict each other, in stops; NaN before the last stage."""
-        return consistency.spread(self.medians) if self.medians is not None else float("nan")
+        return consistency.measure_spread(self.medians) if self.medians is not None else float("nan")

@@ -16,7 +16,7 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics import exposure_times as timing
-from hdrlab.diagnostics.contradictions import contradictions, doubt
+from hdrlab.diagnostics.contradictions import find_contradictions, warn_of_contradictions
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, Table
@@ -26,6 +26,7 @@ from hdrlab.radiance.deghosting import ghosts as moving
 from hdrlab.radiance.merge import METHODS, Merged
 
 STAGES = ("align", "response", "merge", "compare")
+TIMES = ("stated", "estimate")
 GHOSTS = ("none", "regions", "reference")
 FLARE = ("none", "glare")
 WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
@@ -103,12 +104,13 @@ def assemble_steps(
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
     _check_exposures(bracket)
-    if weight not in WEIGHTS:
-        raise ValueError(f"expected a weight out of {', '.join(WEIGHTS)}, got {weight!r}")
-    if method not in METHODS:
-        raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
-    if times not in ("stated", "estimate"):
-        raise ValueError(f"expected times out of stated, estimate, got {times!r}")
+    for what, given, known in (
+        ("a weight", weight, WEIGHTS),
+        ("a method", method, METHODS),
+        ("times", times, TIMES),
+    ):
+        if given not in known:
+            raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     if ghosts not in GHOSTS or flare not in FLARE:
         ways = f"ghosts out of {', '.join(GHOSTS)} and flare out of {', '.join(FLARE)}"
         raise ValueError(f"expected {ways}, got {ghosts!r} and {flare!r}")
@@ -128,7 +130,7 @@ def assemble_steps(
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
-    yield assess(state, consistency.level_medians(images, seconds, E, valid=valid))
+    yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
 
 
 def _check_exposures(bracket: Bracket) -> None:
@@ -174,10 +176,10 @@ def refine_times(
     def spread(times: NDArray[np.float64]) -> float:
         g = recover(images, times, valid=valid)
         E = merge(images, times, g, w(g), valid=valid).E
-        return consistency.spread(consistency.level_medians(images, times, E, valid=valid))
+        return consistency.measure_spread(consistency.measure_level_exposures(images, times, E, valid=valid))
 
     known = recover(images, stated, valid=valid) if response == "linear" else None
-    found = timing.estimate(images, stated, spread, g=known, valid=valid)
+    found = timing.estimate_times(images, stated, spread, g=known, valid=valid)
     bracket = state.bracket._replace(times=found.times)
     notes, doubts = (*state.notes, timing.note(found, names)), (*state.doubts, *timing.doubts(found))
     return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
@@ -190,9 +192,9 @@ def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
     alone = "no level stands in two frames, so the times cannot be compared with the pixels"
     if np.isnan(state.spread):
         return state._replace(notes=(*state.notes, alone))
-    said = doubt(contradictions(images, times, valid=valid), names)
+    said = warn_of_contradictions(find_contradictions(images, times, valid=valid), names)
     if not said and state.spread > CONTRADICTION:
-        stops = zip(names, consistency.deviations(medians), strict=True)
+        stops = zip(names, consistency.measure_deviations(medians), strict=True)
         off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
         said = (
             f"the photographs contradict their exposure times by {state.spread:.2f} stops ({off}): "

@@ -5,7 +5,7 @@ t, B   exposure times    (P,) seconds, and ln t
 g      ln f^-1           (n,) or (n, C), ln exposure of each level; X = exp(g(Z))
 w      weights           (n,), how far to trust a level
 W      weights in use    (P, H, W, C), w(Z), or 0 where a frame measures nothing
-top    first clipped level; a level from there on says only "at least", level 0 only "at most"
+top    first clipped level; a level from there on means "at least", level 0 "at most"
 shown  (P, H, W, C) bool, False where a frame shows nothing of the scene
 E      radiance          (H, W[, C]) float32: 1 brings a pixel to level n / 2 in one second
 

@@ -21,19 +21,21 @@ def bracket(decades):
 def medians(taken, times, g=G):
     """Return the level medians of the map that these times make."""
     E = merge(taken.images, times, g, gaussian(65536 if taken.images.dtype == np.uint16 else 256))
-    return consistency.level_medians(taken.images, times, E)
+    return consistency.measure_level_exposures(taken.images, times, E)
 
 
 def test_a_perfect_bracket_has_no_spread(bracket):
     E, taken = bracket
-    true = consistency.level_medians(taken.images, taken.times, E)
-    assert consistency.spread(true) < 0.003  # what is left are the medians of some hundred pixels
-    assert consistency.spread(medians(taken, taken.times)) < 0.003
+    true = consistency.measure_level_exposures(taken.images, taken.times, E)
+    assert consistency.measure_spread(true) < 0.003  # what is left are the medians of some hundred pixels
+    assert consistency.measure_spread(medians(taken, taken.times)) < 0.003
 
 
 def test_the_medians_are_the_response_in_stops(bracket):
     E, taken = bracket
-    found = np.nanmean(consistency.level_medians(taken.images, taken.times, E)[:, 0, 30:226], axis=0)
+    found = np.nanmean(
+        consistency.measure_level_exposures(taken.images, taken.times, E)[:, 0, 30:226], axis=0
+    )
     expected = G[30:226] / np.log(2)
     assert np.allclose(found - found[98], expected - expected[98], atol=0.02)  # level 128
 
@@ -44,7 +46,7 @@ def test_the_spread_grows_with_the_error_of_a_time(bracket):
     for stops in (0, 0.1, 0.3, 1):
         times = taken.times.copy()
         times[2] *= 2**stops
-        spreads.append(consistency.spread(medians(taken, times)))
+        spreads.append(consistency.measure_spread(medians(taken, times)))
     assert np.all(np.diff(spreads) > 0.01) and spreads[-1] > 0.2
 
 
@@ -56,23 +58,23 @@ def test_the_frame_whose_time_is_wrong_departs_to_its_side_and_no_other_but_its_
     _, taken = bracket
     times = taken.times.copy()
     times[frame] *= 2**stops
-    apart = consistency.deviations(medians(taken, times))
+    apart = consistency.measure_deviations(medians(taken, times))
     named = np.flatnonzero(np.abs(apart) > 0.1)
     assert frame in named and np.sign(apart[frame]) == np.sign(stops)
     assert set(named) <= {frame - 1, frame, frame + 1}  # a neighbour, which the map draws to the other side
-    assert np.all(np.abs(consistency.deviations(medians(taken, taken.times))) < 0.01)
+    assert np.all(np.abs(consistency.measure_deviations(medians(taken, taken.times))) < 0.01)
 
 
 def test_a_wrong_response_shows_where_the_frames_are_merged(bracket):
     _, taken = bracket
-    assert consistency.spread(medians(taken, taken.times, responses.true_g("linear"))) > 0.1
+    assert consistency.measure_spread(medians(taken, taken.times, responses.true_g("linear"))) > 0.1
 
 
 def test_the_unit_of_the_map_does_not_matter(bracket):
     E, taken = bracket
-    one, other = (consistency.level_medians(taken.images, taken.times, k * E) for k in (1, 1000))
-    assert np.isclose(consistency.spread(one), consistency.spread(other), atol=1e-5)
-    assert np.allclose(consistency.deviations(one), consistency.deviations(other), atol=1e-5)
+    one, other = (consistency.measure_level_exposures(taken.images, taken.times, k * E) for k in (1, 1000))
+    assert np.isclose(consistency.measure_spread(one), consistency.measure_spread(other), atol=1e-5)
+    assert np.allclose(consistency.measure_deviations(one), consistency.measure_deviations(other), atol=1e-5)
 
 
 @pytest.mark.parametrize("channels", [(), (3,)])
@@ -80,17 +82,17 @@ def test_the_unit_of_the_map_does_not_matter(bracket):
 def test_there_is_a_median_per_frame_channel_and_level_of_256(channels, dtype):
     images = np.full((2, 20, 30, *channels), 100, dtype) * (257 if dtype == np.uint16 else 1)
     E = np.full(images.shape[1:], 4, np.float32)
-    found = consistency.level_medians(images, [1, 2], E)
+    found = consistency.measure_level_exposures(images, [1, 2], E)
     assert found.shape == (2, 3 if channels else 1, 256)
     assert np.all(found[0, :, 100] == 2) and np.all(found[1, :, 100] == 3)
     assert np.isnan(found).sum() == found.size - found[..., 100].size
-    assert consistency.spread(np.where(np.arange(256) < 30, np.nan, found)) == 0.5
+    assert consistency.measure_spread(np.where(np.arange(256) < 30, np.nan, found)) == 0.5
 
 
 def test_a_level_counts_with_enough_pixels_that_are_not_clipped_in_any_channel():
     images = np.full((2, 10, 10, 3), 100, np.uint8)
     images[1, :6, :, 0] = 255
-    found = consistency.level_medians(images, [1, 2], np.ones((10, 10, 3)))
+    found = consistency.measure_level_exposures(images, [1, 2], np.ones((10, 10, 3)))
     assert np.isfinite(found[0, :, 100]).all() and np.isnan(found[1]).all()  # 40 pixels are too few
 
 
@@ -100,15 +102,17 @@ def test_pixels_that_a_frame_does_not_show_and_pixels_of_0_are_left_out():
     E[:5] = 0
     valid = np.ones(images.shape, bool)
     images[1, 5:10], valid[1, 5:10] = 180, False
-    found = consistency.level_medians(images, [1, 2], E, valid=valid)
+    found = consistency.measure_level_exposures(images, [1, 2], E, valid=valid)
     assert found[0, 0, 100] == 0 and found[1, 0, 100] == 1 and np.isnan(found[1, 0, 180])
-    assert np.isfinite(consistency.level_medians(images, [1, 2], E)[1, 0, 180])
+    assert np.isfinite(consistency.measure_level_exposures(images, [1, 2], E)[1, 0, 180])
 
 
 def test_frames_that_share_no_level_have_no_spread_and_no_deviation():
     images = np.stack([np.full((10, 10), z, np.uint8) for z in (60, 200)])
-    found = consistency.level_medians(images, [1, 4], np.ones((10, 10)))
-    assert np.isnan(consistency.spread(found)) and np.isnan(consistency.deviations(found)).all()
+    found = consistency.measure_level_exposures(images, [1, 4], np.ones((10, 10)))
+    assert (
+        np.isnan(consistency.measure_spread(found)) and np.isnan(consistency.measure_deviations(found)).all()
+    )
 
 
 @pytest.mark.parametrize(
@@ -123,4 +127,4 @@ def test_frames_that_share_no_level_have_no_spread_and_no_deviation():
 def test_what_does_not_fit_together_is_refused(given, said):
     knobs = {"images": np.zeros((2, 4, 5), np.uint8), "times": [1, 2], "E": np.ones((4, 5))} | given
     with pytest.raises(ValueError, match=said):
-        consistency.level_medians(**knobs)
+        consistency.measure_level_exposures(**knobs)

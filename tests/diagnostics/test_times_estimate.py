@@ -10,9 +10,14 @@ from scipy.ndimage import gaussian_filter
 from hdrlab import cli, pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.weights import gaussian
-from hdrlab.diagnostics import consistency, flats, response_steps
-from hdrlab.diagnostics.contradictions import Contradictions, contradictions, doubt, outstanding
-from hdrlab.diagnostics.exposure_times import estimate, note
+from hdrlab.diagnostics import consistency, flat_patches, response_steps
+from hdrlab.diagnostics.contradictions import (
+    Contradictions,
+    find_contradictions,
+    remove_trend,
+    warn_of_contradictions,
+)
+from hdrlab.diagnostics.exposure_times import estimate_times, note
 from hdrlab.fast import debevec
 from hdrlab.fast.merge import merge
 from hdrlab.response import linear
@@ -36,12 +41,14 @@ def taken():
 def spread(images, times):
     """Return the spread of the map of these times, stops."""
     g = debevec.recover(images, times)
-    return consistency.spread(consistency.level_medians(images, times, merge(images, times, g, gaussian())))
+    return consistency.measure_spread(
+        consistency.measure_level_exposures(images, times, merge(images, times, g, gaussian()))
+    )
 
 
 def off_by(factors, found, stated):
     """Return how far estimated times are from the true ones, stops, without what the gauge leaves open."""
-    Q = response_steps.directions(np.log(stated))
+    Q = response_steps.free_directions(np.log(stated))
     return Q @ Q.T @ (found.stops + np.log2(factors))
 
 
@@ -61,7 +68,7 @@ def test_a_patch_is_the_mean_of_its_pixels_and_flat_where_these_are_alike():
     images[0, 7, 0] = 113
     images[1, 7:, 14:] = 90
     images[1, 0, 20] = 251
-    found = flats.flats(images)
+    found = flat_patches.find_flat_patches(images)
     assert found.Z.shape == (2, 1, 2, 3) and found.Z[0, 0, 0, 0] == np.round(images[0, :7, :7].mean())
     assert found.flat.tolist() == [[True, True, False], [False, True, True]]
     assert found.static.tolist() == [[True, True, True], [True, True, False]]
@@ -74,7 +81,7 @@ def test_patches_of_16_bits_are_those_of_8_and_a_mask_leaves_its_own_out(dtype):
     images = (levels * (257 if dtype == np.uint16 else 1)).astype(dtype)
     valid = np.ones((3, 30, 40), bool)
     valid[1, 8, 8] = False
-    found = flats.flats(images, valid=valid)
+    found = flat_patches.find_flat_patches(images, valid=valid)
     expected = np.round(levels[:, :28, :35].reshape(3, 4, 7, 5, 7, 3).mean(axis=(2, 4)))
     expected[1, 1, 1] = 0
     assert np.abs(np.moveaxis(found.Z, 1, -1) - expected).max() <= (dtype == np.uint16)
@@ -82,7 +89,7 @@ def test_patches_of_16_bits_are_those_of_8_and_a_mask_leaves_its_own_out(dtype):
 
 def test_pair_tables_count_the_patches_of_each_pair_of_levels():
     Z = np.array([10, 10, 20, 0, 30, 40, 40, 40], np.uint8).reshape(2, 1, 1, 4)
-    H = flats.pair_tables(Z, np.array([[True, True, True, True]]))
+    H = flat_patches.count_pairs(Z, np.array([[True, True, True, True]]))
     assert H.shape == (1, 1, 256, 256) and H.sum() == 3
     assert H[0, 0, 10, 30] == H[0, 0, 10, 40] == H[0, 0, 20, 40] == 1
 
@@ -91,9 +98,9 @@ def test_a_large_picture_is_read_on_an_even_grid_of_patches(monkeypatch):
     images = np.repeat(np.arange(10, 210, 5, dtype=np.uint8), 7)[None, :, None] * np.ones(
         (2, 1, 70), np.uint8
     )
-    every = flats.flats(images).Z
-    monkeypatch.setattr(flats, "PATCHES", 40 * 10 // 4)
-    assert np.array_equal(flats.flats(images).Z, every[:, :, ::2, ::2])
+    every = flat_patches.find_flat_patches(images).Z
+    monkeypatch.setattr(flat_patches, "PATCHES", 40 * 10 // 4)
+    assert np.array_equal(flat_patches.find_flat_patches(images).Z, every[:, :, ::2, ::2])
 
 
 # Estimates
@@ -103,7 +110,7 @@ def test_a_large_picture_is_read_on_an_even_grid_of_patches(monkeypatch):
 def test_times_off_by_up_to_a_tenth_are_recovered(taken, count, seed):
     images, true = taken(count, seed=seed)[:2]
     factors = np.random.default_rng(seed).uniform(0.9, 1.1, count)
-    found = estimate(images, true * factors, lambda times: spread(images, times))
+    found = estimate_times(images, true * factors, lambda times: spread(images, times))
     assert found.accepted and np.abs(off_by(factors, found, true * factors)).max() < 0.02
     assert found.bias_after < 0.2 * found.bias_before and found.spread_after < 0.2 * found.spread_before
     assert np.allclose(found.times, true * factors * 2**found.stops, rtol=1e-12)
@@ -113,28 +120,28 @@ def test_of_a_linear_camera_the_span_is_recovered_as_well(taken):
     images, true = taken(5, "linear")[:2]
     factors = 0.97 ** np.arange(-2, 3)
     g = linear.recover(images, true)
-    found = estimate(images, true * factors, g=g)
+    found = estimate_times(images, true * factors, g=g)
     assert found.accepted and np.abs(found.stops + np.log2(factors)).max() < 0.02
     assert (
-        np.abs(estimate(images, true * factors).stops).max() < 0.005
+        np.abs(estimate_times(images, true * factors).stops).max() < 0.005
     )  # it is the exponent of an unknown one
-    assert not estimate(images, true, g=g).accepted
+    assert not estimate_times(images, true, g=g).accepted
 
 
 def test_the_gauge_keeps_the_mean_and_the_span_of_the_stated_times(taken):
     images, true = taken(5)[:2]
     stated = true * [1, 1.1, 0.9, 1, 1.05]
-    found = estimate(images, stated)
+    found = estimate_times(images, stated)
     B = np.log(stated)
     assert abs(found.stops.mean()) < 1e-9 and abs(found.stops @ (B - B.mean())) < 1e-9
-    other = estimate(images, 60 * stated)
+    other = estimate_times(images, 60 * stated)
     assert np.allclose(other.stops, found.stops, atol=1e-9) and np.allclose(other.times, 60 * found.times)
 
 
 @pytest.mark.parametrize("count", [3, 5, 7])
 def test_exact_times_are_left_as_they_are(taken, count):
     images, true = taken(count)[:2]
-    found = estimate(images, true)
+    found = estimate_times(images, true)
     assert not found.accepted and np.array_equal(found.times, true)
     assert np.abs(found.stops).max() < 0.005 and found.reason.startswith("the stated times agree")
 
@@ -142,7 +149,7 @@ def test_exact_times_are_left_as_they_are(taken, count):
 def test_an_estimate_is_shrunk_to_the_stated_times(taken):
     images, true = taken(5)[:2]
     stated = true * [1, 1, 1.1, 1, 1]
-    sizes = [np.linalg.norm(estimate(images, stated, sd=sd).stops) for sd in (1e-3, 1e-2, 1)]
+    sizes = [np.linalg.norm(estimate_times(images, stated, sd=sd).stops) for sd in (1e-3, 1e-2, 1)]
     assert sizes[0] < 0.01 < 0.1 < sizes[-1] and np.all(np.diff(sizes) > 0)
 
 
@@ -150,19 +157,19 @@ def test_an_estimate_is_shrunk_to_the_stated_times(taken):
 def test_an_estimate_that_would_raise_the_spread_is_refused(taken, verdict):
     images, true = taken(5)[:2]
     stated = true * [1, 1, 1.1, 1, 1]
-    found = estimate(images, stated, lambda times: 0.01 if np.array_equal(times, stated) else verdict)
+    found = estimate_times(images, stated, lambda times: 0.01 if np.array_equal(times, stated) else verdict)
     assert not found.accepted and np.array_equal(found.times, stated) and "spread would rise" in found.reason
     assert "stated times stay" in note(found, "abcde")
 
 
 def test_times_are_not_estimated_from_two_photographs_or_without_flat_patches(taken):
     images, true = taken(5)[:2]
-    assert "two photographs" in estimate(images[:2], true[:2]).reason
+    assert "two photographs" in estimate_times(images[:2], true[:2]).reason
     noise = np.random.default_rng(0).integers(0, 256, (3, 60, 80, 3), dtype=np.uint8)
-    assert "too few patches" in estimate(noise, [1, 2, 4]).reason
+    assert "too few patches" in estimate_times(noise, [1, 2, 4]).reason
 
 
-@pytest.mark.parametrize("verb", [estimate, contradictions])
+@pytest.mark.parametrize("verb", [estimate_times, find_contradictions])
 @pytest.mark.parametrize(
     ("times", "said"), [([1, 2], "expected 3 exposure times"), ([1, 4, 2], "from short to long")]
 )
@@ -180,48 +187,48 @@ def test_the_frame_whose_time_is_wrong_is_named_with_its_factor(taken, frame, st
     images, times, names = taken(5)[:3]
     wrong = times.copy()
     wrong[frame] *= 2**stops
-    found = contradictions(images, wrong)
+    found = find_contradictions(images, wrong)
     assert found.wrong == (frame,) and not found.local
     assert abs(found.stops[frame] + stops) < 0.15  # its own error bends the exponent of the response a little
     assert np.abs(np.delete(found.stops, frame)).max() < 0.03
-    assert f"{names[frame]} by {found.stops[frame]:+.2f}" in doubt(found, names)
+    assert f"{names[frame]} by {found.stops[frame]:+.2f}" in warn_of_contradictions(found, names)
 
 
 @pytest.mark.parametrize("count", [3, 4, 5, 7])
 def test_true_times_are_not_contradicted(taken, count):
     taken = taken(count)
-    found = contradictions(taken.images, taken.times)
+    found = find_contradictions(taken.images, taken.times)
     assert np.nanmax(np.abs(found.stops)) < 0.02 and np.nanmax(found.regions) < 0.01
-    assert doubt(found, taken.names) == ""
+    assert warn_of_contradictions(found, taken.names) == ""
 
 
 def test_of_three_frames_the_doubt_names_one_and_says_that_it_may_be_another(taken):
     images, times, names = taken(3)[:3]
-    said = doubt(contradictions(images, times * [1, 2, 1]), names)
+    said = warn_of_contradictions(find_contradictions(images, times * [1, 2, 1]), names)
     assert "frame 2 by -" in said and "of three it may also be" in said
 
 
 @pytest.mark.parametrize("count", [3, 5])
 def test_local_tone_mapping_is_told_from_wrong_times(taken, count):
     images, times, names = taken(count)[:3]
-    found = contradictions(tone_mapped(images), times)
-    assert found.local and "one response cannot explain" in doubt(found, names)
+    found = find_contradictions(tone_mapped(images), times)
+    assert found.local and "one response cannot explain" in warn_of_contradictions(found, names)
     curve = np.round(255 * (np.arange(256) / 255) ** 0.7).astype(np.uint8)
-    same = contradictions(curve[images], times)  # one and the same tone curve for all is a response
-    assert not same.local and doubt(same, names) == ""
+    same = find_contradictions(curve[images], times)  # one and the same tone curve for all is a response
+    assert not same.local and warn_of_contradictions(same, names) == ""
 
 
 @pytest.mark.parametrize(("strength", "local"), [(0, False), (0.3, True), (0.4, True)])
 def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(photographs, strength, local):
     """frobisher has 426 x 640 pixels, and true times; at 0.3 its parts disagree by 0.08 stops."""
     images, times = photographs("frobisher")[:2]
-    assert contradictions(tone_mapped(images, strength, 32), times).local == local
+    assert find_contradictions(tone_mapped(images, strength, 32), times).local == local
 
 
 @pytest.mark.parametrize("count", [5, 7])
 def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_frames_on(taken, count):
     images, times = taken(count)[:2]
-    assert contradictions(tone_mapped(images, 0.2), times).local
+    assert find_contradictions(tone_mapped(images, 0.2), times).local
 
 
 def test_what_is_slight_counts_only_where_it_is_sure():
@@ -232,15 +239,15 @@ def test_what_is_slight_counts_only_where_it_is_sure():
 
 def test_frames_that_no_patch_ties_to_others_are_left_open():
     images = np.stack([np.full((70, 70), z, np.uint8) for z in (40, 120, 255)])
-    found = contradictions(images, [1, 2, 4])
+    found = find_contradictions(images, [1, 2, 4])
     assert np.isnan(found.stops).all() and np.isnan(found.regions).all()
-    assert found.wrong == () and not found.local and doubt(found, "abc") == ""
-    assert doubt(Contradictions(np.array([0, np.nan, 1.0]), np.full(2, np.nan)), "abc")
+    assert found.wrong == () and not found.local and warn_of_contradictions(found, "abc") == ""
+    assert warn_of_contradictions(Contradictions(np.array([0, np.nan, 1.0]), np.full(2, np.nan)), "abc")
 
 
 def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
     B = np.arange(5.0)
-    assert np.allclose(outstanding(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5])
+    assert np.allclose(remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5])
 
 
 # In the pipeline
@@ -329,9 +336,9 @@ def test_real_photographs_agree_better_with_estimated_times_or_keep_those_stated
 def test_the_phone_has_wrong_times_and_not_a_response_that_differs_by_place(photographs):
     taken = photographs("tripod_phone")
     taken = pipeline.aligned(taken, "mtb").bracket
-    found = contradictions(taken.images, taken.times)
+    found = find_contradictions(taken.images, taken.times)
     assert not found.local and np.nanmax(found.regions) < 0.1
     assert {taken.names[j] for j in found.wrong} >= {"img-3.jpeg", "img-1.jpeg"}
-    assert "contradict their exposure times" in doubt(found, taken.names)
-    other = estimate(taken.images, taken.times)
+    assert "contradict their exposure times" in warn_of_contradictions(found, taken.names)
+    other = estimate_times(taken.images, taken.times)
     assert other.accepted and other.bias_after < 0.1 * other.bias_before

@@ -136,8 +136,8 @@ def test_a_border_that_the_mask_hides_does_not_count_as_a_contradiction(room):
     images[1:4, :100], valid[1:4, :100] = np.linspace(40, 220, 192).astype(np.uint8)[:, None], False
     masked = assemble(bracket(images, taken.times, valid=valid), align="none")
     assert masked.spread < 0.05 and masked.doubts == ()
-    blind = consistency.level_medians(images, taken.times, masked.E)
-    assert consistency.spread(blind) > pipeline.CONTRADICTION
+    blind = consistency.measure_level_exposures(images, taken.times, masked.E)
+    assert consistency.measure_spread(blind) > pipeline.CONTRADICTION
 
 
 def test_the_photographs_that_were_given_stay_as_they_are(hand_held):

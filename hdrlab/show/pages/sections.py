@@ -30,7 +30,7 @@ Image = NDArray[np.uint8]
 def facts(E: Array, quality: Image, medians: Float) -> list[tuple[str, str]]:
     """Return the figures that stand beside the picture: (value, what it is)."""
     low, high = np.nanpercentile(figures.stops(E), [0.1, 99.9])
-    spread = consistency.spread(medians)
+    spread = consistency.measure_spread(medians)
     return [
         (
             f"{high - low:.1f} stops",
@@ -113,7 +113,7 @@ def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
     """Return how far each frame departs from what all say, as numbers and as bars."""
     shared = np.isfinite(medians[..., consistency.LEVELS])
     shared &= shared.sum(axis=0) >= 2
-    spread, found = consistency.spread(medians), consistency.deviations(medians)
+    spread, found = consistency.measure_spread(medians), consistency.measure_deviations(medians)
     counts = shared.any(axis=1).sum(axis=1).tolist()
     bars = np.nan_to_num(found)  # none, for a frame of which nothing is known
     widest = max(np.abs(bars).max(), CLOSE)

@@ -1,4 +1,4 @@
-"""What neighbouring frames say of patches that are flat: the evidence on exposure times.
+"""Flat patches of neighbouring frames: the evidence on exposure times.
 
 images  (P, H, W[, 3]) uint8 or uint16, from short to long
 Z       levels of patches    (P, C, h, w) uint8, 0 ... 255; 0 where a pixel of it is clipped or black
@@ -14,22 +14,27 @@ from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import Array, as_mask, as_stack, to_256
+from hdrlab.core.types import F64, Flags, Mask
 
-Mask = NDArray[np.bool_]
-SIDE = 7  # of a patch, pixels
-RANGE = 12  # levels between the darkest and the brightest pixel of a flat patch
-BLACK, TOP = 4, 250  # a patch with a pixel below or above is not a measurement
-PATCHES = 60_000  # of larger pictures, about so many on an even grid
-NOISE = 1  # a level by which a patch may darken and still count as static
+# of a patch, pixels
+SIDE = 7
+# levels between the darkest and the brightest pixel of a flat patch
+RANGE = 12
+# a patch with a pixel below or above is not a measurement
+BLACK, TOP = 4, 250
+# of larger pictures, about so many on an even grid
+PATCHES = 60_000
+# levels by which a patch may darken and still count as static
+NOISE = 1
 
 
-class Flats(NamedTuple):
+class FlatPatches(NamedTuple):
     """Patches Z (P, C, h, w), which of them are static (h, w), and which are flat in every frame (h, w)."""
 
-    Z: NDArray[np.uint8]
+    Z: Flags
     static: Mask
     flat: Mask
 
@@ -39,31 +44,31 @@ class Flats(NamedTuple):
         return self.flat & self.static
 
 
-def flats(images: ArrayLike, *, valid: ArrayLike | None = None) -> Flats:
+def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> FlatPatches:
     """Return the patches of aligned photographs: their mean levels, and which are static, and flat."""
     stack = as_stack(images)
     mask = as_mask(valid, stack)
     apart = SIDE * max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PATCHES) / SIDE))
     Z, flat = [], []
     for j, frame in enumerate(stack.reshape(*stack.shape[:3], -1)):
-        low, high = (to_256(_gathered(op, frame, apart)) for op in (np.minimum, np.maximum))
+        low, high = (to_256(_reduce_patches(op, frame, apart)) for op in (np.minimum, np.maximum))
         mean = to_256(_mean(frame, apart))
         whole = np.all((low >= BLACK) & (high <= TOP), axis=-1)
         if mask is not None:
-            whole = whole & _gathered(np.minimum, mask[j, ..., None], apart)[..., 0]
+            whole = whole & _reduce_patches(np.minimum, mask[j, ..., None], apart)[..., 0]
         Z.append(np.moveaxis(np.where(whole[..., None], mean, 0), -1, 0))
         flat.append(np.all(high - low <= RANGE, axis=-1))
     levels = np.stack(Z).astype(np.uint8)
-    return Flats(levels, _rising(levels), np.all(flat, axis=0))
+    return FlatPatches(levels, _find_static(levels), np.all(flat, axis=0))
 
 
-def _gathered(op: np.ufunc, frame: Array, apart: int) -> Array:
+def _reduce_patches(op: np.ufunc, frame: Array, apart: int) -> Array:
     """Return op over the pixels of each patch, (h, w, C), of patches that begin so many pixels apart."""
-    rows = reduce(op, _phases(frame, apart))
-    return np.swapaxes(reduce(op, _phases(np.swapaxes(rows, 0, 1), apart)), 0, 1)
+    rows = reduce(op, _patch_rows(frame, apart))
+    return np.swapaxes(reduce(op, _patch_rows(np.swapaxes(rows, 0, 1), apart)), 0, 1)
 
 
-def _phases(frame: Array, apart: int) -> Iterator[Array]:
+def _patch_rows(frame: Array, apart: int) -> Iterator[Array]:
     """Yield the k-th row of each patch, for each k; a frame that is smaller than a patch is one."""
     side = min(SIDE, len(frame))
     whole = len(frame) // side * side
@@ -73,18 +78,18 @@ def _phases(frame: Array, apart: int) -> Iterator[Array]:
 def _mean(frame: Array, apart: int) -> Array:
     """Return the mean of each patch, (h, w, C), rounded to a level of the frame's."""
     count = min(SIDE, frame.shape[0]) * min(SIDE, frame.shape[1])
-    total = _gathered(np.add, frame.astype(np.uint32), apart)
+    total = _reduce_patches(np.add, frame.astype(np.uint32), apart)
     return ((total + count // 2) // count).astype(frame.dtype)
 
 
-def _rising(Z: NDArray[np.uint8]) -> Mask:
+def _find_static(Z: Flags) -> Mask:
     """Return where no frame is darker than the one before, in no channel, (h, w)."""
     both = (Z[:-1] > 0) & (Z[1:] > 0)
     darker = both & (Z[1:].astype(np.int16) < Z[:-1].astype(np.int16) - NOISE)
     return ~np.any(darker, axis=(0, 1))
 
 
-def pair_tables(Z: NDArray[np.uint8], chosen: Mask) -> NDArray[np.float64]:
+def count_pairs(Z: Flags, chosen: Mask) -> F64:
     """Return H (P - 1, C, 256, 256): how many chosen patches have level a in one frame and b in the next."""
     P, C = Z.shape[:2]
     picked = Z[..., chosen].astype(np.intp)
@@ -95,12 +100,12 @@ def pair_tables(Z: NDArray[np.uint8], chosen: Mask) -> NDArray[np.float64]:
     return H
 
 
-def tiles(shape: tuple[int, int], *, side: int = 6) -> Mask:
+def checkerboard(shape: tuple[int, int], *, side: int = 6) -> Mask:
     """Return the black squares of a chessboard over the patches, (h, w): half to fit, half to hold out.
 
     Examples
     --------
-    >>> tiles((4, 6), side=2).astype(int).tolist()
+    >>> checkerboard((4, 6), side=2).astype(int).tolist()
     [[1, 1, 0, 0, 1, 1], [1, 1, 0, 0, 1, 1], [0, 0, 1, 1, 0, 0], [0, 0, 1, 1, 0, 0]]
     """
     y, x = np.indices(shape)
