@@ -27,6 +27,7 @@ from scipy.ndimage import gaussian_filter, map_coordinates
 from skimage.transform import downscale_local_mean
 
 from hdrlab.core import warp
+from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F32, F64, Array, Mask
 
 # of the range of levels: noise below, saturation above
@@ -113,15 +114,6 @@ def error(d: F64) -> float:
     return float(np.mean(measured**2)) if len(measured) > LEAST * len(d) else NONE
 
 
-def transfer(dark: Array, bright: Array, n: int) -> F64:
-    """Return T (n,), the level in `bright` of what is z in `dark`: that of equal rank [Grossberg03]."""
-    ranks = []
-    for Z in (dark, bright):
-        h = np.bincount(Z.ravel(), minlength=n)
-        ranks.append((np.cumsum(h) - h / 2) / Z.size)
-    return np.interp(ranks[0], ranks[1], np.arange(n))
-
-
 def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     """Return k from the histograms, which need no alignment: the median of what both measure.
 
@@ -131,9 +123,10 @@ def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     >>> round(exposure_ratio(Z, 3 * Z, np.log(np.arange(256) + 1e-9)), 3)
     3.0
     """
-    z, T, top = np.arange(len(g)), transfer(dark, bright, len(g)), len(g) - 1
-    both = (np.minimum(z, T) > DARK * top) & (np.maximum(z, T) < BRIGHT * top)
-    h = np.bincount(dark.ravel(), minlength=len(g))[both]
+    h_dark, h_bright = histograms([dark, bright])[0]
+    z, T, top = np.arange(len(g)), brightness_transfer(h_dark, h_bright), len(g) - 1
+    both = (np.minimum(z, T) > DARK * top) & (np.maximum(z, T) < BRIGHT * top)  # NaN is neither
+    h = h_dark[both]
     if not h.any():
         return 1.0
     steps = np.interp(T, z, g)[both] - g[both]

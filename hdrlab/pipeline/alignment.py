@@ -19,6 +19,7 @@ from hdrlab.core import warp
 from hdrlab.core.arrays import as_stack, as_table, as_times, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.steps import last
+from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F32, F64, Array
 from hdrlab.diagnostics import registration as judgement
 from hdrlab.diagnostics.registration import Validation
@@ -138,7 +139,10 @@ def light_pairs(
         f_inv = np.exp(as_table(g, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
     for moving, fixed in pairwise(mtb.by_brightness(images)):
         if g is None:
-            matched = np.interp(light.transfer(Z[moving], Z[fixed], n), np.arange(n), f_inv)
+            T = brightness_transfer(*histograms(Z[[moving, fixed]])[0])
+            T[0], T[-1] = 0, n - 1
+            z, known = np.arange(n), np.flatnonzero(np.isfinite(T))
+            matched = np.interp(np.interp(z, known, T[known]), z, f_inv)
             pyramid = light.pair(Z[fixed], Z[moving], f_inv, matched)
             yield moving, fixed, [np.stack([x / light.local_mean(x) for x in X]) for X in pyramid]
             continue
