@@ -3,8 +3,6 @@
 import laws
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import transfer, weights
@@ -12,51 +10,6 @@ from hdrlab.response import grossberg
 
 CURVES = sorted(responses.RESPONSES)
 MODELS = {"table": grossberg.recover, "polynomial": grossberg.recover_polynomial}
-
-
-# Brightness transfer
-
-
-def test_a_photograph_is_taken_to_itself():
-    h = np.random.default_rng(0).integers(1, 50, 256)
-    T = transfer.brightness_transfer(h, h)
-    assert np.allclose(T[1:-1], np.arange(1, 255)) and np.isnan(T[[0, -1]]).all()
-    assert np.allclose(transfer.literal_transfer(h, h), np.arange(256))
-
-
-@given(k=st.integers(2, 6))
-def test_of_even_light_the_middles_of_steps_lie_on_the_line_and_their_edges_beside_it(k):
-    """A linear camera, light evenly spread: T = k m, where the literal one has k m + (k - 1) / 2."""
-    light = (np.arange(200_000) + 0.5) / 200_000 * 240
-    h = [np.bincount(np.floor(light * s + 0.5).astype(int), minlength=256) for s in (1 / k, 1)]
-    m = np.arange(2, 220 // k)
-    assert np.allclose(transfer.brightness_transfer(*h)[m], k * m, atol=0.01)
-    assert np.allclose(transfer.literal_transfer(*h)[m], k * m + (k - 1) / 2, atol=0.01)
-
-
-@given(st.integers(0, 99), st.booleans())
-def test_a_transfer_never_falls_and_does_not_ask_how_many_pixels_there_are(seed, sparse):
-    rng = np.random.default_rng(seed)
-    h_A, h_B = rng.integers(0, 2 if sparse else 90, (2, 256)) + np.eye(256, dtype=int)[[9, 200]]
-    for way in (transfer.literal_transfer, transfer.brightness_transfer):
-        T = way(h_A, h_B)
-        assert np.all(np.diff(T[np.isfinite(T)]) >= 0)
-        assert np.allclose(way(3 * h_A, h_B), T, equal_nan=True)
-
-
-def test_levels_beyond_all_pixels_of_a_photograph_have_no_place_in_another():
-    h_A, h_B = np.zeros((2, 256), int)
-    h_A[40:90], h_B[80:180] = 10, 5
-    T = transfer.brightness_transfer(h_A, h_B)
-    assert np.isnan(T[:40]).all() and np.isnan(T[90:]).all()
-    assert np.allclose(T[40:90], 2 * np.arange(40, 90) + 0.5)
-
-
-@pytest.mark.parametrize("bad", [np.zeros(256), -np.ones(256), np.ones(16), np.ones((2, 256))])
-def test_what_is_no_histogram_is_refused(bad):
-    for way in (transfer.literal_transfer, transfer.brightness_transfer):
-        with pytest.raises(ValueError, match="expected"):
-            way(bad, np.ones(256))
 
 
 def test_the_comparagram_counts_pairs_of_levels():
