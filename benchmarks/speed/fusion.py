@@ -7,7 +7,7 @@ import numpy as np
 
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster, smaller
-from hdrlab.enhance import mertens
+from hdrlab.fast import mertens
 
 
 def case(folder: Path, one: bool) -> Case:

@@ -10,8 +10,7 @@ from benchmarks import data
 from benchmarks.rows import Case, Row, Run, grows, within
 from hdrlab import pipeline
 from hdrlab.core.colour import luminance
-from hdrlab.enhance import mertens
-from hdrlab.fast import merge
+from hdrlab.fast import merge, mertens
 from hdrlab.pipeline import catalogue
 
 SIZES = {"2 MP": data.SMALL, "12 MP": data.LARGE}

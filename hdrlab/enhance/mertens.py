@@ -3,7 +3,7 @@
 Z_j       photograph j                  (H, W[, 3]) uint8 or uint16, as it came from the camera
 F_j       the same in planes            (1 or 3, H, W) float32 in [0, 1]
 C, S, E   contrast, saturation, well-exposedness    (H, W), >= 0: what makes a pixel worth keeping
-W_j       weight of photograph j        (H, W), C^wC S^wS E^wE; after `normalised` the sum over j is 1
+W_j       weight of photograph j        (H, W), C^wC S^wS E^wE; after `weights` the sum over j is 1
 W_j,k     its Gaussian pyramid          level k
 L_j,k     Laplacian pyramid of F_j      level k
 R         fused picture                 (H, W[, 3]) float32, about [0, 1]
@@ -17,20 +17,19 @@ from collections.abc import Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core import pyramid
-from hdrlab.core.arrays import Array, as_stack, levels
-from hdrlab.core.bands import banded
+from hdrlab.core.arrays import as_stack, levels
 from hdrlab.core.steps import last
+from hdrlab.core.types import F32, Array
 
-Float = NDArray[np.float32]
-
-LUMA = np.array([0.299, 0.587, 0.114], np.float32)  # ITU-R BT.601: the gray of encoded values
-SIGMA = 0.2  # width of the curve of well-exposedness
-BAND = 16  # rows
-HALF = np.float32(0.5)
-LEAST = 1e-12  # weight of a pixel that is flat, gray or clipped in every photograph
+# ITU-R BT.601: the gray of encoded values
+LUMA = np.array([0.299, 0.587, 0.114], np.float32)
+# width of the curve of well-exposedness
+SIGMA = 0.2
+# weight of a pixel that is flat, gray or clipped in every photograph
+SMALLEST_WEIGHT = 1e-12
 
 
 class State(NamedTuple):
@@ -45,37 +44,29 @@ class State(NamedTuple):
     """
 
     image: int
-    weights: list[Float]
-    details: list[Float]
-    blended: list[Float]
+    weights: list[F32]
+    details: list[F32]
+    blended: list[F32]
 
 
-def planes(Z: Array) -> Float:
+def split_planes(Z: Array) -> F32:
     """Return F = Z / top level, the channels as planes."""
-    channels = np.moveaxis(np.atleast_3d(Z), -1, 0)
-    F = np.empty(channels.shape, np.float32)
-    for plane, channel in zip(
-        F, channels, strict=True
-    ):  # each in one piece, which is quicker than all at once
-        plane[:] = channel
-    F *= np.float32(1 / (levels(Z) - 1))
-    return F
+    return np.moveaxis(np.atleast_3d(Z), -1, 0) / np.float32(levels(Z) - 1)
 
 
-def contrast(F: Float) -> Float:
+def contrast(F: F32) -> F32:
     """Return C = |Y(up) + Y(down) + Y(left) + Y(right) - 4 Y|, Y the gray picture [Mertens07].
 
     Which is a Laplacian filter. At the edges Y is reflected.
     """
     Y = F[0] if len(F) == 1 else LUMA[0] * F[0] + LUMA[1] * F[1] + LUMA[2] * F[2]
-    around = np.pad(Y, 1, mode="reflect")
-    C = around[:-2, 1:-1] + around[2:, 1:-1]
-    C += around[1:-1, :-2] + around[1:-1, 2:]  # by pairs: 2 Y + 2 Y is 4 Y without rounding, where Y is flat
-    C -= 4 * Y
-    return np.abs(C)
+    Y = np.pad(Y, 1, mode="reflect")
+    rows, columns = Y[:-2, 1:-1] + Y[2:, 1:-1], Y[1:-1, :-2] + Y[1:-1, 2:]
+    # summed by pairs: 2 Y + 2 Y is 4 Y without rounding, where Y is flat
+    return np.abs(rows + columns - 4 * Y[1:-1, 1:-1])
 
 
-def saturation(F: Float) -> Float:
+def saturation(F: F32) -> F32:
     """Return S, the standard deviation of R, G and B [Mertens07]; 1 where there are no colours.
 
     As ((R - G)^2 + (G - B)^2 + (B - R)^2)^(1/2) / 3 it is 0 in a gray pixel; through the mean of the three it
@@ -87,43 +78,25 @@ def saturation(F: Float) -> Float:
     return np.sqrt((a * (a + b) + b * b) * np.float32(2 / 9))
 
 
-def exposedness(F: Float) -> Float:
+def exposedness(F: F32) -> F32:
     """Return E = product over the channels of exp(-(F - 0.5)^2 / (2 sigma^2)) [Mertens07]."""
-    return np.exp(sum((plane - HALF) ** 2 for plane in F) * np.float32(-0.5 / SIGMA**2))
+    return np.exp(sum((plane - np.float32(0.5)) ** 2 for plane in F) * np.float32(-0.5 / SIGMA**2))
 
 
-def weight(F: Float, powers: Sequence[float] = (1, 1, 1)) -> Float:
+def weight(F: F32, powers: Sequence[float] = (1, 1, 1)) -> F32:
     """Return W = C^wC S^wS E^wE [Mertens07], and a trace, so that no pixel is without any weight."""
     W = np.ones(F.shape[1:], np.float32)
     for measure, power in zip((contrast, saturation, exposedness), powers, strict=True):
         if power:
             W *= measure(F) if power == 1 else measure(F) ** np.float32(power)
-    W += np.float32(LEAST)
-    return W
+    return W + np.float32(SMALLEST_WEIGHT)
 
 
-def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[Float]:
+def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
     """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07]."""
-
-    def measured(Z: Array) -> Float:
-        return weight(planes(np.moveaxis(Z, 0, -1)), powers)
-
-    each: list[Float] = [banded(measured, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
-    total: Float = np.zeros(images.shape[1:3], np.float32)
-    for W in each:
-        total += W
-    while each:  # what was yielded is let go
-        yield each.pop(0) / total
-
-
-def added(blended: Float, W: Float, detail: Float) -> Float:
-    """Return blended + W detail at one level, in bands of rows, which stay in the processor's cache."""
-    total = np.empty_like(blended)
-    for top in range(0, len(W), BAND):
-        rows = slice(top, top + BAND)
-        band = np.multiply(W[rows], detail[:, rows], out=total[:, rows])
-        band += blended[:, rows]
-    return total
+    each = [weight(split_planes(Z), powers) for Z in images]
+    total = sum(each)
+    yield from (W / total for W in each)
 
 
 def fuse_steps(
@@ -141,11 +114,10 @@ def fuse_steps(
     if not all(0 <= power < np.inf for power in powers):
         raise ValueError(f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}")
     depth = min(stack.shape[1:3]).bit_length()  # down to one or two rows or columns
-    blended: list[Float] = []
+    blended: list[F32] = [np.zeros(1, np.float32)] * depth
     for j, W in enumerate(weights(stack, powers)):
-        Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(planes(stack[j]), depth)
-        blended = blended or [np.zeros_like(detail) for detail in Lk]
-        blended = [added(*level) for level in zip(blended, Wk, Lk, strict=True)]
+        Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(split_planes(stack[j]), depth)
+        blended = [R + w * detail for R, w, detail in zip(blended, Wk, Lk, strict=True)]
         yield State(j, Wk, Lk, blended)
 
 
@@ -155,7 +127,7 @@ def fuse(
     contrast: float = 1.0,
     saturation: float = 1.0,
     exposedness: float = 1.0,
-) -> Float:
+) -> F32:
     """Return one picture that takes each place from the photographs that show it best.
 
     Parameters

@@ -34,16 +34,16 @@ def test_contrast_is_the_absolute_laplacian_of_gray():
     F = np.zeros((3, 5, 5), np.float32)
     F[:, 2, 2] = 1
     assert mertens.contrast(F)[1:4, 1:4] == pytest.approx(np.array([[0, 1, 0], [1, 4, 1], [0, 1, 0]]))
-    F = mertens.planes(bracket()[0])
+    F = mertens.split_planes(bracket()[0])
     gray = 0.299 * F[0] + 0.587 * F[1] + 0.114 * F[2]
     assert np.allclose(mertens.contrast(F), np.abs(cv2.Laplacian(gray, cv2.CV_32F)), atol=1e-6)
 
 
 def test_saturation_is_the_standard_deviation_and_exactly_zero_in_gray():
-    F = mertens.planes(bracket()[0])
+    F = mertens.split_planes(bracket()[0])
     assert np.allclose(mertens.saturation(F), F.std(axis=0), atol=1e-6)
     gray = np.repeat(bracket((40, 50))[0][..., None], 3, axis=-1)
-    assert not mertens.saturation(mertens.planes(gray)).any()
+    assert not mertens.saturation(mertens.split_planes(gray)).any()
     assert np.all(mertens.saturation(F[:1]) == 1)
 
 
@@ -54,7 +54,7 @@ def test_a_middle_gray_is_well_exposed_and_the_ends_are_not():
 
 
 def test_the_weight_is_the_product_of_powers():
-    F = mertens.planes(bracket()[1])
+    F = mertens.split_planes(bracket()[1])
     C, S, E = mertens.contrast(F), mertens.saturation(F), mertens.exposedness(F)
     assert np.allclose(mertens.weight(F, (0.5, 2, 1)), C**0.5 * S**2 * E, atol=1e-7)
     assert np.allclose(mertens.weight(F, (0, 0, 0)), 1)
@@ -123,16 +123,16 @@ def test_opencv_differs_in_a_house_by_its_rounding_alone_and_only_where_no_photo
 
 
 def weigh(image):
-    return mertens.weight(mertens.planes(image))
+    return mertens.weight(mertens.split_planes(image))
 
 
 def test_what_is_flat_or_gray_has_no_contrast_or_saturation_left_by_rounding():
     """Otherwise 1e-8 of nothing would outweigh the trace of 1e-12; whichever value it has, and in colour."""
     levels = np.arange(256, dtype=np.uint8)
-    gray = mertens.planes(np.broadcast_to(levels[:, None, None], (256, 7, 3)))
+    gray = mertens.split_planes(np.broadcast_to(levels[:, None, None], (256, 7, 3)))
     assert not mertens.saturation(gray).any()
     for colour in np.random.default_rng(0).integers(0, 256, (300, 3), dtype=np.uint8):
-        assert not mertens.contrast(mertens.planes(np.broadcast_to(colour, (5, 6, 3)))).any()
+        assert not mertens.contrast(mertens.split_planes(np.broadcast_to(colour, (5, 6, 3)))).any()
 
 
 def test_every_step_adds_one_photograph_to_every_level():
@@ -143,7 +143,7 @@ def test_every_step_adds_one_photograph_to_every_level():
         total = sum(step.weights[level] * step.details[level] for step in steps)
         assert np.allclose(steps[-1].blended[level], total, atol=1e-6)
         assert np.allclose(sum(step.weights[level] for step in steps), 1, atol=1e-5)
-    assert np.allclose(pyramid.collapse(steps[1].details), mertens.planes(images[1]), atol=1e-5)
+    assert np.allclose(pyramid.collapse(steps[1].details), mertens.split_planes(images[1]), atol=1e-5)
     assert steps[0].weights[-1].shape == (2, 3)
 
 
