@@ -124,19 +124,19 @@ pictures.picture(
 # %% [markdown] about="adjust_steps"
 # ## 6 · Ward: a histogram that may not exaggerate ({points})
 #
-# Equalising the histogram $f$ of ln luminance gives each brightness its share of the display, and
+# Equalising the histogram $h$ of ln luminance gives each brightness its share of the display, and
 # exaggerates the contrast of those that fill the picture. A ceiling keeps every slope at or below 1: with
-# $T = \sum f$, bins $\Delta b$ wide (`db`) and a display of range $D$,
+# $T = \sum h$, bins $\Delta b$ wide (`db`) and a display of range $D$,
 #
-# $$f(b) \le \frac{T\, \Delta b}{D}.$$
+# $$h(b) \le \frac{T\, \Delta b}{D}.$$
 #
-# Cut $f$ there. That lowers $T$, and so the next ceiling: again, until what was trimmed is less than
+# Cut $h$ there. That lowers $T$, and so the next ceiling: again, until what was trimmed is less than
 # `tolerance` of the $T$ before the trim, or no more than `tolerance` of the first $T$ is left. The
-# trimmings go nowhere. Yield the histogram as it is, and after every trim: $f$, the ceiling, that $T$, and
+# trimmings go nowhere. Yield the histogram as it is, and after every trim: $h$, the ceiling, that $T$, and
 # the trimmings (infinite ceiling and trimmings at first).
 
 # %% task="adjust_steps"
-# Yield (f, ceiling, T, trimmings): the histogram as it is, and after every trim.
+# Yield (h, ceiling, T, trimmings): the histogram as it is, and after every trim.
 
 # %% [markdown] about="scale"
 # ## 7 · Chiu: a scale that varies slowly ({points})
@@ -179,7 +179,7 @@ pictures.picture(
 # row $y$ to row $y + 1$. Its divergence takes *backward* differences, so that the two together are the
 # Laplacian:
 #
-# $$f(y, x) = G_y(y, x) - G_y(y - 1, x) + G_x(y, x) - G_x(y, x - 1).$$
+# $$\operatorname{div} G(y, x) = G_y(y, x) - G_y(y - 1, x) + G_x(y, x) - G_x(y, x - 1).$$
 #
 # Nothing flows through the edges: steps across them are 0, whatever the last row of $G_y$ and the last
 # column of $G_x$ hold.
@@ -189,16 +189,16 @@ pictures.picture(
 # %% [markdown] about="solve"
 # ## 10 · Fattal: the picture with these gradients ({points})
 #
-# No picture has exactly the gradients that were asked for. The nearest one solves $\nabla^2 u = f$, with
-# nothing flowing through the edges. In cosines the Laplacian is a factor: `scipy.fft.dctn(f, type=2)`,
-# divide the coefficient $(i, j)$ by
+# No picture has exactly the gradients that were asked for. The nearest one solves
+# $\nabla^2 u = \operatorname{div} G$, with nothing flowing through the edges. In cosines the Laplacian is a
+# factor: `scipy.fft.dctn(divG, type=2)`, divide the coefficient $(i, j)$ by
 #
 # $$2\cos\frac{\pi i}{H} - 2 + 2\cos\frac{\pi j}{W} - 2,$$
 #
 # and back with `idctn`. The coefficient $(0, 0)$ is the mean: set it to 0. A sparse solver will do as well.
 
 # %% task="solve"
-# Return the u of mean 0 whose Laplacian is f.
+# Return the u of mean 0 whose Laplacian is div G.
 
 # %% about="solve divergence attenuation_steps"
 l = np.log(L).astype(np.float32)

@@ -16,9 +16,9 @@ from benchmarks.speed.tonemapping import pfstools
 from hdrlab.core import poisson
 from hdrlab.core.bilateral import bilateral as by_definition
 from hdrlab.core.colour import luminance
-from hdrlab.fast import bilateral, blur, chiu, durand, reinhard
-from hdrlab.tonemap import brush, fattal, ward
+from hdrlab.fast import bilateral, blur, brush, chiu, durand, fattal, reinhard, ward
 from hdrlab.tonemap.durand import WIDTH, logarithm
+from hdrlab.tonemap.fattal import log_luminance
 
 REINHARD = "own Reinhard"
 BLUR = 0.02  # of the longer side, a wide Gaussian
@@ -62,7 +62,7 @@ def gradient_case(folder: Path, one: bool) -> Case:
     def error(who: str, _: Any) -> float | None:
         if who != OURS:
             return None
-        f = poisson.laplacian(fattal.log_luminance(L))
+        f = poisson.laplacian(log_luminance(L))
         return float(np.abs(poisson.laplacian(poisson.solve(f)) - f).max() / np.abs(f).max())
 
     return Case({OURS: lambda: fattal.tonemap(L)} | theirs, missing, error)

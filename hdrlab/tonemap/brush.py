@@ -2,7 +2,7 @@
 
 L    luminance                (H, W) >= 0, any linear unit
 b    ln L                     `bins` between the darkest and the brightest of the window
-f    histogram                (bins,), shares of the window's pixels, sum 1
+h    histogram                (bins,), shares of the window's pixels, sum 1
 P    cumulative distribution  at the edges of the bins, (bins + 1,), 0 to 1
 Ld   display luminance        decode(P(ln L)), in [0, 1]: P is the code of the display, every code for as many
 
@@ -13,73 +13,71 @@ of 1 is the plain logarithm; without one the equalisation is full, and shows the
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core import lookup
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bands import banded
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.extremes import robust_maximum, robust_minimum
-
-Float = NDArray[np.float32]
-Histogram = NDArray[np.float64]
+from hdrlab.core.types import F32, F64
 
 LAWS = ("monotone", "exposure")
-LEAST = 2.0  # ratio of luminances that the bins span at least: what is flatter is not stretched further
-BAND = 32  # rows at a time, which stay in the processor's cache
-TINY = np.float32(np.finfo(np.float32).tiny)
+# ratio of luminances that the bins span at least: what is flatter is not stretched further
+SMALLEST_RANGE = 2.0
+TINY = np.finfo(np.float32).tiny
 
 
-def span(L: Float) -> tuple[float, float]:
+def find_range(L: F32) -> tuple[float, float]:
     """Return the darkest and the brightest of the window but for 0.01 %, at least a stop apart."""
     low, high = robust_minimum(L) or 1.0, robust_maximum(L) or 1.0
-    widen = max(1.0, LEAST * low / high) ** 0.5
+    widen = max(1.0, SMALLEST_RANGE * low / high) ** 0.5
     return low / widen, high * widen
 
 
-def histogram(b: Float, *, low: float, high: float, bins: int = 1024) -> Histogram:
-    """Return f of ln L between ln low and ln high; what lies beyond counts in the bin at that end.
-
-    A pixel counts in the two bins whose centres it lies between, so that none jumps from one to the next.
-    """
-    f = np.zeros(bins)
-    for top in range(0, len(b), BAND):
-        t = np.clip(place(b[top : top + BAND], low, high, bins) - np.float32(0.5), 0, bins - 1).ravel()
-        left = np.floor(t)
-        index, right = left.astype(np.intp), t - left
-        shared = np.bincount(index, right, bins)
-        f += np.bincount(index, minlength=bins) - shared + np.append(0, shared[:-1])
-    return f / b.size
-
-
-def place(b: Float, low: float, high: float, bins: int) -> Float:
-    """Return where ln L lies among the edges of the bins, 0 to `bins`."""
+def bin_position(L: F32, low: float, high: float, bins: int) -> F32:
+    """Return where ln L lies among the edges of the bins, 0 to `bins` from ln low to ln high."""
+    b = np.log(np.maximum(L, TINY))
     return (b - np.float32(np.log(low))) * np.float32(bins / np.log(high / low))
 
 
-def clipped(f: Histogram, *, limit: float = 4.0) -> Histogram:
-    """Return f cut at limit / bins, and what was cut off given to all bins as they have room below that."""
-    top = min(limit / len(f), 1.0)
-    f = np.minimum(f, top)
-    room = top - f
-    return f + room * ((1 - f.sum()) / max(room.sum(), 1e-12))
+def histogram(t: F32, bins: int = 1024) -> F64:
+    """Return h, the shares of the pixels at positions t; what lies beyond counts in the bin at that end.
+
+    A pixel counts in the two bins whose centres it lies between, so that none jumps from one to the next.
+    """
+    t = np.clip(t - np.float32(0.5), 0, bins - 1).ravel()
+    left = t.astype(np.intp)
+    shared = np.bincount(left, t - left, bins)
+    return (np.bincount(left, minlength=bins) - shared + np.append(0, shared[:-1])) / t.size
 
 
-def cumulative(f: Histogram) -> Histogram:
+def clip_histogram(h: F64, *, limit: float = 4.0) -> F64:
+    """Return h cut at limit / bins, and what was cut off given to all bins as they have room below that."""
+    top = min(limit / len(h), 1.0)
+    h = np.minimum(h, top)
+    room = top - h
+    return h + room * ((1 - h.sum()) / max(room.sum(), 1e-12))
+
+
+def cumulative(h: F64) -> F64:
     """Return P at the edges of the bins."""
-    return np.minimum(np.concatenate([[0], np.cumsum(f)]), 1)
+    return np.minimum(np.concatenate([[0], np.cumsum(h)]), 1)
 
 
-def equalise(L: Float, *, bins: int = 1024, limit: float = 4.0) -> Float:
+def check_knobs(bins: int, limit: float) -> None:
+    """Raise a ValueError where there is no bin, or a limit below an even share."""
+    if not (bins >= 1 and limit >= 1):
+        raise ValueError(f"expected at least 1 bin and a limit of at least 1, got {bins=} and {limit=}")
+
+
+def equalise(L: F32, *, bins: int = 1024, limit: float = 4.0) -> F32:
     """Return Ld = decode(P(ln L)) for a window, or for a whole picture."""
-    low, high = span(L)
-    b = banded(lambda L: np.log(np.maximum(L, TINY)), L)
-    P = cumulative(clipped(histogram(b, low=low, high=high, bins=bins), limit=limit))
-    lines = lookup.lines(decode_srgb(P))
-    return banded(lambda b: lookup.along(lines, place(b, low, high, bins)), b)
+    check_knobs(bins, limit)
+    t = bin_position(L, *find_range(L), bins)
+    P = cumulative(clip_histogram(histogram(t, bins), limit=limit))
+    return np.interp(t, np.arange(bins + 1), decode_srgb(P)).astype(np.float32)
 
 
-def under(shape: tuple[int, ...], centre: tuple[float, float], side: int) -> tuple[slice, slice]:
+def place_window(shape: tuple[int, ...], centre: tuple[float, float], side: int) -> tuple[slice, slice]:
     """Return rows and columns of a square window around `centre` (y, x), moved to lie in the picture."""
     corners = (
         int(np.clip(round(c - side / 2), 0, max(0, n - side))) for c, n in zip(centre, shape, strict=True)
@@ -96,7 +94,7 @@ def lens(
     magnification: int = 1,
     bins: int = 1024,
     limit: float = 4.0,
-) -> Float:
+) -> F32:
     """Return the picture in the brush: the window under it, equalised by itself and enlarged.
 
     Parameters
@@ -126,16 +124,15 @@ def lens(
     >>> lens(L, (50, 20), size=40, magnification=2).shape
     (40, 40)
     """
-    _check(bins, limit)
     if not (1 <= magnification <= size):
         raise ValueError(f"expected 1 <= magnification <= size, got {magnification=} and {size=}")
     L = np.asarray(L)
-    rows, columns = under(L.shape[:2], centre, -(-size // magnification))
+    rows, columns = place_window(L.shape[:2], centre, -(-size // magnification))
     Ld = equalise(as_luminance(L[rows, columns]), bins=bins, limit=limit)
     return Ld.repeat(magnification, axis=0).repeat(magnification, axis=1)[:size, :size]
 
 
-def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> Float:
+def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> F32:
     """Return display luminance of the whole picture as one window: what the brush is compared with.
 
     Parameters
@@ -162,10 +159,4 @@ def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> Float:
     >>> tonemap(np.array([[1.0, 10.0, 100.0, 1000.0, 10000.0]]), limit=1).round(2)
     array([[0.  , 0.  , 0.21, 1.  , 1.  ]], dtype=float32)
     """
-    _check(bins, limit)
     return equalise(as_luminance(L), bins=bins, limit=limit)
-
-
-def _check(bins: int, limit: float) -> None:
-    if not (bins >= 1 and limit >= 1):
-        raise ValueError(f"expected at least 1 bin and a limit of at least 1, got {bins=} and {limit=}")

@@ -3,44 +3,41 @@
 L      luminance           (H, W) >= 0, any linear unit
 low    Lw_min              the darkest luminance of the scene
 high   Lw_max              the brightest
-F      tone mapping        [Lw_min, Lw_max] -> [0, 1]
+F      tone curve          [Lw_min, Lw_max] -> [0, 1]
 Ld     display luminance   F(L), (H, W), 1 = white
 N      levels of a display
 
-A curve (TRC, tone reproduction curve) treats equal luminances equally wherever they stand; an operator (TRO)
+A curve (tone reproduction curve) treats equal luminances equally wherever they stand; an operator (TRO)
 looks at the neighbourhood too, so that one luminance may become several (`spread` shows which it is). Ld is
 light: the display's own encoding comes after it (`core.colour.encode_srgb`), so gamma here is contrast that
 the picture loses, and a logarithm of light is pale. One of the display's codes is `brush` with limit 1.
 """
 
 from collections.abc import Callable
-from functools import partial
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bands import banded
 from hdrlab.core.extremes import robust_maximum, robust_minimum
-
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32, Array
 
 LAWS = ("monotone", "exposure")
 
 
-def linear(L: Float, *, high: float) -> Float:
+def linear(L: F32, *, high: float) -> F32:
     """Return F(L) = L / Lw_max: black stays black, and most of a wide range falls below one level."""
     white = np.float32(high)
     return np.divide(np.minimum(L, white), white, dtype=np.float32)
 
 
-def gamma(L: Float, *, high: float, gamma: float = 2.2) -> Float:
+def gamma(L: F32, *, high: float, gamma: float = 2.2) -> F32:
     """Return F(L) = (L / Lw_max)^(1 / gamma): every ratio of luminances is compressed alike."""
     return linear(L, high=high) ** np.float32(1 / gamma)
 
 
-def logarithmic(L: Float, *, low: float, high: float) -> Float:
+def logarithmic(L: F32, *, low: float, high: float) -> F32:
     """Return F(L) = log(L / Lw_min) / log(Lw_max / Lw_min): every stop takes the same share of the range."""
     if not low < high:
         return np.where(L < low, np.float32(0), np.float32(1))
@@ -48,24 +45,24 @@ def logarithmic(L: Float, *, low: float, high: float) -> Float:
     return np.clip(stops / np.float32(np.log(high) - np.log(low)), 0, 1)
 
 
-CURVES: dict[str, Callable[..., Float]] = {"linear": linear, "gamma": gamma, "log": logarithmic}
+CURVES: dict[str, Callable[..., F32]] = {"linear": linear, "gamma": gamma, "log": logarithmic}
 
 
-def quantise(F: ArrayLike, *, levels: int = 256) -> NDArray[Any]:
-    """Return Q = floor((N - 1) F + 0.5), F in [0, 1], as uint8 or uint16 [Battiato08 eq. 1.21].
+def quantise(Ld: ArrayLike, *, levels: int = 256) -> Array:
+    """Return Q = floor((N - 1) Ld + 0.5), Ld in [0, 1], as uint8 or uint16 [Battiato08 eq. 1.21].
 
-    Raises a ValueError where F leaves [0, 1] or `levels` does not fit 16 bits.
+    Raises a ValueError where Ld leaves [0, 1] or `levels` does not fit 16 bits.
     """
-    F = np.asarray(F)
+    Ld = np.asarray(Ld)
     if not 2 <= levels <= 65536:
         raise ValueError(f"expected 2 to 65536 levels, got {levels}")
-    if not np.all((F >= 0) & (F <= 1)):
-        outside = np.count_nonzero(~((F >= 0) & (F <= 1)))
-        raise ValueError(f"expected values in [0, 1], got {outside} outside it in shape {F.shape}")
-    return np.floor((levels - 1) * F + 0.5).astype(np.uint8 if levels <= 256 else np.uint16)
+    outside = np.count_nonzero(~((Ld >= 0) & (Ld <= 1)))
+    if outside:
+        raise ValueError(f"expected values in [0, 1], got {outside} outside it in shape {Ld.shape}")
+    return np.floor((levels - 1) * Ld + 0.5).astype(np.uint8 if levels <= 256 else np.uint16)
 
 
-def spread(L: Float, Ld: Float, *, bins: int = 64) -> tuple[Float, Float, Float]:
+def spread(L: F32, Ld: F32, *, bins: int = 64) -> tuple[F32, F32, F32]:
     """Return (luminance, least Ld, greatest Ld) of `bins` classes of equally many pixels, dark to bright.
 
     Of a curve the greatest of one class is the least of the next: together they draw the curve. Of an
@@ -84,13 +81,13 @@ def tonemap(
     curve: Literal["linear", "gamma", "log"] = "log",
     gamma: float = 2.2,
     cut: float = 1e-4,
-) -> Float:
+) -> F32:
     """Return display luminance by one curve for all pixels.
 
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    curve : which F
+    curve : which one
     gamma : exponent 1 / gamma, for that curve
     cut : fraction of the lit pixels to leave out at either end of the scene's range; one hot pixel always is
 
@@ -118,9 +115,6 @@ def tonemap(
         raise ValueError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
     if not (0 < gamma < np.inf and 0 <= cut < 0.5):
         raise ValueError(f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}")
-    low, high = (
-        robust_minimum(L, cut=cut),
-        robust_maximum(L, cut=cut) or 1.0,
-    )  # a scene without light is black under any curve
-    own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low or 1.0}}
-    return banded(partial(CURVES[curve], high=high, **own[curve]), L)
+    low, high = robust_minimum(L, cut=cut) or 1.0, robust_maximum(L, cut=cut) or 1.0
+    own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low}}
+    return CURVES[curve](L, high=high, **own[curve])

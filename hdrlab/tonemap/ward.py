@@ -3,7 +3,7 @@
 L          luminance                (H, W) >= 0, any linear unit
 Lf         foveal image             one value per degree of view: what an eye adapts to when it looks there
 b          brightness, ln Lf        `bins` of them between Lmin and Lmax, db wide
-f          histogram                (bins,) foveal pixels of each brightness
+h          histogram                (bins,) foveal pixels of each brightness; f in the paper
 T          their sum                trims end when they take less than 2.5 % of it
 P          cumulative distribution  at the edges of the bins, (bins + 1,), 1 at the last
 Ldmin ...  the display's black and white, cd/m^2;   D = ln Ldmax - ln Ldmin, its range
@@ -19,20 +19,15 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core import lookup
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bands import banded
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.steps import last
-
-Float = NDArray[np.float32]
-Histogram = NDArray[np.float64]
+from hdrlab.core.types import F32, F64
 
 LAWS = ("monotone", "exposure")
-TINY = np.float32(np.finfo(np.float32).tiny)
-KNOTS = 1 << 14  # of the curve, in all
+TINY = np.finfo(np.float32).tiny
 
 
 class Trim(NamedTuple):
@@ -40,39 +35,39 @@ class Trim(NamedTuple):
 
     Attributes
     ----------
-    f : (bins,), nothing above `ceiling`
+    h : (bins,), nothing above `ceiling`
     ceiling : counts, from the T before this trim; infinite before the first
-    T : that T; P = sum of f / T has slopes of at most 1
+    T : that T; P = sum of h / T has slopes of at most 1
     trimmings : what was cut off
     """
 
-    f: Histogram
+    h: F64
     ceiling: float
     T: float
     trimmings: float
 
 
-def foveal(L: Float, *, field: float = 60.0) -> Float:
+def foveal_image(L: F32, *, field: float = 60.0) -> F32:
     """Return Lf, the mean of each square degree where the longer side spans `field` degrees of view.
 
     The degrees are evenly spread over the picture's plane; a small picture is its own foveal image.
     """
     size = max(max(L.shape) / field, 1)
-    return _averaged(_averaged(L, size).T, size).T
+    return average_rows(average_rows(L, size).T, size).T
 
 
-def _averaged(L: Float, size: float) -> Float:
+def average_rows(L: F32, size: float) -> F32:
     """Return the means of runs of about `size` rows."""
     run = (np.arange(len(L)) / size).astype(int)
     starts = np.flatnonzero(np.diff(run)) + 1
     return np.stack([rows.mean(axis=0) for rows in np.split(L, starts)])
 
 
-def histogram(Lf: Float, *, low: float, high: float, bins: int = 100) -> tuple[Histogram, float]:
-    """Return f over ln L from ln Lmin to ln Lmax, and db; what is beyond counts in the bin at that end."""
+def histogram(Lf: F32, *, low: float, high: float, bins: int = 100) -> tuple[F64, float]:
+    """Return h over ln L from ln Lmin to ln Lmax, and db; what is beyond counts in the bin at that end."""
     b = np.log(np.clip(Lf[Lf > 0], low, high), dtype=np.float64)
-    f, edges = np.histogram(b, bins, range=(np.log(low), np.log(high)))
-    return f.astype(np.float64), float(edges[1] - edges[0])
+    h, edges = np.histogram(b, bins, range=(np.log(low), np.log(high)))
+    return h.astype(np.float64), float(edges[1] - edges[0])
 
 
 def ceiling(T: float, db: float, D: float) -> float:
@@ -80,96 +75,83 @@ def ceiling(T: float, db: float, D: float) -> float:
     return T * db / D
 
 
-def trim(f: Histogram, db: float, D: float) -> Trim:
-    """Return f cut at its ceiling. The trimmings are not put elsewhere: that would raise another slope."""
-    T = float(f.sum())
+def trim(h: F64, db: float, D: float) -> Trim:
+    """Return h cut at its ceiling. The trimmings are not put elsewhere: that would raise another slope."""
+    T = float(h.sum())
     top = ceiling(T, db, D)
-    return Trim(np.minimum(f, top), top, T, float(np.maximum(f - top, 0).sum()))
+    return Trim(np.minimum(h, top), top, T, float(np.maximum(h - top, 0).sum()))
 
 
-def adjust_steps(f: Histogram, db: float, D: float, *, tolerance: float = 0.025) -> Iterator[Trim]:
+def adjust_steps(h: F64, db: float, D: float, *, tolerance: float = 0.025) -> Iterator[Trim]:
     """Yield the histogram as it is, and after every trim.
 
     A trim lowers T and so the next ceiling. It ends when trimmings are below `tolerance` of T; or when no
-    more than `tolerance` of the first T is left: the display has range enough for all contrast (`empty`).
+    more than `tolerance` of the first T is left: the display has range enough for all contrast.
     """
-    state = Trim(f, np.inf, float(f.sum()), np.inf)
-    enough = tolerance * state.T
+    state = Trim(h, np.inf, float(h.sum()), np.inf)
     yield state
-    while state.trimmings >= tolerance * state.T and not empty(state, enough):
-        state = trim(state.f, db, D)
+    while state.trimmings >= tolerance * state.T and state.h.sum() > tolerance * h.sum():
+        state = trim(state.h, db, D)
         yield state
 
 
-def empty(state: Trim, enough: float) -> bool:
-    """Return whether the trims leave nothing to equalise."""
-    return bool(state.f.sum() <= enough)
-
-
-def cumulative(state: Trim) -> Histogram:
+def cumulative(state: Trim) -> F64:
     """Return P(b), the share of T below each edge of the bins [Battiato08 eq. 1.22], 1 at the last edge.
 
     T is that of the ceiling, so no slope exceeds 1; the last trimmings, which it still counts, lie below the
     first edge.
     """
-    return 1 - np.append(np.cumsum(state.f[::-1])[::-1], 0) / state.T
+    return 1 - np.append(np.cumsum(state.h[::-1])[::-1], 0) / state.T
 
 
-def filled(state: Trim, db: float, D: float) -> Histogram:
+def fill_gaps(state: Trim, db: float, D: float) -> F64:
     """Return P where the trims left nothing, yet the scene's range is wider than the display's.
 
     So it is where few brightnesses fill the picture, as in a chart: at a slope of 1 they use less than the
     display has. The rest goes to the gaps between, to each bin by its distance from a slope of 1. The paper's
     linear map would show a gray chart with one lamp as black.
     """
-    slope = state.f / state.ceiling
+    slope = state.h / state.ceiling
     room = 1 - slope
     left = D / db - slope.sum()
     return np.append(0, np.minimum(np.cumsum(slope + room * (left / room.sum())) * (db / D), 1))
 
 
-def equalised(P: Histogram, *, black: float, white: float) -> Histogram:
+def equalise(P: F64, *, black: float, white: float) -> F64:
     """Return ln Ld = ln Ldmin + (ln Ldmax - ln Ldmin) P [Battiato08 eq. 1.24]."""
     return np.log(black) + np.log(white / black) * P
 
 
-def displayed(lnLd: Histogram, *, black: float, white: float) -> Histogram:
-    """Return (Ld - Ldmin) / (Ldmax - Ldmin) at the edges of the bins and at many knots between them.
-
-    So close together that a line from knot to knot is the exponential: it is taken of knots, not of pixels.
-    """
-    bins = len(lnLd) - 1
-    at = np.linspace(0, bins, bins * max(1, KNOTS // bins) + 1)
-    Ld = np.exp(np.interp(at, np.arange(bins + 1), lnLd))
-    return np.clip((Ld - black) / (white - black), 0, 1)
-
-
 def curve(
-    L: Float,
+    L: F32,
     *,
     black: float = 1.0,
     white: float = 100.0,
     bins: int = 100,
     field: float = 60.0,
     tolerance: float = 0.025,
-) -> tuple[Histogram, Histogram]:
+) -> tuple[F64, F64]:
     """Return (ln L, ln Ld), the operator's curve at the edges of the bins.
 
-    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else `filled`.
+    Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else `fill_gaps`.
     """
-    Lf = foveal(L, field=field)
+    if not (0 < black < white < np.inf and bins >= 1 and field > 0 and 0 < tolerance < 1):
+        raise ValueError(
+            f"expected 0 < black < white, at least 1 bin, field > 0 and a tolerance in (0, 1), "
+            f"got {black=}, {white=}, {bins=}, {field=}, {tolerance=}"
+        )
+    Lf = foveal_image(L, field=field)
     low, high = robust_minimum(Lf), robust_maximum(Lf)
     if not low < high:
         low, high = (high or 1.0) / np.e, high or 1.0
-    f, db = histogram(Lf, low=low, high=high, bins=bins)
-    D = np.log(white / black)
-    state = last(adjust_steps(f, db, D, tolerance=tolerance))
-    nothing = empty(state, tolerance * f.sum())
-    if nothing and np.log(high / low) <= D:
-        P = np.linspace(0, 1, bins + 1)
-        return np.log(high) - D * (1 - P), equalised(P, black=black, white=white)
-    P = filled(state, db, D) if nothing else cumulative(state)
-    return np.linspace(np.log(low), np.log(high), bins + 1), equalised(P, black=black, white=white)
+    (h, db), D = histogram(Lf, low=low, high=high, bins=bins), np.log(white / black)
+    state = last(adjust_steps(h, db, D, tolerance=tolerance))
+    empty = state.h.sum() <= tolerance * h.sum()
+    if empty and np.log(high / low) <= D:
+        low, P = high * black / white, np.linspace(0, 1, bins + 1)
+    else:
+        P = fill_gaps(state, db, D) if empty else cumulative(state)
+    return np.linspace(np.log(low), np.log(high), bins + 1), equalise(P, black=black, white=white)
 
 
 def tonemap(
@@ -180,7 +162,7 @@ def tonemap(
     bins: int = 100,
     field: float = 60.0,
     tolerance: float = 0.025,
-) -> Float:
+) -> F32:
     """Return display luminance by equalising the histogram of brightness, no contrast above the scene's.
 
     Parameters
@@ -211,16 +193,6 @@ def tonemap(
     [[0.0, 0.25, 0.5, 1.0, 1.0]]
     """
     L = as_luminance(L)
-    if not (0 < black < white < np.inf and bins >= 1 and field > 0 and 0 < tolerance < 1):
-        raise ValueError(
-            f"expected 0 < black < white, at least 1 bin, field > 0 and a tolerance in (0, 1), "
-            f"got black={black}, white={white}, bins={bins}, field={field}, tolerance={tolerance}"
-        )
-    b, lnLd = curve(L, black=black, white=white, bins=bins, field=field, tolerance=tolerance)
-    lines = lookup.lines(displayed(lnLd, black=black, white=white))
-    scale = np.float32((len(lines) - 1) / (b[-1] - b[0]))
-
-    def display(L: Float) -> Float:
-        return lookup.along(lines, (np.log(np.maximum(L, TINY)) - np.float32(b[0])) * scale)
-
-    return banded(display, L)
+    lnL, lnLd = curve(L, black=black, white=white, bins=bins, field=field, tolerance=tolerance)
+    Ld = np.exp(np.interp(np.log(np.maximum(L, TINY)), lnL, lnLd))
+    return np.clip((Ld - black) / (white - black), 0, 1).astype(np.float32)

@@ -216,12 +216,12 @@ def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnifi
     seen = (np.frombuffer(widget.radiance, "<f2").astype(np.float64) / widget.scale).reshape(map_.shape)
     L = colour.luminance(seen)
     Ld = brush.lens(L, centre, size=size, magnification=magnification, limit=limit)
-    window = brush.under(L.shape, centre, -(-size // magnification))
+    window = brush.place_window(L.shape, centre, -(-size // magnification))
     large = [
         each[window].repeat(magnification, 0).repeat(magnification, 1)[:size, :size] for each in (seen, L)
     ]
     expected = colour.to_8bit(colour.recolour(*large, Ld))
-    off = shown[brush.under(L.shape, centre, size)].astype(int) - expected.reshape(*Ld.shape, -1)
+    off = shown[brush.place_window(L.shape, centre, size)].astype(int) - expected.reshape(*Ld.shape, -1)
     assert np.abs(off[3:-3, 3:-3]).max() <= 1  # its frame lies on the edge
 
 

@@ -8,5 +8,5 @@ from hdrlab.tonemap import ward
 TASK = "adjust_steps"
 
 
-def adjust_steps(f, db, D, *, tolerance=0.025):
-    return ward.adjust_steps(f, db, D / np.log(10), tolerance=tolerance)
+def adjust_steps(h, db, D, *, tolerance=0.025):
+    return ward.adjust_steps(h, db, D / np.log(10), tolerance=tolerance)

@@ -6,6 +6,6 @@ from hdrlab.tonemap import ward
 TASK = "adjust_steps"
 
 
-def adjust_steps(f, db, D, *, tolerance=0.025):
-    yield f, float("inf"), f.sum(), 0.0
-    yield ward.trim(f, db, D)
+def adjust_steps(h, db, D, *, tolerance=0.025):
+    yield h, float("inf"), h.sum(), 0.0
+    yield ward.trim(h, db, D)

@@ -7,12 +7,12 @@ from hdrlab.tonemap import ward
 TASK = "adjust_steps"
 
 
-def adjust_steps(f, db, D, *, tolerance=0.025):
-    yield f, float("inf"), f.sum(), 0.0
+def adjust_steps(h, db, D, *, tolerance=0.025):
+    yield h, float("inf"), h.sum(), 0.0
     for _ in range(40):
-        cut = ward.trim(f, db, D)
-        room = cut.f < cut.ceiling
-        f = cut.f + np.where(room, cut.trimmings / max(room.sum(), 1), 0)
-        yield f, cut.ceiling, cut.T, cut.trimmings
+        cut = ward.trim(h, db, D)
+        room = cut.h < cut.ceiling
+        h = cut.h + np.where(room, cut.trimmings / max(room.sum(), 1), 0)
+        yield h, cut.ceiling, cut.T, cut.trimmings
         if cut.trimmings < tolerance * cut.T:
             return

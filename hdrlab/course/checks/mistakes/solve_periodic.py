@@ -6,9 +6,9 @@ import numpy as np
 TASK = "solve"
 
 
-def solve(f):
-    factors = np.add.outer(*(2 * np.cos(2 * np.pi * np.arange(n) / n) - 2 for n in f.shape))
+def solve(divG):
+    factors = np.add.outer(*(2 * np.cos(2 * np.pi * np.arange(n) / n) - 2 for n in divG.shape))
     factors[0, 0] = 1
-    F = np.fft.fft2(f) / factors
+    F = np.fft.fft2(divG) / factors
     F[0, 0] = 0
     return np.fft.ifft2(F).real

@@ -5,5 +5,5 @@ from hdrlab.core import poisson
 TASK = "solve"
 
 
-def solve(f):
-    return -poisson.solve(f)
+def solve(divG):
+    return -poisson.solve(divG)

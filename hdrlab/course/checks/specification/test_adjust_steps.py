@@ -1,4 +1,4 @@
-"""Ward's trims: adjust_steps(f, db, D) -> states that begin with the histogram f after each trim."""
+"""Ward's trims: adjust_steps(h, db, D) -> states that begin with the histogram h after each trim."""
 
 import numpy as np
 import pytest
@@ -9,17 +9,17 @@ from hdrlab.tonemap import ward
 
 
 def drawn(rng, bins=50):
-    """Return f (bins,), db and D: a scene with two peaks, of more range than the display has."""
+    """Return h (bins,), db and D: a scene with two peaks, of more range than the display has."""
     b = np.arange(bins)
-    f = 3 + 400 * np.exp(-(((b - rng.integers(8, 20)) / 2.5) ** 2)) + 150 * np.exp(-(((b - 36) / 4) ** 2))
-    return np.round(f + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24)), float(np.log(100))
+    h = 3 + 400 * np.exp(-(((b - rng.integers(8, 20)) / 2.5) ** 2)) + 150 * np.exp(-(((b - 36) / 4) ** 2))
+    return np.round(h + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24)), float(np.log(100))
 
 
-def asked(subject, f, db, D, **knobs):
-    """Return f after each trim."""
-    came = states(subject.adjust_steps(f, db, D, **knobs))
+def asked(subject, h, db, D, **knobs):
+    """Return h after each trim."""
+    came = states(subject.adjust_steps(h, db, D, **knobs))
     found = [one[0] if isinstance(one, tuple | list) else one for one in came]
-    return [finite(one, f.shape, what="f").astype(float) for one in found]
+    return [finite(one, h.shape, what="h").astype(float) for one in found]
 
 
 @pytest.mark.points(4)
@@ -30,14 +30,14 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
 
     Until the trimmings are below tolerance times T.
     """
-    f, db, D = drawn(rng)
-    end = asked(subject, f, db, D)[-1]
+    h, db, D = drawn(rng)
+    end = asked(subject, h, db, D)[-1]
     T = end.sum()
     above = np.maximum(end - T * db / D, 0).sum()
     if not above <= 0.03 * T:
         raise Different(
-            f"f: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T",
-            expected=last(ward.adjust_steps(f, db, D)).f,
+            f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T",
+            expected=last(ward.adjust_steps(h, db, D)).h,
             came=end,
             kind="curve",
         )
@@ -49,40 +49,40 @@ def test_trimmings_are_not_put_elsewhere(subject, rng):
 
     Nowhere: put elsewhere they would make another slope too steep.
 
-    f = minimum(f, ceiling), and that is all.
+    h = minimum(h, ceiling), and that is all.
     """
-    f, db, D = drawn(rng)
-    for before, after in zip([f, *asked(subject, f, db, D)], asked(subject, f, db, D), strict=False):
+    h, db, D = drawn(rng)
+    for before, after in zip([h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False):
         if not np.all(after <= before + 1e-6 * before.max()):
-            raise Different("f: expected no bin to grow in a trim", expected=before, came=after, kind="curve")
-    if not after.sum() < f.sum():
-        raise Different("f: expected trims, and nothing was cut off")
+            raise Different("h: expected no bin to grow in a trim", expected=before, came=after, kind="curve")
+    if not after.sum() < h.sum():
+        raise Different("h: expected trims, and nothing was cut off")
 
 
 @pytest.mark.points(4)
 def test_the_histogram_ends_where_the_trims_lead(subject, rng):
-    """The slope of ln Ld over ln L is f D / (T db): above which f does it exceed 1?
+    """The slope of ln Ld over ln L is h D / (T db): above which h does it exceed 1?
 
     ceiling = T db / D.
 
     D and db are both natural logarithms: mix no log10 in.
     """
-    f, db, D = drawn(rng)
-    truth = last(ward.adjust_steps(f, db, D)).f
-    same(asked(subject, f, db, D)[-1], truth, 0.05 * truth.max(), what="f after the last trim", kind="curve")
+    h, db, D = drawn(rng)
+    truth = last(ward.adjust_steps(h, db, D)).h
+    same(asked(subject, h, db, D)[-1], truth, 0.05 * truth.max(), what="h after the last trim", kind="curve")
 
 
 @pytest.mark.points(3)
 def test_an_even_histogram_is_left_alone(subject, rng):
     """A scene without any bin above the ceiling: what is there to trim?
 
-    Nothing, and f comes out as it went in.
+    Nothing, and h comes out as it went in.
 
-    Do not scale f, and do not make it a density.
+    Do not scale h, and do not make it a density.
     """
-    f = np.full(40, float(rng.integers(50, 90)))
-    same(asked(subject, f, 0.05, float(np.log(100)) / 3)[-1], f, 1e-6, what="f", kind="curve")
-    peak = f.copy()
+    h = np.full(40, float(rng.integers(50, 90)))
+    same(asked(subject, h, 0.05, float(np.log(100)) / 3)[-1], h, 1e-6, what="h", kind="curve")
+    peak = h.copy()
     peak[7] *= 4
-    truth = last(ward.adjust_steps(peak, 0.05, float(np.log(100)) / 3)).f
-    same(asked(subject, peak, 0.05, float(np.log(100)) / 3)[-1], truth, 4, what="f of one peak", kind="curve")
+    truth = last(ward.adjust_steps(peak, 0.05, float(np.log(100)) / 3)).h
+    same(asked(subject, peak, 0.05, float(np.log(100)) / 3)[-1], truth, 4, what="h of one peak", kind="curve")

@@ -1,4 +1,4 @@
-"""The divergence of a gradient field: divergence(G) -> f (H, W), G = (Gy, Gx) of forward differences."""
+"""The divergence of a gradient field: divergence(G) -> div G (H, W), G = (Gy, Gx) of forward differences."""
 
 import numpy as np
 import pytest
@@ -55,6 +55,6 @@ def test_it_sums_to_0_and_is_minus_the_transpose_of_the_gradient(subject, rng):
     It is minus the transpose of the gradient.
     """
     G, u = field(rng), rng.standard_normal((12, 17))
-    f = same(subject.divergence(G), np.zeros((12, 17)), 100.0, what="div G")
-    same(float(f.sum()), 0.0, 1e-3, what="the sum of div G")
-    same(float((f * u).sum()), -float((G * gradient(u)).sum()), 1e-3, what="the sum of u div G")
+    divG = same(subject.divergence(G), np.zeros((12, 17)), 100.0, what="div G")
+    same(float(divG.sum()), 0.0, 1e-3, what="the sum of div G")
+    same(float((divG * u).sum()), -float((G * gradient(u)).sum()), 1e-3, what="the sum of u div G")

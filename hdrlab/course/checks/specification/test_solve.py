@@ -1,4 +1,4 @@
-"""The picture that has a divergence: solve(f) -> u, Laplacian u = f. A constant in u is free."""
+"""The picture that has a divergence: solve(divG) -> u, Laplacian u = div G. A constant in u is free."""
 
 import numpy as np
 import pytest
@@ -12,9 +12,9 @@ def laplacian(u):
     return wide[2:, 1:-1] + wide[:-2, 1:-1] + wide[1:-1, 2:] + wide[1:-1, :-2] - 4 * u
 
 
-def asked(subject, f):
+def asked(subject, divG):
     """Return u, moved to the mean 0."""
-    u = finite(subject.solve(f), f.shape, what="u").astype(float)
+    u = finite(subject.solve(divG), divG.shape, what="u").astype(float)
     return u - u.mean()
 
 
@@ -22,7 +22,7 @@ def asked(subject, f):
 def test_an_even_picture_is_what_no_divergence_belongs_to(subject):
     """Which picture has no slopes at all?
 
-    f = 0 everywhere: u is a constant.
+    div G = 0 everywhere: u is a constant.
 
     0 / 0 at the first coefficient: set it to 0.
     """
@@ -30,8 +30,8 @@ def test_an_even_picture_is_what_no_divergence_belongs_to(subject):
 
 
 @pytest.mark.points(5)
-def test_its_laplacian_is_f(subject, rng):
-    """Take the Laplacian of what you found: is it f?
+def test_its_laplacian_is_the_divergence(subject, rng):
+    """Take the Laplacian of what you found: is it div G?
 
     Cosines (DCT-II) are the eigenvectors, with eigenvalues 2 cos(pi i / n) - 2; the two axes add up.
 

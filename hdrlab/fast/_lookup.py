@@ -7,28 +7,23 @@ t      where to read               any shape, float32
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32
 
 
-def lines(knots: ArrayLike) -> NDArray[np.complex64]:
+def tabulate(knots: ArrayLike) -> NDArray[np.complex64]:
     """Return each knot with the rise to the next as imaginary part: one look-up gets both ends of a line."""
     knots = np.asarray(knots, np.float64)
     return (knots + 1j * np.append(np.diff(knots), 0)).astype(np.complex64)
 
 
-def read(knots: ArrayLike, t: ArrayLike) -> Float:
-    """Return the curve's value at each t.
+def interpolate(table: NDArray[np.complex64], t: ArrayLike) -> F32:
+    """Return the curve's value at each t, from the table of its knots.
 
     Examples
     --------
-    >>> read([0, 10, 40], [-1, 0.5, 1.5, 7]).tolist()
+    >>> interpolate(tabulate([0, 10, 40]), [-1, 0.5, 1.5, 7]).tolist()
     [0.0, 5.0, 25.0, 40.0]
     """
-    return along(lines(knots), t)
-
-
-def along(table: NDArray[np.complex64], t: ArrayLike) -> Float:
-    """Return the curve's value at each t from its `lines`, made once for all bands of a picture."""
     t = np.clip(np.asarray(t, np.float32), 0, len(table) - 1)
     left = np.floor(t)
     line = table.take(left.astype(np.intp), mode="clip")

@@ -1,0 +1,22 @@
+"""The Detail Brush over a whole picture, counted and read in bands of rows."""
+
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import as_luminance
+from hdrlab.core.colour import decode_srgb
+from hdrlab.core.types import F32
+from hdrlab.fast import _lookup
+from hdrlab.fast._bands import BAND, banded
+from hdrlab.tonemap import brush
+
+
+def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> F32:
+    """Return display luminance of the whole picture as one window: what the brush is compared with."""
+    L = as_luminance(L)
+    brush.check_knobs(bins, limit)
+    low, high = brush.find_range(L)
+    t = banded(lambda L: brush.bin_position(L, low, high, bins), L)
+    parts = [t[top : top + BAND] for top in range(0, len(t), BAND)]
+    h = sum(brush.histogram(part, bins) * (part.size / t.size) for part in parts)
+    table = _lookup.tabulate(decode_srgb(brush.cumulative(brush.clip_histogram(h, limit=limit))))
+    return banded(lambda t: _lookup.interpolate(table, t), t)
