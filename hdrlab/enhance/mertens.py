@@ -99,6 +99,11 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
     yield from (W / total for W in each)
 
 
+def add_term(blended: F32, W: F32, detail: F32) -> F32:
+    """Return the sum of W_i,k L_i,k so far and the next W_j,k L_j,k [Mertens07]."""
+    return blended + W * detail
+
+
 def fuse_steps(
     images: ArrayLike | Sequence[ArrayLike],
     *,
@@ -114,10 +119,11 @@ def fuse_steps(
     if not all(0 <= power < np.inf for power in powers):
         raise ValueError(f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}")
     depth = min(stack.shape[1:3]).bit_length()  # down to one or two rows or columns
-    blended: list[F32] = [np.zeros(1, np.float32)] * depth
+    blended: list[F32] = []
     for j, W in enumerate(weights(stack, powers)):
         Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(split_planes(stack[j]), depth)
-        blended = [R + w * detail for R, w, detail in zip(blended, Wk, Lk, strict=True)]
+        blended = blended or [np.zeros_like(detail) for detail in Lk]
+        blended = [add_term(*level) for level in zip(blended, Wk, Lk, strict=True)]
         yield State(j, Wk, Lk, blended)
 
 

@@ -3,13 +3,11 @@
 from collections.abc import Iterator, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_stack, levels
-from hdrlab.core.steps import last
+from hdrlab.core.arrays import levels
 from hdrlab.core.types import F32, Array
 from hdrlab.enhance import mertens
-from hdrlab.fast import pyramid
+from hdrlab.fast import pyramid, with_parts
 from hdrlab.fast._bands import banded
 
 _BAND = 16  # rows
@@ -39,28 +37,8 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
         yield each.pop(0) / total
 
 
-def fuse_steps(
-    images: ArrayLike | Sequence[ArrayLike],
-    *,
-    contrast: float = 1.0,
-    saturation: float = 1.0,
-    exposedness: float = 1.0,
-) -> Iterator[mertens.State]:
-    """Yield the State after each photograph; the parameters are those of `fuse`."""
-    stack, powers = as_stack(images), (contrast, saturation, exposedness)
-    if not all(0 <= power < np.inf for power in powers):
-        raise ValueError(f"expected finite powers >= 0 of contrast, saturation and exposedness, got {powers}")
-    depth = min(stack.shape[1:3]).bit_length()
-    blended: list[F32] = []
-    for j, W in enumerate(weights(stack, powers)):
-        Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(split_planes(stack[j]), depth)
-        blended = blended or [np.zeros_like(detail) for detail in Lk]
-        blended = [_add(*level) for level in zip(blended, Wk, Lk, strict=True)]
-        yield mertens.State(j, Wk, Lk, blended)
-
-
-def _add(blended: F32, W: F32, detail: F32) -> F32:
-    """Return blended + W detail at one level, in bands of rows, which stay in the processor's cache."""
+def add_term(blended: F32, W: F32, detail: F32) -> F32:
+    """Return the sum of W_i,k L_i,k so far and the next W_j,k L_j,k [Mertens07]."""
     total = np.empty_like(blended)
     for top in range(0, len(W), _BAND):
         rows = slice(top, top + _BAND)
@@ -69,14 +47,5 @@ def _add(blended: F32, W: F32, detail: F32) -> F32:
     return total
 
 
-def fuse(
-    images: ArrayLike | Sequence[ArrayLike],
-    *,
-    contrast: float = 1.0,
-    saturation: float = 1.0,
-    exposedness: float = 1.0,
-) -> F32:
-    """Return one picture that takes each place from the photographs that show it best."""
-    steps = fuse_steps(images, contrast=contrast, saturation=saturation, exposedness=exposedness)
-    R = pyramid.collapse(last(steps).blended)
-    return R[0] if len(R) == 1 else np.moveaxis(R, 0, -1).copy()
+_parts = {"split_planes": split_planes, "weights": weights, "add_term": add_term, "pyramid": pyramid}
+fuse_steps, fuse = with_parts(__name__, mertens.fuse_steps, mertens.fuse, **_parts)

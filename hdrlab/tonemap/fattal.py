@@ -67,7 +67,7 @@ def log_luminance(L: F32) -> F32:
     """
     black, white = find_range(L[L > 0])
     floor = max(min(black / white, DARK), np.finfo(np.float32).tiny)
-    return np.log(np.clip(L / np.float32(white), np.float32(floor), 1))
+    return np.log(np.maximum(np.minimum(L, white) / white, floor))
 
 
 def slope(lL: F32, k: int = 0) -> F32:

@@ -1,5 +1,7 @@
 """Exposure fusion. Where every photograph is flat or gray all weigh alike: no rounding decides."""
 
+import numpy as np
+
 from pairs import photographs
 
 
@@ -15,7 +17,14 @@ def fused(kind, rng):
     return (photographs(kind, rng, frames=4),), {"contrast": 0.5, "saturation": 2.0} if kind == "deep" else {}
 
 
+def added(kind, rng):
+    W, detail = photographs(kind, rng)[0], np.moveaxis(np.atleast_3d(photographs(kind, rng)[1]), -1, 0)
+    W = np.float32(np.atleast_3d(W)[..., 0] / 255)
+    return (np.ones(detail.shape, np.float32), W, np.float32(detail)), {}
+
+
 PAIRS = {
+    "add_term": (added, 1e-6),
     "split_planes": (split, 1e-6),
     "weights": (weighed, 1e-5),
     "fuse_steps": (fused, 1e-5),
