@@ -8,8 +8,8 @@ from typing import Any, TypeVar
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def with_parts(home: str, lesson: Function, **parts: Callable[..., Any]) -> Function:
-    """Return a lesson's function that calls fast `parts` where the lesson calls its own, for module `home`.
+def with_parts(home: str, lesson: Function, **parts: Any) -> Function:
+    """Return a lesson's function that uses fast `parts` where the lesson calls its own, for module `home`.
 
     The code is the lesson's own: the signature, the checks and the equations stand once.
 

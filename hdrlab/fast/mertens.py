@@ -48,4 +48,5 @@ def add_term(blended: F32, W: F32, detail: F32) -> F32:
 
 
 _parts = {"split_planes": split_planes, "weights": weights, "add_term": add_term, "pyramid": pyramid}
-fuse_steps, fuse = with_parts(__name__, mertens.fuse_steps, mertens.fuse, **_parts)
+fuse_steps = with_parts(__name__, mertens.fuse_steps, **_parts)
+fuse = with_parts(__name__, mertens.fuse, fuse_steps=fuse_steps, pyramid=pyramid)
