@@ -123,7 +123,7 @@ def fuse_steps(
     for j, W in enumerate(weights(stack, powers)):
         Wk, Lk = pyramid.gaussian(W, depth), pyramid.laplacian(split_planes(stack[j]), depth)
         blended = blended or [np.zeros_like(detail) for detail in Lk]
-        blended = [add_term(*level) for level in zip(blended, Wk, Lk, strict=True)]
+        blended = list(map(add_term, blended, Wk, Lk))
         yield State(j, Wk, Lk, blended)
 
 
