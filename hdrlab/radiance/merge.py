@@ -100,39 +100,15 @@ def bound(Z: Array, B: F64, g: F64, top: int, shown: Mask) -> tuple[F64, Flags]:
     upper = np.where(shown & (Z == 0), g[1] - B, np.inf).min(axis=0)
     low, high = np.isfinite(lower), np.isfinite(upper)
     lE = (np.where(low, lower, 0) + np.where(high, upper, 0)) / np.maximum(1.0 * low + high, 1)
-    flags = Quality.CLIPPED * low + Quality.DARK * high + Quality.UNSEEN * ~(low | high)
+    flags = 1 * low + 2 * high + 8 * ~(low | high)  # Quality
     return np.where(low | high, np.exp(lE), 0.0), flags.astype(np.uint8)
 
 
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
-    """Return E of ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j) [Debevec97 eq. 6].
+    """Return the radiance map, ln E = sum_j w(Z_j) (g(Z_j) - ln t_j) / sum_j w(Z_j) [Debevec97 eq. 6].
 
-    Where no frame measures a pixel, E is what the tightest bounds say.
-
-    Parameters
-    ----------
-    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Aligned photographs, in any order.
-    times : (P,) float
-        Exposure times in seconds.
-    g : (n,) or (n, 3) float
-        Response, ln exposure of each level.
-    w : (n,) float, optional
-        Weights, the hat by default.
-
-    Returns
-    -------
-    (H, W) or (H, W, 3) float32
-        Radiance, finite and not negative.
-
-    Raises
-    ------
-    ValueError
-        For images, times and response that do not fit together.
-
-    References
-    ----------
-    Debevec and Malik, SIGGRAPH 1997, sec. 2.2.
+    Where no frame measures a pixel, E is what the tightest bounds allow. Images are (P, H, W[, 3]), in any
+    order; w is the hat by default.
 
     Examples
     --------
@@ -171,8 +147,14 @@ def merge_with_quality(
 
     Parameters
     ----------
-    images, times, g, w
-        As for `merge`; tables of another depth than the images' are read between their levels.
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Aligned photographs, in any order.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each level; read between its levels where n is not the images'.
+    w : (n,) float, optional
+        Weights, the hat by default.
     method : {"log", "likelihood", "mean", "shot"}
         Which quotient of sums, a key of `METHODS`.
     top : float
