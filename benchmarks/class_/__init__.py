@@ -21,11 +21,12 @@ from benchmarks.class_ import handed, judged
 from benchmarks.class_.grading import TIMEOUT, Used, grade
 from benchmarks.class_.workers import cluster
 from benchmarks.experiments import Experiment, at_least, at_most
-from hdrlab.course import plan, results
+from hdrlab.course import plan
 from hdrlab.course.classroom import handins, journal
 from hdrlab.course.classroom import roster as lists
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.grading import Conditions
+from hdrlab.course.reports import results
 
 COUNT, SCALE = 300, 24
 PROCESSES, WORKERS = (1, 2), (1, 2, 4)

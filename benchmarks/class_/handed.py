@@ -22,10 +22,11 @@ from types import ModuleType
 from typing import NamedTuple
 
 from benchmarks.measure import ROOT
-from hdrlab.course import plan, sheets
+from hdrlab.course import plan
 from hdrlab.course.checks import MISTAKES
 from hdrlab.course.classroom import imitation, toy
 from hdrlab.course.plan import Homework
+from hdrlab.course.reports import sheets
 
 TESTS = ROOT / "tests"
 SHARES = {"right": 62, "equivalent": 30, "mistake": 96, "half": 15, "blank": 12, "attack": 42, "trap": 43}

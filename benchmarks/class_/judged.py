@@ -6,9 +6,9 @@ from pathlib import Path
 
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
-from hdrlab.course import results, sheets
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.results import Result
+from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports.results import Result
 
 LARGE = 50_000  # submissions
 WORKERS = (16, 64, 256)

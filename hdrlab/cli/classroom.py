@@ -11,7 +11,7 @@ from hdrlab.cli import common
 
 if TYPE_CHECKING:
     from hdrlab.course.classroom.handins import Handin
-    from hdrlab.course.classroom.journal import Crew, Done, Piece
+    from hdrlab.course.classroom.journal import Done, Executor, Piece
     from hdrlab.course.classroom.run import Course
     from hdrlab.course.grading import Conditions
     from hdrlab.course.plan import Homework
@@ -65,9 +65,9 @@ def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Optio
     if before:
         click.echo(f"{len(before)} of {len(wanted)} were graded before", err=True)
     if rest:
-        with _crew(course, asked) as crew:
+        with _executor(course, asked) as executor:
             journal.forget(folder, rest)
-            steps = (classroom.told(out, one) for one in journal.done_steps(rest, crew, folder))
+            steps = (classroom.told(out, one) for one in journal.done_steps(rest, executor, folder))
             done += common.progress(steps, course.homework.name, len(rest))
     return done
 
@@ -75,7 +75,7 @@ def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Optio
 def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> None:
     """Write what is alike among all that was handed in, also what was graded before."""
     try:
-        from hdrlab.course.classroom import alike
+        from hdrlab.course.overlap import alike
     except ImportError as error:
         click.echo(f'note: similar.html needs {error.name}: pip install "hdrlab[class]"', err=True)
         return
@@ -86,10 +86,10 @@ def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> No
     list(common.progress(steps, "what is alike", len(handins)))
 
 
-def _crew(course: "Course", asked: Options) -> "Crew":
+def _executor(course: "Course", asked: Options) -> "Executor":
     """Return those who grade: processes of this machine, or the workers of a cluster."""
-    from hdrlab.course.classroom import processes
     from hdrlab.course.classroom import run as classroom
+    from hdrlab.course.classroom.executors import processes
     from hdrlab.course.sandbox import doctor
 
     grader = classroom.Grader(course.homework, course.conditions, classroom.hidden(course.conditions.hidden))
@@ -101,7 +101,7 @@ def _crew(course: "Course", asked: Options) -> "Crew":
     if asked.jobs is not None:
         raise ValueError("expected --jobs or --cluster: a cluster grades as many at a time as it has threads")
     try:
-        from hdrlab.course.classroom import cluster
+        from hdrlab.course.classroom.executors import cluster
     except ImportError as error:
         raise ValueError(f'expected {error.name}: pip install "hdrlab[cluster]"') from None
     return cluster.Cluster(asked.cluster, grader.result, grader.ready)

@@ -90,9 +90,9 @@ def links(
     """
     from contextlib import closing
 
-    from hdrlab.course import sheets
     from hdrlab.course.classroom import roster as lists
     from hdrlab.course.gallery import export, store
+    from hdrlab.course.reports import sheets
 
     emails = {one.id: one.email for one in lists.read(roster).students} if roster else {}
     with closing(store.connect(folder)) as db:
@@ -115,7 +115,7 @@ def serve(folder: Path, host: str, port: int, address: str | None, behind_proxy:
     missing = [name for name in NEEDS if find_spec(name) is None]
     if missing:
         raise ValueError(f'expected {", ".join(missing)}, which serve pages: pip install "hdrlab[class]"')
-    from hdrlab.course.gallery.serve import serve as run
+    from hdrlab.course.gallery.web.serve import serve as run
 
     address = address or f"http://{host}:{port}"
     if not address.startswith("https://") and host not in ("127.0.0.1", "localhost", "::1"):
@@ -146,8 +146,8 @@ def results(folder: Path, out: Path) -> None:
     import time
     from contextlib import closing
 
-    from hdrlab.course import sheets
     from hdrlab.course.gallery import counting, export, store
+    from hdrlab.course.reports import sheets
 
     with closing(store.connect(folder)) as db:
         set_up = store.settings(db)

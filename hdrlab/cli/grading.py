@@ -10,7 +10,7 @@ from hdrlab.cli import common
 if TYPE_CHECKING:
     from hdrlab.course.grading import Conditions
     from hdrlab.course.plan import Homework
-    from hdrlab.course.results import Result
+    from hdrlab.course.reports.results import Result
 
 FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
 FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
@@ -34,8 +34,8 @@ def check(
 
     Your functions run in a process of their own, which is no sandbox: check what you trust.
     """
-    from hdrlab.course import feedback
     from hdrlab.course.grading import Conditions
+    from hdrlab.course.reports import feedback
 
     asked = _homework(submission, homework, plan)
     if task is not None:
@@ -91,8 +91,8 @@ def grade(
     A folder is a class: with --roster, every submission in it is graded, several at a time, and a gradebook
     and a page about the class are written. Stopped at any moment, the next run finishes the rest.
     """
-    from hdrlab.course import feedback, gradebook
     from hdrlab.course.grading import Conditions
+    from hdrlab.course.reports import feedback, gradebook
 
     if student and secret_file is None:
         raise ValueError(
@@ -141,8 +141,8 @@ def course() -> None:
 @PLAN
 def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Path | None) -> None:
     """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates."""
-    from hdrlab.course import handouts
     from hdrlab.course import plan as plans
+    from hdrlab.course.material import handouts
     from hdrlab.course.site import execute
 
     try:

@@ -29,7 +29,7 @@ def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
 
     What you changed in your copy stays. OPTIONS go to JupyterLab.
     """
-    from hdrlab.course import materials
+    from hdrlab.course.material import materials
 
     new = materials.copy_course(folder)
     click.echo(f"{folder}: {len(new)} new notebooks")

@@ -35,7 +35,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
     missing = [name for name in NEEDS if find_spec(name) is None]
     if missing:
         raise ValueError(f'expected {", ".join(missing)}, which make the pages: pip install "hdrlab[site]"')
-    from hdrlab.course import materials
+    from hdrlab.course.material import materials
     from hdrlab.course.site import execute, pages
     from hdrlab.io.terminal import elapsed
 

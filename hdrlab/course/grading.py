@@ -20,10 +20,11 @@ import scipy
 
 import hdrlab
 from hdrlab.core.steps import last
-from hdrlab.course import handouts, plan, submission
+from hdrlab.course import plan, submission
 from hdrlab.course.checks import SPECIFICATION, running
+from hdrlab.course.material import handouts
 from hdrlab.course.plan import Homework
-from hdrlab.course.results import Check, Drawing, Result
+from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.submission import Submission

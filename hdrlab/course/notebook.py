@@ -7,12 +7,14 @@ the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and
 from collections.abc import Sequence
 from typing import Any
 
-from hdrlab.course import feedback, grading, handouts, plan, results
+from hdrlab.course import grading, plan
 from hdrlab.course.code import closure
 from hdrlab.course.code.closure import Cell
 from hdrlab.course.grading import Conditions
+from hdrlab.course.material import handouts
 from hdrlab.course.plan import Homework
-from hdrlab.course.results import Result
+from hdrlab.course.reports import feedback, results
+from hdrlab.course.reports.results import Result
 from hdrlab.course.submission import Submission
 
 PRACTICE = Conditions(tier="practice")

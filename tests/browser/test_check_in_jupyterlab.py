@@ -4,7 +4,7 @@ import shutil
 
 import pytest
 
-from hdrlab.course import materials
+from hdrlab.course.material import materials
 
 WRONG = """def hat(n=256):
 z = np.arange(n)

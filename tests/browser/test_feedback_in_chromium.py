@@ -4,8 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import feedback, grading, plan
+from hdrlab.course import grading, plan
 from hdrlab.course.grading import Conditions
+from hdrlab.course.reports import feedback
 
 PAYLOAD = (
     "<script>window.owned = 1</script><img src=x onerror='window.owned = 1'>"

@@ -9,7 +9,8 @@ import json
 import pytest
 import siege
 
-from hdrlab.course import feedback, grading, plan, results
+from hdrlab.course import grading, plan
+from hdrlab.course.reports import feedback, results
 from hdrlab.course.sandbox import tiers
 
 HONEST = "import numpy as np\n\ndef hat(n):\n    z = np.arange(n)\n    return np.minimum(z, n - 1 - z)\n"

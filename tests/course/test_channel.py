@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as arrays
 
-from hdrlab.course import channel
+from hdrlab.course.sandbox.inside import channel
 
 PLAIN = st.recursive(
     st.none()

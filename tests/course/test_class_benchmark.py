@@ -17,10 +17,11 @@ from benchmarks import __main__ as command
 from benchmarks.class_ import grading, handed, judged
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
-from hdrlab.course import plan, results, sheets
+from hdrlab.course import plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.classroom.roster import read
-from hdrlab.course.results import Check, Result
+from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports.results import Check, Result
 
 HW2 = {task.id for task in plan.read().homeworks["hw2"].tasks}
 

@@ -11,7 +11,6 @@ import pytest
 from hats import GOOD, PLAN
 
 from hdrlab import cli
-from hdrlab.course import sheets
 from hdrlab.course.classroom import marks, overview
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.handins import Handin
@@ -19,7 +18,8 @@ from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework, Late, Task
-from hdrlab.course.results import Check, Result
+from hdrlab.course.reports import sheets
+from hdrlab.course.reports.results import Check, Result
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
 HOMEWORK = Homework(

@@ -17,7 +17,8 @@ import pytest
 from distributed import Client, LocalCluster
 
 import hdrlab
-from hdrlab.course.classroom import cluster, journal, processes
+from hdrlab.course.classroom import journal
+from hdrlab.course.classroom.executors import cluster, processes
 
 RUN = """
 import sys
@@ -65,8 +66,8 @@ def graded(address, home, work=errands.grade, **knobs):
     """Grade the class of a folder, and return what was done and what the results are."""
     folder = home / "results"
     done, rest = journal.parted(folder, errands.pieces(home / "class"))
-    with cluster.Cluster(address, work, **knobs) as crew:
-        done += journal.done_steps(rest, crew, folder)
+    with cluster.Cluster(address, work, **knobs) as executor:
+        done += journal.done_steps(rest, executor, folder)
     return done, contents(folder)
 
 
@@ -76,8 +77,8 @@ def contents(folder):
 
 def whole(home):
     """Return the results of the same class, done here."""
-    with processes.Processes(errands.grade, 2) as crew:
-        list(journal.done_steps(errands.pieces(home / "class"), crew, home / "here"))
+    with processes.Processes(errands.grade, 2) as executor:
+        list(journal.done_steps(errands.pieces(home / "class"), executor, home / "here"))
     return contents(home / "here")
 
 
@@ -123,11 +124,11 @@ def test_none_is_blamed_for_sharing_a_worker_and_workers_that_join_later_are_use
 
 
 def test_no_worker_has_more_pieces_than_threads(address, tmp_path):
-    with cluster.Cluster(address, errands.endless) as crew:
-        started = [crew.start(one) for one in errands.pieces(tmp_path / "class")]
+    with cluster.Cluster(address, errands.endless) as executor:
+        started = [executor.start(one) for one in errands.pieces(tmp_path / "class")]
         assert started == [True, True, False, False, False]
         while len(errands.begun(tmp_path / "class")) < 2:
-            assert not crew.endings()
+            assert not executor.endings()
     until = time.monotonic() + 10
     while any(map(alive, errands.begun(tmp_path / "class"))):  # they were cancelled with the run
         assert time.monotonic() < until
@@ -156,8 +157,8 @@ def test_a_run_that_is_killed_is_finished_by_the_next_and_its_pieces_are_ended(a
 
 def test_a_submission_that_never_ends_is_ended(address, tmp_path):
     (one,) = errands.pieces(tmp_path / "class", 1)
-    with cluster.Cluster(address, errands.endless, patience=0.5) as crew:
-        (done,) = journal.done_steps([one], crew, tmp_path / "results")
+    with cluster.Cluster(address, errands.endless, patience=0.5) as executor:
+        (done,) = journal.done_steps([one], executor, tmp_path / "results")
     assert done.result is None and "3 times" in done.why and "too long" in done.why
 
 

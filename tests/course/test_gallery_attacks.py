@@ -22,9 +22,11 @@ from PIL import Image
 if find_spec("starlette") is None:
     pytest.skip('the gallery needs pip install ".[class]"', allow_module_level=True)
 
-from hdrlab.course import gallery, sheets
+from hdrlab.course import gallery
 from hdrlab.course.classroom.roster import Roster, Student
-from hdrlab.course.gallery import app, bearers, collect, export, guard, pictures, store
+from hdrlab.course.gallery import access_tokens, collect, export, pictures, store
+from hdrlab.course.gallery.web import app, guard
+from hdrlab.course.reports import sheets
 
 ORIGIN = {"origin": small.ADDRESS}
 ROSTER = Roster(tuple(Student(one, one.title(), team) for team, m in small.TEAMS.items() for one in m))
@@ -134,7 +136,7 @@ def test_a_forged_session(client, room):
         client.cookies.clear()
         assert client.get("/", headers={"cookie": f"gallery={forged}"}).status in (401, 429)
     with store.writing(room.folder) as db:
-        bearers.new_link(db, "ann")
+        access_tokens.new_link(db, "ann")
     assert client.get("/", headers={"cookie": f"gallery={session}"}).status == 401
 
 
@@ -448,7 +450,7 @@ def test_header_injection(client, room):
     with browser(room, "https://vote.test") as secure:
         renewed = store.connect(room.folder)
         with closing(renewed) as db, store.transaction(db):
-            fresh = bearers.new_link(db, "ann")
+            fresh = access_tokens.new_link(db, "ann")
         answer = secure.post(f"/enter/{fresh}", headers={"origin": "https://vote.test"})
         assert (
             answer.headers["set-cookie"].startswith("__Host-gallery=")

@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import handouts, materials, plan
+from hdrlab.course import plan
 from hdrlab.course.code import names
+from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Task
 
 ROOT = Path(__file__).resolve().parents[2]

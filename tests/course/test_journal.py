@@ -13,7 +13,8 @@ from pathlib import Path
 import errands
 import pytest
 
-from hdrlab.course.classroom import handins, journal, processes
+from hdrlab.course.classroom import handins, journal
+from hdrlab.course.classroom.executors import processes
 from hdrlab.course.classroom.roster import Roster, Student
 
 RUN = """
@@ -32,8 +33,8 @@ def graded(home, work=errands.grade, again=False):
         journal.forget(folder, wanted)
     with journal.held(folder):
         done, rest = journal.parted(folder, wanted)
-        with processes.Processes(work, 2) as crew:
-            done += journal.done_steps(rest, crew, folder)
+        with processes.Processes(work, 2) as executor:
+            done += journal.done_steps(rest, executor, folder)
     return done, {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
 
 
@@ -63,8 +64,8 @@ def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_grade
 
 def test_a_submission_that_never_ends_is_ended(tmp_path):
     one = errands.pieces(tmp_path / "class", 1)
-    with processes.Processes(errands.endless, 1, patience=0.5) as crew:
-        (done,) = journal.done_steps(one, crew, tmp_path / "results")
+    with processes.Processes(errands.endless, 1, patience=0.5) as executor:
+        (done,) = journal.done_steps(one, executor, tmp_path / "results")
     assert done.result is None and "too long" in done.why
     assert list((tmp_path / "results").iterdir()) == []
 
@@ -89,11 +90,11 @@ def test_two_runs_do_not_write_to_one_folder(tmp_path):
 
 
 def test_what_runs_is_ended_when_the_run_is_interrupted(tmp_path):
-    with pytest.raises(KeyboardInterrupt), processes.Processes(errands.endless, 2) as crew:
+    with pytest.raises(KeyboardInterrupt), processes.Processes(errands.endless, 2) as executor:
         for one in errands.pieces(tmp_path / "class", 2):
-            assert crew.start(one)
+            assert executor.start(one)
         while len(errands.begun(tmp_path / "class")) < 2:
-            assert not crew.endings()
+            assert not executor.endings()
         raise KeyboardInterrupt
     for _, process, _ in errands.begun(tmp_path / "class"):
         with pytest.raises(ProcessLookupError):

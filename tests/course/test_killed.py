@@ -21,11 +21,12 @@ import pytest
 import test_cluster
 from hats import GOOD, PLAN
 
-from hdrlab.course import grading, results
+from hdrlab.course import grading
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework, Task
+from hdrlab.course.reports import results
 from hdrlab.course.sandbox import doctor
 
 HIDDEN = """
@@ -202,9 +203,9 @@ def test_a_function_whose_process_is_ended_from_outside_is_asked_again(tmp_path,
     (tmp_path / "b1.py").write_text(SLOW)
     piece = journal.Piece("b1", tmp_path / "b1.py", "key")
     grader = classroom.Grader(HAT, Conditions(tier="practice"))
-    killing(b"warden.py", below=True)
+    killing(b"supervisor.py", below=True)
     once = grading.grade(piece.path, HAT, grader.conditions)
     assert "no answer" in {one.outcome for one in once.checks}
-    killing(b"warden.py", below=True)
+    killing(b"supervisor.py", below=True)
     result = results.from_json(grader.result(piece))
     assert {one.outcome for one in result.checks} == {"holds"}

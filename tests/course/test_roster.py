@@ -4,8 +4,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.course import sheets
 from hdrlab.course.classroom import roster
+from hdrlab.course.reports import sheets
 from hdrlab.course.wording import plain
 
 

@@ -15,9 +15,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hdrlab.course import channel, warden
 from hdrlab.course.checks.subject import NoAnswer, Subject, modules_of
 from hdrlab.course.sandbox import contents, doctor, filters, practice, running, strict, tiers, users
+from hdrlab.course.sandbox.inside import channel, supervisor
 
 IMPOLITE = "import sys; sys.modules['worker'].REFUSED.clear()\n"
 FUNCTIONS = """
@@ -380,7 +380,7 @@ def test_a_user_number_is_given_to_one_sandbox_at_a_time():
 
 
 def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_path):
-    """Whatever tier: with the parent gone, the process of the check and its warden are gone soon."""
+    """Whatever tier: with the parent gone, the process of the check and its supervisor are gone soon."""
     for tier in ("strict", "practice"):
         opened(tier)
         code = (
@@ -390,7 +390,7 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
             "with Subject({'f': source}, {}, tier, 60) as subject:\n"
             "    subject._running.check(); print('begun', flush=True); subject.f()\n"
         )
-        before = warden.children()
+        before = supervisor.children()
         folder = tmp_path / tier
         folder.mkdir()
         environment = os.environ | {"TMPDIR": str(folder)}
@@ -403,11 +403,11 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
         grader.wait()
         grader.stdout.close()
         deadline = time.monotonic() + 10
-        while set(warden.children()) - set(before) and time.monotonic() < deadline:
-            for pid in set(warden.children()) - set(before):
+        while set(supervisor.children()) - set(before) and time.monotonic() < deadline:
+            for pid in set(supervisor.children()) - set(before):
                 os.waitpid(pid, os.WNOHANG)
             time.sleep(0.02)
-        assert not set(warden.children()) - set(before)
+        assert not set(supervisor.children()) - set(before)
         assert not list(folder.iterdir())
 
 
@@ -474,7 +474,7 @@ def test_the_practice_tier_says_what_it_does_not_stop_and_that_is_true(tmp_path)
 
 def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
     """A full memory, a file without end, and processes that are left behind."""
-    before, name = warden.children(), str(tmp_path / "written")
+    before, name = supervisor.children(), str(tmp_path / "written")
     with pytest.raises(NoAnswer, match="MemoryError"):
         alone("import numpy as np\ndef f(): return np.ones(1 << 34).sum()", "practice")
     with pytest.raises(NoAnswer, match="File too large"):
@@ -488,7 +488,7 @@ def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
         assert alone(IMPOLITE + daemon, "practice") == 1
         time.sleep(0.7)
         assert Path(name).exists()
-        assert warden.children() == before
+        assert supervisor.children() == before
 
 
 def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(without):

@@ -16,14 +16,16 @@ import pytest
 from copydetect import compare_files
 
 from hdrlab.cli import classroom as commands
-from hdrlab.course import materials, plan, sheets
-from hdrlab.course.classroom import alike, authored, similarity
+from hdrlab.course import plan
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.classroom.authored import Work
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.code import closure, inline
 from hdrlab.course.grading import Conditions
+from hdrlab.course.material import materials
+from hdrlab.course.overlap import alike, authored, similarity
+from hdrlab.course.overlap.authored import Work
+from hdrlab.course.reports import sheets
 
 HW2 = plan.read().homeworks["hw2"]
 TASKS = [task.id for task in HW2.tasks]
@@ -295,8 +297,8 @@ def test_a_class_too_large_to_compare_is_told_so_and_not_compared(tmp_path, monk
 def test_without_copydetect_a_line_says_what_to_install(tmp_path, monkeypatch, capsys):
     monkeypatch.setitem(sys.modules, "copydetect", None)
     for name in ("alike", "similarity"):
-        monkeypatch.delitem(sys.modules, f"hdrlab.course.classroom.{name}")
-        monkeypatch.delattr(f"hdrlab.course.classroom.{name}")
+        monkeypatch.delitem(sys.modules, f"hdrlab.course.overlap.{name}")
+        monkeypatch.delattr(f"hdrlab.course.overlap.{name}")
     said = compared(tmp_path, capsys)
     assert 'similar.html needs copydetect: pip install "hdrlab[class]"' in said
     assert not (tmp_path / "similar.html").exists()

@@ -7,9 +7,10 @@ from pathlib import Path
 import pytest
 
 from hdrlab import cli
-from hdrlab.course import plan, results, sheets
+from hdrlab.course import plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.classroom import toy
+from hdrlab.course.reports import results, sheets
 from hdrlab.course.sandbox import tiers
 
 HOMEWORK = plan.read().homeworks[toy.HOMEWORK]

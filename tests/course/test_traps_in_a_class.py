@@ -5,7 +5,7 @@ from hats import GOOD, PLAN
 from traps import TRAPS, zipped
 
 from hdrlab import cli
-from hdrlab.course import results, sheets
+from hdrlab.course.reports import results, sheets
 
 LISTED = ("link", "absolute", "drive", "climbs", "device", "pipe", "bomb", "share bytes", "larger than")
 NAMES = [name for name in TRAPS if any(word in name for word in LISTED)]

@@ -20,10 +20,11 @@ import numpy as np
 import pytest
 
 from hdrlab.core.arrays import describe
-from hdrlab.course import plan, warden
+from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.inside import supervisor
 from hdrlab.course.sandbox.running import Unavailable
 
 CALLS = 20  # of a task that are kept to recognise a mistake by
@@ -65,7 +66,8 @@ class Checking:
 
     def pytest_sessionstart(self) -> None:
         """Start the sandbox first: it gets ready while the checks are collected."""
-        warden.prctl(warden.DIE_WITH_PARENT, signal.SIGKILL)  # if the grader is killed, this is to end, too
+        # if the grader is killed, this is to end, too
+        supervisor.prctl(supervisor.DIE_WITH_PARENT, signal.SIGKILL)
         if os.getppid() != self.job["grader"]:
             pytest.exit("the grader has ended")
         sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])

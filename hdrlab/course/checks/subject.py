@@ -15,8 +15,8 @@ from collections.abc import Callable, Mapping
 from types import TracebackType
 from typing import Any, NamedTuple, NoReturn, Self
 
-from hdrlab.course import channel
 from hdrlab.course.checks import compare
+from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.running import Running, Sandbox
 
 TIMEOUT = 10.0  # seconds of a call

@@ -3,8 +3,7 @@
 roster, handins, late    who is in the class, what is whose, and what lateness costs
 run                      a class's grading: its pieces, their results, the feedback
 journal                  work that is done once, whatever happens meanwhile
-processes, cluster       who does it: processes of this machine, workers of a Dask cluster; alone, each piece
+executors                who does it: processes of this machine, workers of a Dask cluster
 overview, marks          what comes of it: gradebooks, and a page about the class
-authored, similarity     what students wrote themselves, and what of it is alike; alike, the page
 imitation, toy           made submissions, and a toy class of them
 """

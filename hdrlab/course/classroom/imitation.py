@@ -10,9 +10,9 @@ import re
 from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
-from hdrlab.course import handouts, materials
 from hdrlab.course.checks import MISTAKES
 from hdrlab.course.code import inline, names, source
+from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework
 
 FENCE = "\n\n\n# %%\n"

@@ -1,9 +1,9 @@
 """Work that is done once, whatever happens meanwhile: a file for each piece, written whole or not at all.
 
 A piece is named by its owner and a key, which is a digest of all that its result rests on. What is there is
-done; what is not will be done by the next run. Pieces are done by a crew, on this machine (`processes`) or on
-many (`cluster`), and written here. One that ends without a result is tried again, three times in all, and
-then told of. The run may be killed at any moment, and so may those of its crew.
+done; what is not will be done by the next run. Pieces are done by an executor, on this machine (`processes`)
+or on many (`cluster`), and written here. One that ends without a result is tried again, three times in all,
+and then told of. The run may be killed at any moment, and so may those of its executor.
 """
 
 import contextlib
@@ -52,7 +52,7 @@ class Ending(NamedTuple):
     blamed: bool = True
 
 
-class Crew(Protocol):
+class Executor(Protocol):
     """Those who do the pieces, each in a process of its own; used in a with statement."""
 
     def start(self, piece: Piece, *, alone: bool = False) -> bool:
@@ -164,18 +164,18 @@ def parted(folder: Path, pieces: Sequence[Piece]) -> tuple[list[Done], list[Piec
     return before, [piece for piece, path in zip(pieces, names, strict=True) if path.name not in there]
 
 
-def done_steps(pieces: Sequence[Piece], crew: Crew, folder: Path) -> Iterator[Done]:
+def done_steps(pieces: Sequence[Piece], executor: Executor, folder: Path) -> Iterator[Done]:
     """Yield what became of each piece, as soon as it is known; an owner's older results are removed.
 
     Parameters
     ----------
     pieces : what is to be done, each owner once
-    crew : does it
+    executor : does it
     folder : of the results, made where it is missing
     """
     folder.mkdir(parents=True, exist_ok=True)
     older = _older(folder, pieces)
-    for ending in _endings(pieces, crew):
+    for ending in _endings(pieces, executor):
         piece, result = ending.piece, ending.result
         if result is None:
             yield Done(piece, None, f"it ended {TRIES} times without a result: {ending.why}")
@@ -186,15 +186,15 @@ def done_steps(pieces: Sequence[Piece], crew: Crew, folder: Path) -> Iterator[Do
         yield Done(piece, place(folder, piece))
 
 
-def _endings(pieces: Sequence[Piece], crew: Crew) -> Iterator[Ending]:
+def _endings(pieces: Sequence[Piece], executor: Executor) -> Iterator[Ending]:
     """Yield the last ending of each piece: with a result, or the third without."""
     waiting, doubted, running = deque(pieces), set(), 0
     tries: Counter[str] = Counter()
     while waiting or running:
-        while waiting and crew.start(waiting[0], alone=waiting[0].owner in doubted):
+        while waiting and executor.start(waiting[0], alone=waiting[0].owner in doubted):
             waiting.popleft()
             running += 1
-        for ending in crew.endings():
+        for ending in executor.endings():
             running -= 1
             owner = ending.piece.owner
             tries[owner] += ending.blamed

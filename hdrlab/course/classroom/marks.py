@@ -7,12 +7,12 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import sheets
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.late import Handed, accounts, lateness
 from hdrlab.course.classroom.late import what_if as late_days
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
+from hdrlab.course.reports import sheets
 
 COLUMNS = (
     *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),

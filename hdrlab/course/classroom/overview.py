@@ -12,12 +12,12 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import sheets
 from hdrlab.course.classroom import journal, marks
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
-from hdrlab.course.results import Outcome, Result
+from hdrlab.course.reports import sheets
+from hdrlab.course.reports.results import Outcome, Result
 from hdrlab.show.pages.templates import templates
 
 PAGE = "class_page.html"

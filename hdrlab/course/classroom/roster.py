@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import sheets
+from hdrlab.course.reports import sheets
 from hdrlab.course.wording import plain
 
 TEAM = 2  # students at most

@@ -13,7 +13,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import gradebook, grading, results, sheets
+from hdrlab.course import grading
 from hdrlab.course.archives import unpack
 from hdrlab.course.archives.members import Refused
 from hdrlab.course.checks import SPECIFICATION
@@ -25,7 +25,8 @@ from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework, Late
-from hdrlab.course.results import Result
+from hdrlab.course.reports import gradebook, results, sheets
+from hdrlab.course.reports.results import Result
 from hdrlab.course.sandbox import doctor
 from hdrlab.course.sandbox.running import Unavailable
 

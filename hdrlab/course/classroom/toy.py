@@ -16,9 +16,10 @@ from datetime import timedelta
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import plan, sheets
+from hdrlab.course import plan
 from hdrlab.course.classroom import imitation
 from hdrlab.course.plan import Homework
+from hdrlab.course.reports import sheets
 from hdrlab.io.files import replacing
 
 HOMEWORK = "hw2"

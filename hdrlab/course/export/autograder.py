@@ -7,8 +7,9 @@ import json
 import sys
 from pathlib import Path
 
-from hdrlab.course import gradebook, grading, plan
+from hdrlab.course import grading, plan
 from hdrlab.course.grading import Conditions
+from hdrlab.course.reports import gradebook
 
 ROOT = Path("/autograder")
 

@@ -11,8 +11,8 @@ from importlib.metadata import requires
 from pathlib import Path
 
 import hdrlab
-from hdrlab.course import materials
 from hdrlab.course import plan as plans
+from hdrlab.course.material import materials
 from hdrlab.course.plan import Plan
 from hdrlab.io.files import replacing
 

@@ -16,8 +16,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course import handouts, materials, stubs, submission
+from hdrlab.course import submission
 from hdrlab.course.code import inline
+from hdrlab.course.material import handouts, materials, stubs
 from hdrlab.course.plan import Homework, Plan, Task
 from hdrlab.io.files import replacing
 

@@ -1,10 +1,10 @@
 """The class votes on its artifacts: a small web application over one folder.
 
-store, ballots, bearers   the database: what hangs, who marked what, who may
-writer                    ballots that arrive together are written together, and then acknowledged
+store, ballots            the database: what hangs, who marked what
+tokens, access_tokens     who may: personal links and sessions
 counting                  from ballots to places
 collect, pictures         what students hand in, decoded and encoded again
-guard, front, app, serve  the pages, and what stands before them
+web                       the pages, what stands before them, and the one who writes
 export                    links for the class, columns for the gradebook
 
 What somebody may try, what stops it, and the promise in tests/course/test_gallery_attacks.py that it does:

@@ -3,7 +3,7 @@
 import sqlite3
 from collections.abc import Iterator, Sequence
 
-from hdrlab.course.gallery import ballots, bearers, counting, store
+from hdrlab.course.gallery import access_tokens, ballots, counting, store
 
 GRADEBOOK = ("student", "name", "team", "voted", "artifact", "votes", "place", "shared with")
 LINKS = ("student", "name", "email", "link")
@@ -25,5 +25,5 @@ def links(db: sqlite3.Connection, address: str, ids: Sequence[str], emails: dict
     """Return new personal links of these voters; their older ones end."""
     names = {id: name for id, name, _ in store.voters(db)}
     with store.transaction(db):
-        fresh = [(id, bearers.new_link(db, id)) for id in ids]
+        fresh = [(id, access_tokens.new_link(db, id)) for id in ids]
     return [(id, names[id], emails.get(id, ""), f"{address.rstrip('/')}/enter/{text}") for id, text in fresh]

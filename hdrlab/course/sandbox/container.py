@@ -41,7 +41,7 @@ def sandbox() -> Sandbox:
 
 
 def launch(control: socket) -> Launched:
-    """Start the warden behind the fence, as a spare user who reads what root has opened."""
+    """Start the supervisor behind the fence, as a spare user who reads what root has opened."""
     inside, found = contents(), packages()
     libraries = [folder for one in found.values() if os.path.isdir(folder := f"{one}.libs")]
     homes = [inside.prefix, str(PROGRAM.parent), *found.values(), *libraries]

@@ -15,7 +15,7 @@ from typing import NamedTuple
 from hdrlab.course.sandbox.running import PROGRAM, packages
 
 PYTHON, PACKAGES, COURSE = "/python", "/packages", "/course"  # where they are inside
-OURS = ("warden.py", "worker.py", "channel.py")
+OURS = ("supervisor.py", "worker.py", "channel.py")
 
 
 class Contents(NamedTuple):
@@ -38,7 +38,7 @@ class Contents(NamedTuple):
 
     @property
     def program(self) -> str:
-        """Where the warden is, inside."""
+        """Where the supervisor is, inside."""
         return f"{COURSE}/{PROGRAM.name}"
 
     def readable(self) -> tuple[list[str], list[str]]:

@@ -31,7 +31,7 @@ READING = (  # files, and the one socket that it was given
     *("fadvise64", "poll", "ppoll", "select", "pselect6"),
     *("recvfrom", "sendto", "getsockopt", "getsockname", "shutdown"),
 )
-TENDING = (  # what the warden needs beside
+TENDING = (  # what the supervisor needs beside
     *("fork", "vfork", "clone", "clone3", "execve", "wait4", "waitid", "kill", "setpgid", "setsid"),
     *("prctl", "seccomp", "setrlimit", "prlimit64", "recvmsg", "sendmsg", "fcntl", "ioctl"),
 )
@@ -42,7 +42,7 @@ FLAGS = (0, 1, 2, 3, 4, 1030)  # fcntl's: to duplicate, and to get and set flags
 
 @cache
 def program(name: str) -> bytes:
-    """Return the filter of the "warden" or of a "check" as a program for the kernel.
+    """Return the filter of the "supervisor" or of a "check" as a program for the kernel.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def program(name: str) -> bytes:
     except (ImportError, RuntimeError) as error:
         raise Unavailable(f"the filter of system calls needs pyseccomp and libseccomp: {error}") from None
     rules = pyseccomp.SyscallFilter(pyseccomp.ERRNO(errno.EPERM))
-    _allow(rules, (*COMPUTING, *READING, *(TENDING if name == "warden" else ())))
+    _allow(rules, (*COMPUTING, *READING, *(TENDING if name == "supervisor" else ())))
     if name == "check":
         _narrow(rules)
     return _exported(rules)

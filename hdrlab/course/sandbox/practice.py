@@ -39,7 +39,7 @@ def sandbox() -> Sandbox:
 
 
 def launch(control: socket) -> Launched:
-    """Start the warden with this interpreter, in an empty folder, without this process's environment."""
+    """Start the supervisor with this interpreter, in an empty folder, without this process's environment."""
     scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
     python = getattr(sys, "_base_executable", sys.executable)  # not the environment's, with all its packages
     words = command(python, str(PROGRAM), control.fileno(), packages())

@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course import channel
+from hdrlab.course.sandbox.inside import channel
 
 START = 60.0  # seconds in which a sandbox must have started, on a machine however busy
 CLEAR = 10.0  # seconds in which a check must have been cleared away; else the sandbox is started anew
@@ -43,7 +43,7 @@ FLAGS = (
     "-X",
     "utf8",
 )  # no site-packages, no .pth, nothing from the folder it stands in
-PROGRAM = Path(channel.__file__).with_name("warden.py")  # beside worker.py and channel.py, which it needs
+PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside worker.py and channel.py, which it needs
 
 
 class Unavailable(RuntimeError):
@@ -65,10 +65,10 @@ class Sandbox(NamedTuple):
     ----------
     tier : "strict", "container" or "practice"
     credit : whether what was scored in it may count
-    launch : starts the warden, given its end of the control
+    launch : starts the supervisor, given its end of the control
     program : a seccomp filter for the checks, or nothing
-    alone : whether the warden is the first process of a namespace of its own
-    forks : whether the warden can fork a process for a check; else it is that process, and started for each
+    alone : whether the supervisor is the first process of a namespace of its own
+    forks : whether the supervisor can fork a process for a check; else it is that process, one for each
     limits : of the process of a check, as in the module resource
     """
 
@@ -156,7 +156,7 @@ class Running:
         return ours
 
     def _hear(self, kind: str, seconds: float) -> Any:
-        """Return the value of the next word from the warden, which must be of this kind."""
+        """Return the value of the next word from the supervisor, which must be of this kind."""
         came, call, value = channel.receive(self._control, time.monotonic() + seconds)
         if came != kind or call not in (0, self._checks):
             raise channel.Damaged(f"expected {kind!r}, got {came[:80]!r}")
@@ -179,7 +179,8 @@ class Running:
         """End it, and all that runs in it."""
         self._control.close()
         process = self._launched.process
-        patience = CLEAR if self._ready and self.sandbox.forks else 0  # a warden ends its check, then itself
+        # a supervisor ends its check, then itself
+        patience = CLEAR if self._ready and self.sandbox.forks else 0
         try:
             process.wait(patience)
         except subprocess.TimeoutExpired:
@@ -206,7 +207,7 @@ def start(
 
 
 def command(python: str, program: str, control: int, packages: Mapping[str, str]) -> list[str]:
-    """Return the command that starts the warden, which knows these packages by their folders."""
+    """Return the command that starts the supervisor, which knows these packages by their folders."""
     return [python, *FLAGS, program, str(control), *(f"{name}={at}" for name, at in packages.items())]
 
 

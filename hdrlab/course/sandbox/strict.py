@@ -69,17 +69,17 @@ def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
 
 
 def launch(bwrap: str, control: socket) -> Launched:
-    """Start the warden behind the walls; root becomes a spare user first."""
+    """Start the supervisor behind the walls; root becomes a spare user first."""
     inside, after = contents(), _nothing
-    warden = command(inside.python, inside.program, control.fileno(), inside.packages)
-    rules = _readable(filters.program("warden"))
+    supervisor = command(inside.python, inside.program, control.fileno(), inside.packages)
+    rules = _readable(filters.program("supervisor"))
     try:
-        words = [bwrap, *walls(inside, inside.places, rules), *warden]
+        words = [bwrap, *walls(inside, inside.places, rules), *supervisor]
         if os.geteuid() == 0:
             user, held = users.lease()
             after = held.close
             staged = {place: f"{descent.STAGE}/{j}" for j, place in enumerate(inside.places)}
-            words = [bwrap, *walls(inside, staged, rules), *warden]
+            words = [bwrap, *walls(inside, staged, rules), *supervisor]
             paths = list(inside.places.values())
             words = users.descend(user=user, stage=paths, command=words, environment={})
         return Launched(start(words, {}, control.fileno(), rules), after)

@@ -18,9 +18,9 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 from starlette.types import ASGIApp
 
-from hdrlab.course.gallery import ballots, bearers, counting, pictures, store, tokens
-from hdrlab.course.gallery.front import HERE, HINTS, Front
-from hdrlab.course.gallery.guard import Guard, Rate, Refusal, form, same_origin
+from hdrlab.course.gallery import access_tokens, ballots, counting, pictures, store, tokens
+from hdrlab.course.gallery.web.front import HERE, HINTS, Front
+from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_origin
 
 STATIC = {
     "icon.svg": "image/svg+xml",
@@ -83,10 +83,10 @@ class Gallery(Front):
     async def link(self, request: Request) -> Response:
         """Show a button for a personal link: a mail's preview, which fetches links ahead, spends none."""
         token = request.path_params["token"]
-        if bearers.whose(self.db, token, "link"):
+        if access_tokens.whose(self.db, token, "link"):
             return self.page("enter.html", token=token)
-        voter = bearers.whose(self.db, request.cookies.get(self.cookie, ""))
-        if voter and voter.id == bearers.spent_by(self.db, token):
+        voter = access_tokens.whose(self.db, request.cookies.get(self.cookie, ""))
+        if voter and voter.id == access_tokens.spent_by(self.db, token):
             return RedirectResponse("/", 303)
         self.failed(request)
         raise Refusal(404, SPENT)
@@ -95,7 +95,7 @@ class Gallery(Front):
         """Take a personal link, once, and begin a session."""
         same_origin(request, self.origin)
         token = request.path_params["token"]
-        entered = await self.writer.do(lambda db: bearers.spend(db, token))
+        entered = await self.writer.do(lambda db: access_tokens.spend(db, token))
         if entered is None:
             self.failed(request)
             raise Refusal(404, SPENT)

@@ -9,8 +9,8 @@ from collections.abc import Iterable
 from pathlib import Path
 from xml.etree import ElementTree
 
-from hdrlab.course import feedback, results, sheets
-from hdrlab.course.results import Check, Result
+from hdrlab.course.reports import feedback, results, sheets
+from hdrlab.course.reports.results import Check, Result
 from hdrlab.io.files import replacing
 
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold

@@ -1,4 +1,4 @@
-"""A crew on this machine: so many processes at a time, one for each piece."""
+"""An executor on this machine: so many processes at a time, one for each piece."""
 
 import os
 import threading
@@ -7,7 +7,7 @@ from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from types import TracebackType
 from typing import Self
 
-from hdrlab.course.classroom import alone as process
+from hdrlab.course.classroom.executors import alone as process
 from hdrlab.course.classroom.journal import Ending, Piece
 
 PATIENCE = 1800.0  # seconds for one try of a piece
@@ -15,7 +15,7 @@ LOOK = 0.5  # seconds to wait for an ending
 
 
 class Processes:
-    """A `journal.Crew` of processes on this machine.
+    """A `journal.Executor` of processes on this machine.
 
     Parameters
     ----------

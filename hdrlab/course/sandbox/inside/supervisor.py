@@ -24,7 +24,7 @@ from typing import Any
 DIE_WITH_PARENT, ADOPT, SECCOMP, NO_NEW_PRIVILEGES = 1, 36, 22, 38  # prctl's numbers
 
 
-class Shelf:
+class PackageFinder:
     """Finds the packages that a submission may import, and what stands beside this file, and nothing else.
 
     No folder is put on sys.path: one that holds numpy holds much else.
@@ -95,7 +95,7 @@ def fork(control: socket.socket, order: dict[str, Any]) -> int:
             prctl(DIE_WITH_PARENT, signal.SIGKILL)
             begin(socket.socket(fileno=descriptors[0]), order)
         finally:
-            os._exit(0)  # at once: the end of this program is the warden's
+            os._exit(0)  # at once: the end of this program is the supervisor's
     os.close(descriptors[0])
     return pid
 
@@ -186,7 +186,7 @@ def main(number: str, *packages: str) -> None:
     for package in packages:
         name, _, folder = package.partition("=")
         shelf[name] = f"{folder}/__init__.py"
-    sys.meta_path.append(Shelf(shelf))
+    sys.meta_path.append(PackageFinder(shelf))
     channel = importlib.import_module("channel")
     _, _, order = channel.receive(control)
     for one in ("SIGINT", "SIGTERM", "SIGHUP"):

@@ -4,7 +4,7 @@ from pathlib import Path
 
 import uvicorn
 
-from hdrlab.course.gallery.app import Gallery, application
+from hdrlab.course.gallery.web.app import Gallery, application
 
 CONNECTIONS = 2000
 HEADERS = 16_384  # bytes

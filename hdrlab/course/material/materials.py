@@ -3,6 +3,8 @@
 import shutil
 from pathlib import Path
 
+COURSE = Path(__file__).parents[1]
+
 
 def folder(name: str) -> Path:
     """Return the folder "notebooks" or "assignments", in the wheel or at the top of a clone.
@@ -12,7 +14,7 @@ def folder(name: str) -> Path:
     FileNotFoundError
         Where neither is there, which means that the installation is damaged.
     """
-    inside, beside = Path(__file__).parent / name, Path(__file__).parents[2] / name
+    inside, beside = COURSE / name, COURSE.parents[1] / name
     for place in (inside, beside):
         if place.is_dir():
             return place

@@ -20,7 +20,7 @@ from copydetect import CodeFingerprint, compare_files
 from copydetect.utils import get_token_coverage
 from scipy.sparse import csr_array
 
-from hdrlab.course.classroom.authored import Work
+from hdrlab.course.overlap.authored import Work
 
 RUN = 25  # signs of the shortest passage that counts
 SHORT = 100  # signs of a task, below which it is not compared

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import jinja2
 
-from hdrlab.course import results
-from hdrlab.course.results import Check, Drawing, Result
+from hdrlab.course.reports import results
+from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 

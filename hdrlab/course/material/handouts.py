@@ -17,9 +17,9 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course import materials, stubs
 from hdrlab.course.code import inline
 from hdrlab.course.code.closure import Cell
+from hdrlab.course.material import materials, stubs
 from hdrlab.course.plan import Homework, Plan, Task
 from hdrlab.course.submission import cells_of
 from hdrlab.io.files import replacing

@@ -1,4 +1,4 @@
-"""A crew on many machines: a Dask cluster, whose workers have hdrlab, and no disk in common with this one.
+"""An executor on many machines: a Dask cluster, whose workers have hdrlab, and no disk in common with ours.
 
 A submission's bytes go out with the work, and its result's bytes come back; nothing is kept over there. A
 piece is given to one worker, and no worker has more of them than threads, so that it is known who was at work
@@ -24,9 +24,9 @@ from distributed import Client, Future, KilledWorker
 from distributed.comm import resolve_address
 
 import hdrlab
-from hdrlab.course.classroom import alone as process
+from hdrlab.course.classroom.executors import alone as process
+from hdrlab.course.classroom.executors.processes import LOOK, PATIENCE
 from hdrlab.course.classroom.journal import Ending, Piece
-from hdrlab.course.classroom.processes import LOOK, PATIENCE
 
 CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
 LONELY = 120.0  # seconds without any worker, after which the run ends
@@ -95,7 +95,7 @@ def _watch() -> Callable[[], bool]:
 
 
 class Cluster:
-    """A `journal.Crew` of the workers of a Dask cluster; those who join later are of it, too.
+    """A `journal.Executor` of the workers of a Dask cluster; those who join later are of it, too.
 
     Parameters
     ----------

@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Any
 
 from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.warden import DIE_WITH_PARENT, prctl
+from hdrlab.course.sandbox.inside.supervisor import DIE_WITH_PARENT, prctl
 
 TICK = 0.2  # seconds between two looks at whether it is to be ended
 LAST = 300  # characters of why it failed
@@ -50,7 +50,7 @@ def run(
     order = pickle.dumps([one for one in sys.path if one]) + pickle.dumps((work, piece))
     with tempfile.TemporaryDirectory(prefix="hdrlab-piece-", ignore_cleanup_errors=True) as scratch:
         process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "hdrlab.course.classroom.alone", str(os.getpid())],
+            [sys.executable, "-P", "-m", "hdrlab.course.classroom.executors.alone", str(os.getpid())],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -11,9 +11,9 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from hdrlab.course import handouts, materials
 from hdrlab.course.code import names
 from hdrlab.course.code.closure import closed
+from hdrlab.course.material import handouts, materials
 from hdrlab.course.submission import LARGEST, cells_of
 
 CODE = 100_000  # characters in all cells; a worked homework has some 40,000, docstrings and all

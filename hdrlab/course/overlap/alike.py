@@ -15,14 +15,14 @@ from typing import NamedTuple
 import numpy as np
 from copydetect import compare_files
 
-from hdrlab.course import sheets
-from hdrlab.course.classroom import authored, similarity
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.classroom.authored import Work
 from hdrlab.course.classroom.handins import Handin
-from hdrlab.course.classroom.similarity import Likeness, Pair, Printed
 from hdrlab.course.code import inline
+from hdrlab.course.overlap import authored, similarity
+from hdrlab.course.overlap.authored import Work
+from hdrlab.course.overlap.similarity import Likeness, Pair, Printed
 from hdrlab.course.plan import Homework
+from hdrlab.course.reports import sheets
 from hdrlab.io.files import replacing
 from hdrlab.show.pages.templates import templates
 

@@ -1,0 +1,1 @@
+"""What the works of a class have in common, for instructors' eyes."""

@@ -1,0 +1,1 @@
+"""What checking comes to: results, the feedback to a student, gradebooks and tables."""

@@ -1,0 +1,1 @@
+"""What goes into a sandbox: these files need the standard library and numpy alone."""
