@@ -30,7 +30,7 @@ from hdrlab.fast import debevec
 from hdrlab.io.radiance import read_radiance
 from hdrlab.radiance import ratios
 from hdrlab.response import grossberg
-from hdrlab.response.polynomial import curve
+from hdrlab.response.mitsunaga import curve
 
 TIMES = 4.0 ** np.arange(6)  # six exposures, 2 stops apart
 SAMPLES, SMOOTHNESS = 200, 50.0  # the paper does not say which

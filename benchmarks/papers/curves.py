@@ -24,7 +24,7 @@ from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.fast import debevec
 from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import catalogue, recovery
-from hdrlab.response import families, mitsunaga
+from hdrlab.response import families, self_calibration
 
 Float = NDArray[np.float64]
 Method = Callable[[Bracket], Float]
@@ -61,7 +61,7 @@ def by_ratios(bracket: Bracket) -> Float:
     """Return g by stiff least squares, with ratios from self-calibration of order 5 where it can tell."""
     images, times = bracket.images, bracket.times
     try:
-        R = mitsunaga.exposure_ratios(images, times, order=5)
+        R = self_calibration.calibrate(images, times, order=5).R
     except ValueError:  # no pixels lie well in two neighbouring frames
         return debevec.recover(images, times, smoothness=STIFF)
     found = np.cumprod(np.concatenate([[1], 1 / R]))

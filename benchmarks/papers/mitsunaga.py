@@ -15,8 +15,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_most, near, spread
+from hdrlab.core.steps import last
 from hdrlab.response import ambiguity, marginal, mitsunaga, polynomial, selection
-from hdrlab.response.pairs import average, moments
+from hdrlab.response.self_calibration import average
 
 Float = NDArray[np.float64]
 STATED = np.full(3, 0.5)
@@ -50,7 +51,7 @@ def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trial
 
 def paper_states(one: ambiguity.Trial) -> list[mitsunaga.State]:
     """Return the paper's scheme, turn by turn, from ratios of 0.5."""
-    return list(mitsunaga.fit_steps(moments(average(one.Z)[None]), STATED, 5))
+    return list(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
 
 
 def marginal_error(one: ambiguity.Trial) -> float:
@@ -67,7 +68,7 @@ def figure4(*, seed: int = SEED, sigma: float = 0.0) -> ambiguity.Valley:
 def canon(*, seed: int = SEED) -> tuple[Float, Float]:
     """Return the ratios (4,) of the Canon as the paper's scheme and ours find them, from the stated ones."""
     one = ambiguity.trial(np.random.default_rng(seed), ratios=CANON)
-    paper = mitsunaga.fit(moments(average(one.Z)[None]), CANON_STATED, 5)
+    paper = last(mitsunaga.fit_steps(average(one.Z)[None], CANON_STATED, 5))
     return paper.R, marginal.fit(one.Z, paper.c[0], paper.R).R
 
 

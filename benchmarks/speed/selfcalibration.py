@@ -10,7 +10,7 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.core.bracket import Bracket
 from hdrlab.io.response_files import read_curve
-from hdrlab.response import mitsunaga
+from hdrlab.response import self_calibration
 
 
 def told(folder: Path, one: bool) -> Case:
@@ -33,7 +33,9 @@ def case(folder: Path, one: bool, order: int | None) -> Case:
         return data.curve_error(read_curve(saved) if who == peers.PFS else g)
 
     return Case(
-        {OURS: lambda: mitsunaga.recover(bracket.images, bracket.times, order=order)} | theirs, missing, error
+        {OURS: lambda: self_calibration.find_response(bracket.images, bracket.times, order=order)} | theirs,
+        missing,
+        error,
     )
 
 

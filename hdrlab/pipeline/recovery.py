@@ -7,19 +7,22 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.types import F64
 from hdrlab.diagnostics.plausibility import validate_response
-from hdrlab.fast.robertson import Smooth
+from hdrlab.fast import robertson
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
+from hdrlab.response import self_calibration
 
 Recover = Callable[..., F64]
-# what a method needs beyond its paper's defaults for photographs as people take them
-KNOBS = {"robertson": {"steps": Smooth(100)}}
+# methods that need more than their paper for photographs as people take them
+EXTENDED: dict[Method, Recover] = {
+    "robertson": partial(robertson.recover, steps=robertson.Smooth(100)),
+    "mitsunaga": self_calibration.find_response,
+}
 
 
 def method(response: Method) -> Recover:
-    """Return a method by its name, with its KNOBS; a function is taken as it is."""
-    found = catalogue.method("response", response)
-    return partial(found, **KNOBS[response]) if response in KNOBS else found
+    """Return a method by its name, EXTENDED where it is; a function is taken as it is."""
+    return EXTENDED.get(response) or catalogue.method("response", response)
 
 
 def validated(response: Method) -> Recover:

@@ -15,9 +15,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.response.mitsunaga import coefficients
-from hdrlab.response.pairs import average, held, moments
-from hdrlab.response.polynomial import brightness, misfit, random, value
+from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, value
+from hdrlab.response.polynomial import brightness, misfit, random
+from hdrlab.response.self_calibration import average
 
 Float = NDArray[np.float64]
 
@@ -124,14 +124,13 @@ def normalised(M: Float, R: float, c: Float) -> float:
 
     E itself cannot judge R: it is small wherever f is flat, and f^u is flat over most of its range.
     """
-    a, b = M.T
-    return float(np.sqrt(np.mean(misfit(a, b, R, c) ** 2)))
+    return float(np.sqrt(np.mean(misfit(M, R, c) ** 2)))
 
 
 def errors_along(M: Float, R: ArrayLike, order: int) -> Float:
     """Return the normalised error of the best c at each of the ratios R (K,), for two frames M (N, 2)."""
-    m, M = moments(M[None], order), M[held(M)[:, 0]]
-    return np.array([normalised(M, r, coefficients(m, np.array([r]), order)[0]) for r in np.atleast_1d(R)])
+    samples, M = neighbours(M, order), M[in_range(M)[:, 0]]
+    return np.array([normalised(M, r, coefficients(gram(*samples, np.array([r])))) for r in np.atleast_1d(R)])
 
 
 def search(M: Float, start: float, order: int, *, reach: float = 1.25, steps: int = 81) -> float:

@@ -25,7 +25,7 @@ from hdrlab.core.arrays import Array, as_stack, as_times, to_256
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F64, Indices
 from hdrlab.core.weights import make_monotone, second_differences
-from hdrlab.response.polynomial import basis, curve
+from hdrlab.response.mitsunaga import curve, terms
 
 
 class Equations(NamedTuple):
@@ -93,13 +93,13 @@ def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
 def solve_polynomial(found: Equations, *, order: int = 10, n: int = 256) -> F64:
     """Return c (N - 1,), the least of sum weight^2 (f^-1(m) - R f^-1(T))^2 [Grossberg03].
 
-    f^-1(M) = M + sum_k c_k b_k(M) in the basis of `response.polynomial`: f^-1(0) = 0 and f^-1(1) = 1.
+    f^-1(M) = M + sum_k c_k b_k(M) in the basis of `mitsunaga`: f^-1(0) = 0 and f^-1(1) = 1.
     """
     if not np.any(found.weight > 0) or not 1 <= order <= 20:
         raise ValueError(f"expected an order to 20 and levels measured well in two exposures, got {order}")
     M, MT = found.m / (n - 1), found.T / (n - 1)
-    A = basis(M, order) - found.R[:, None] * basis(MT, order)
-    return np.linalg.lstsq(found.weight[:, None] * A, found.weight * (found.R * MT - M))[0]
+    D = found.weight[:, None] * (terms(M, order) - found.R[:, None] * terms(MT, order))
+    return np.linalg.lstsq(D[:, 1:], -D[:, 0])[0]
 
 
 def recover(

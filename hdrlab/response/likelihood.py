@@ -22,7 +22,8 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 from scipy.special import ndtr
 
-from hdrlab.response.polynomial import basis, brightness, slope, value
+from hdrlab.response.mitsunaga import terms, value
+from hdrlab.response.polynomial import brightness, slope
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -70,7 +71,7 @@ def predict(c: Float, tau: Float, at: Nodes) -> tuple[Float, Float]:
     rho = np.exp(tau[:, None] - tau[at.at])
     X = rho * value(at.x, c)
     m = brightness(X, c)
-    dc = rho[..., None] * basis(at.x, order) - basis(m, order)
+    dc = (rho[..., None] * terms(at.x, order) - terms(m, order))[..., 1:]
     own = np.arange(P)[:, None] == np.arange(P - 1)
     dtau = X[..., None] * (own[:, None, :].astype(float) - own[at.at])
     return m, np.where(X < 1, 1 / slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)

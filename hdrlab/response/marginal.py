@@ -25,7 +25,6 @@ from hdrlab.core.arrays import as_mask, as_stack, describe
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
-from hdrlab.response import mitsunaga
 from hdrlab.response.likelihood import (
     Nodes,
     Support,
@@ -39,8 +38,10 @@ from hdrlab.response.likelihood import (
     support,
     table,
 )
-from hdrlab.response.pairs import HIGHEST
-from hdrlab.response.polynomial import GRID, curve, rising, slope
+from hdrlab.response.mitsunaga import curve
+from hdrlab.response.polynomial import GRID, limit_slope, slope
+from hdrlab.response.self_calibration import HIGHEST
+from hdrlab.response.self_calibration import calibrate as self_calibrate
 
 Float = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -147,7 +148,9 @@ def fit_steps(
     stated = R if stated is None else np.asarray(stated, dtype=np.float64)
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
         raise ValueError(f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}")
-    theta, prior = (np.r_[rising(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(sigma)] for r in (R, stated))
+    theta, prior = (
+        np.r_[limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(sigma)] for r in (R, stated)
+    )
     stiff = stiffness(len(theta), Z.shape[1], trust)
     for blur in (3.0, 2.0):
         at, near, p = begin(Z, theta, count, blur)
@@ -171,17 +174,17 @@ def calibrate(
     images: ArrayLike,
     times: ArrayLike,
     *,
-    order: int = HIGHEST,
+    order: int | None = HIGHEST,
     trust: float = 0.005,
     pixels: int = 10_000,
     valid: ArrayLike | None = None,
     **knobs: float,
 ) -> list[State]:
-    """Return the last State of each channel of a bracket, starting where `mitsunaga` stops.
+    """Return the last State of each channel of a bracket, starting where `self_calibration` stops.
 
     For cameras that are polynomials of this order. For others, the misfit may cost more than the noise that
     it takes care of, and `mitsunaga` comes nearer. Parameters as of `recover`, and those of `fit_steps`;
-    `polynomial.curve(state.c)` is the response g. It takes seconds a channel.
+    `mitsunaga.curve(state.c)` is the response g. It takes seconds a channel.
 
     >>> ramp = np.linspace(1, 100, 2500).reshape(50, 50)  # a linear camera
     >>> images = np.clip(np.round(ramp * np.array([1, 2, 4])[:, None, None]), 0, 255).astype(np.uint8)
@@ -189,7 +192,7 @@ def calibrate(
     >>> bool(abs(curve(state.c)[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    start = mitsunaga.calibrate(images, times, order=order, valid=valid)
+    start = self_calibrate(images, times, order=order, valid=valid)
     stack, times = as_stack(images), np.asarray(times, dtype=np.float64)
     by_time = short_to_long(stack, times)
     Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
@@ -216,7 +219,7 @@ def recover(
     times : (P,) float
         Exposure times in seconds, at least two different ones.
     order : int, optional
-        Of the polynomial; by default the one that `mitsunaga` chooses.
+        Of the polynomial; by default the one that `self_calibration` chooses.
     trust : float
         How far the ratios may be from those of the times, as a standard deviation of ln R. Where no
         polynomial is the camera, its misfit tilts the valley as noise did: then the times know better.
@@ -248,8 +251,6 @@ def recover(
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    if order is None:
-        order = mitsunaga.calibrate(images, times, valid=valid).c.shape[1] + 1
     states = calibrate(
         images, times, order=order, trust=trust, pixels=pixels, valid=valid, enough=0.5, most=10
     )

@@ -1,208 +1,145 @@
 """Radiometric self-calibration (Mitsunaga and Nayar, CVPR 1999).
 
-M    brightness     (C, N, P), 0 ... 1: sample p in frame q, frames from short to long, channel by channel
-f    polynomial     M -> exposure, f(0) = 0, f(1) = 1: see `polynomial`
-c    coefficients   (C, order - 1), one row a channel
-R    ratios         (P - 1,), exposure of frame q over that of frame q + 1: one shutter for all channels
-m    moments        sums over the samples: see `pairs`
-E    error          what eq. 7 minimises: sum (f(M_q) - R f(M_q+1))^2
+M       brightness     (C, N, P), 0 ... 1: sample p in frame q, frames from short to long, channel by channel
+f_inv   f^-1           M -> exposure, a polynomial of order N with f^-1(0) = 0 and f^-1(1) = 1
+b_n     basis          M (1 - M) T_n(2 M - 1), n = 0 ... N - 2, with T_n the Chebyshev polynomials
+c       coefficients   (C, N - 1), one row a channel
+R       ratios         (P - 1,), exposure of frame q over that of frame q + 1: one shutter for all channels
+H       (N, N)         eq. 7 multiplied out: the sum of squares is (1, c) H (1, c)^T
 
-A sample in two neighbouring frames says f(M_q) = R f(M_q+1) [eq. 5]. With R known that is linear in c; with c
-known, R is a quotient; so take turns, from rough ratios. But (f^u, R^u) answers eq. 5 as well as (f, R) does:
-along u the error is a valley, nearly level, which noise tilts one way or the other. The first turns lead into
-the valley, all later ones along it: mostly towards the truth, now and then far away. So `eps` is more than a
-stop, it keeps the answer near the ratios given: it bounds the worst case, where a typical one would gain from
-more turns. `ambiguity` shows the slide; `marginal` has an estimator that knows how noise tilts the valley.
+A sample in two neighbouring frames says f^-1(M_q) = R f^-1(M_q+1) [eq. 5]. With R known that is linear in c;
+with c known, R is a quotient; so each is made from the other, from rough ratios on. But (f^-u, R^u) answers
+eq. 5 as well as (f^-1, R) does: along u the error is a valley, nearly level, which noise tilts one way or the
+other. The first iterations lead into the valley, all later ones along it: mostly towards the truth, now and
+then far away. So `eps` is more than a stop, it keeps the answer near the ratios given.
 
-Departures: samples are means of many pixels, used where both frames hold them in 0.05 ... 0.98; f(0) = 0; and
-a ratio is a quotient of sums, not a mean of quotients [eq. 10, which lacks its 1/P], to which dark pixels add
-mostly noise. And the order is the least that other parts of the picture ask for, see `choose_order`; that of
-least error [sec. 4] is the highest.
+f^-1(M) = M + sum_n c_n b_n(M): every polynomial through both ends can be written so, and no other can, so
+eq. 8 needs no equation of its own, and c = 0 is the linear camera. The powers M^n of eq. 3 are so alike that
+at N = 10 their normal equations lose all digits. And a ratio is a quotient of sums, not a mean of quotients
+[eq. 10, which lacks its 1/P], to which dark pixels add mostly noise.
 """
 
 from collections.abc import Iterator, Sequence
-from functools import reduce
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.polynomial.chebyshev import chebvander
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_mask, as_stack, as_times
-from hdrlab.core.bracket import short_to_long
-from hdrlab.core.sampling import by_grid
-from hdrlab.core.steps import last
-from hdrlab.response.pairs import HIGHEST, Moments, average, both, held, moments
-from hdrlab.response.polynomial import basis, curve, misfit
+from hdrlab.core.types import F64, Indices, Mask
 
-Float = NDArray[np.float64]
-RIDGE = 1e-7  # of the mean square of M and f: where the samples tell less, the straight line is kept
-PARTS, STRIPES = 5, 20  # of the picture, for the choice of the order: a part is every fifth stripe
-FINEST = 0.01 / 255  # in brightness, a hundredth of a level: what is less is no difference
-SWINGS = basis(np.linspace(0, 1, 256), HIGHEST)  # how each coefficient moves f at the pixel levels
+# of the trace of H: where the samples constrain less, the straight line is kept
+RIDGE = 1e-7
+# brightness of a sample that both frames see well
+LOW, HIGH = 0.05, 0.98
+Pairs = tuple[F64, F64, Indices]
 
 
 class State(NamedTuple):
-    """One turn: c (C, order - 1), the R (P - 1,) they lead to, the error both leave, and how far f moved."""
+    """After an iteration: c (C, N - 1), the R (P - 1,) they lead to, and by how much f^-1 changed."""
 
-    c: Float
-    R: Float
-    error: float
+    c: F64
+    R: F64
     change: float
 
 
-def quadratic(m: Moments, R: Float) -> Float:
-    """Return H (C, N, N) of E = (1, c) H (1, c)^T, the square of eq. 7 multiplied out."""
-    R = R[:, None, None]
-    return (m.aa - R * (m.ab + m.ab.swapaxes(-1, -2)) + R**2 * m.bb).sum(axis=1)
+def terms(M: ArrayLike, order: int) -> F64:
+    """Return (M, b_0(M), ..., b_N-2(M)), (..., N), whose sum with (1, c) is f^-1(M)."""
+    M = np.asarray(M, np.float64)[..., None]
+    T = chebvander(2 * M[..., 0] - 1, order)[..., : order - 1]
+    return np.concatenate([M, M * (1 - M) * T], axis=-1)
 
 
-def coefficients(m: Moments, R: Float, order: int) -> Float:
-    """Return c (C, order - 1) of dE / dc = 0 [eq. 9]; eq. 8 is built into the basis."""
-    H = quadratic(m, R)[:, :order, :order]
-    A, b = H[:, 1:, 1:], -H[:, 1:, :1]
-    ridge = RIDGE * np.trace(H, axis1=1, axis2=2) + 1e-300
-    return np.asarray(np.linalg.solve(A + ridge[:, None, None] * np.eye(order - 1), b)[..., 0])
+def value(M: ArrayLike, c: ArrayLike) -> F64:
+    """Return f^-1(M) = M + sum_n c_n b_n(M) [Mitsunaga99 eq. 3].
+
+    Examples
+    --------
+    >>> value([0, 0.5, 1], []).tolist()  # with no terms a straight line
+    [0.0, 0.5, 1.0]
+    """
+    c = np.append(1, c)
+    return np.asarray(terms(M, len(c)) @ c)
 
 
-def ratios(m: Moments, c: Float, R: Float) -> Float:
-    """Return sum f(M_q) / sum f(M_q+1) of each pair [eq. 10]; the ratio before where no sample tells."""
-    f = np.column_stack([np.ones(len(c)), c])[:, None]
-    n = f.shape[-1]
-    above, below = (f * m.a[..., :n]).sum(axis=(0, 2)), (f * m.b[..., :n]).sum(axis=(0, 2))
-    told = (above > 0) & (above < below)
-    return np.where(told, above / np.where(told, below, 1), R)
+def in_range(M: F64) -> Mask:
+    """Return (..., P - 1), whether both of two neighbouring frames see a sample well; NaN is not seen.
+
+    Examples
+    --------
+    >>> in_range(np.array([0.1, 0.4, 0.99])).tolist()  # the third frame is clipped
+    [True, False]
+    """
+    inside = (M > LOW) & (M < HIGH)
+    return inside[..., :-1] & inside[..., 1:]
 
 
-def error(m: Moments, R: Float, c: Float) -> float:
-    """Return the root mean square of f(M_q) - R f(M_q+1) over samples, pairs and channels [eq. 7]."""
-    f = np.column_stack([np.ones(len(c)), c])
-    n = f.shape[-1]
-    E = np.einsum("ci,cij,cj->", f, quadratic(m, R)[:, :n, :n], f)
-    return float(np.sqrt(max(E, 0) / m.samples.sum()))
+def neighbours(M: F64, order: int) -> Pairs:
+    """Return the terms a, b (K, N) of samples M (N, P) that frames q (K,) and q + 1 see well."""
+    used, phi = in_range(M), terms(np.nan_to_num(M), order)
+    return phi[:, :-1][used], phi[:, 1:][used], np.nonzero(used)[1]
 
 
-def fit_steps(m: Moments, R: ArrayLike, order: int, *, eps: float = 1e-3, most: int = 30) -> Iterator[State]:
-    """Yield the State after each turn, c and then R, until no f(M) moves by eps any more [eq. 11]."""
-    R, before = np.asarray(R, dtype=np.float64), None
-    for _ in range(most):
-        c = coefficients(m, R, order)
-        R = ratios(m, c, R)
-        change = (
-            np.inf
-            if before is None
-            else float(np.abs(SWINGS[:, : order - 1] @ (c - before).T).max(initial=0))
-        )
-        yield State(c, R, error(m, R, c), change)
+def gram(a: F64, b: F64, q: Indices, R: F64) -> F64:
+    """Return H of sum (f^-1(M_q) - R_q f^-1(M_q+1))^2 = (1, c) H (1, c)^T [eq. 7]."""
+    D = a - R[q, None] * b
+    return D.T @ D
+
+
+def coefficients(H: F64) -> F64:
+    """Return c of the least (1, c) H (1, c)^T, where its derivative is 0 [eq. 9]."""
+    ridge = (RIDGE * np.trace(H) + 1e-300) * np.eye(len(H) - 1)
+    return np.linalg.solve(H[1:, 1:] + ridge, -H[1:, 0])
+
+
+def ratios(channels: Sequence[Pairs], c: F64, R: F64) -> F64:
+    """Return sum f^-1(M_q) / sum f^-1(M_q+1) of each pair [eq. 10]; R where no sample constrains it."""
+    total = np.zeros((2, len(R)))
+    for (a, b, q), own in zip(channels, c, strict=True):
+        total += [np.bincount(q, phi[:, 0] + phi[:, 1:] @ own, len(R)) for phi in (a, b)]
+    known = (total[0] > 0) & (total[0] < total[1])
+    return np.divide(*total, out=R.copy(), where=known)
+
+
+def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[State]:
+    """Yield the State after each iteration, c and then R, until f^-1 changes by less than eps [eq. 11]."""
+    channels = [neighbours(own, order) for own in M]
+    levels, R, before = terms(np.linspace(0, 1, 256), order)[:, 1:], np.asarray(R, np.float64), np.inf
+    for _ in range(max_iterations):
+        c = np.stack([coefficients(gram(*one, R)) for one in channels])
+        R = ratios(channels, c, R)
+        curves = c @ levels.T
+        change, before = float(np.max(np.abs(curves - before))), curves
+        yield State(c, R, change)
         if change < eps:
             return
-        before = c
 
 
-def fit(m: Moments, R: ArrayLike, order: int, **knobs: float) -> State:
-    """Return the last State of `fit_steps`."""
-    return last(fit_steps(m, R, order, **knobs))  # type: ignore[arg-type]
+def curve(c: ArrayLike, n: int = 256, *, least: float = 1e-4) -> F64:
+    """Return g = ln f^-1 (n,), g[n // 2] = 0, where f^-1 climbs by `least` / (n - 1) or more a level.
 
-
-def others(parts: Sequence[Float]) -> list[Moments]:
-    """Return the Moments of all parts of the picture but one, for each of them."""
-    m = [moments(M) for M in parts]
-    return [reduce(both, m[:k] + m[k + 1 :]) for k in range(len(m))]
-
-
-def held_out(parts: Sequence[Float], R: Float, order: int, without: Sequence[Moments] | None = None) -> Float:
-    """Return the error (K,) of each part of the picture under the c of the `others`, rms in brightness.
-
-    Not that of eq. 7, which is small wherever f is flat, and high orders make it so. And R stays as stated: a
-    straight line explains a power law as well as the power does, with ratios of its own.
+    A polynomial may dip where no pixel held it; a g that falls has no inverse. The clamp acts on the
+    increments, so the curve keeps its shape wherever it rises. Level 0 holds what is darker than half a
+    level; it gets the middle of that.
     """
-    found = np.zeros(len(parts))
-    for k, (M, m) in enumerate(zip(parts, without or others(parts), strict=True)):
-        c, used = coefficients(m, R, order), held(M)
-        left = misfit(M[..., :-1], M[..., 1:], R, c)
-        found[k] = np.sqrt(np.mean(left[used] ** 2)) if used.any() else 0
-    return found
+    increments = np.maximum(np.diff(value(np.linspace(0, 1, n), c)), least / (n - 1))
+    f_inv = np.cumsum(np.append(increments[0] / 4, [0.75 * increments[0], *increments[1:]]))
+    return np.log(f_inv / f_inv[n // 2])
 
 
-def choose_order(parts: Sequence[Float], R: ArrayLike) -> int:
-    """Return the least order whose held-out error is within a standard error of the best [Breiman84 3.4.3].
-
-    One for all channels, from samples M (C, N, P) of each part of a picture. Halves of samples that each hold
-    pixels from all over it would not do: what motion and flare add stands in both, and they confirm it.
-    """
-    if len(parts) < 2:
-        return 1
-    R = np.asarray(R, dtype=np.float64)
-    without = others(parts)
-    errors = np.stack([held_out(parts, R, order, without) for order in range(1, HIGHEST + 1)])
-    mean = errors.mean(axis=1)
-    best = int(np.argmin(mean))
-    doubt = np.std(errors[best], ddof=1) / np.sqrt(len(parts))
-    return 1 + int(np.argmax(mean <= mean[best] + max(doubt, FINEST)))
-
-
-def calibrate(
-    images: ArrayLike,
-    times: ArrayLike,
-    *,
-    order: int | None = None,
-    eps: float = 1e-3,
-    pixels: int = 12_000,
-    samples: int = 400,
-    valid: ArrayLike | None = None,
-) -> State:
-    """Return the last State for a bracket: the coefficients and the ratios. Parameters as of `recover`."""
-    parts, R = averages(images, times, pixels=pixels, samples=samples, valid=valid)
-    m = reduce(both, [moments(M) for M in parts])
-    if not np.all(m.samples.sum(axis=1)):
-        raise ValueError(
-            "expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames; got none"
-        )
-    return fit(m, R, choose_order(parts, R) if order is None else order, eps=eps)
-
-
-def averages(
-    images: ArrayLike, times: ArrayLike, *, pixels: int, samples: int, valid: ArrayLike | None
-) -> tuple[list[Float], Float]:
-    """Return samples of a bracket, from short to long, and the ratios R (P - 1,) of its times.
-
-    The samples come in PARTS of the picture, M (C, N, P) each: every PARTS-th of its STRIPES.
-    """
-    stack = as_stack(images)
-    times = as_times(times, len(stack), distinct=2)
-    by_time = short_to_long(stack, times)
-    Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
-    Z = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
-    stripes = np.array_split(np.arange(Z.shape[1]), STRIPES)  # the grid's pixels come row by row
-    parts = [Z[:, np.concatenate(stripes[k::PARTS])] for k in range(min(PARTS, Z.shape[1]))]
-    each = -(-samples // PARTS)
-    M = [np.stack([average(one, each) for one in part]) for part in parts]
-    return M, times[by_time][:-1] / times[by_time][1:]
-
-
-def exposure_ratios(images: ArrayLike, times: ArrayLike, **knobs: Any) -> Float:
-    """Return R (P - 1,), each frame's exposure over the next longer one's. Parameters as of `recover`."""
-    return calibrate(images, times, **knobs).R
-
-
-def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None, **knobs: Any) -> Float:
+def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float = 1e-3) -> F64:
     """Return the response g, and take the exposure times for rough.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Photographs, aligned; 16 bits are read at 256 levels.
+        Photographs, aligned.
     times : (P,) float
-        Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in part;
-        `exposure_ratios` tells to what.
-    order : int, optional
-        Of the polynomial; by default the least of 1 to 10 whose held-out error is within a standard error of
-        the best.
+        Exposure times in seconds, at least two different ones. Errors of a tenth are corrected in part.
+    order : int
+        Of the polynomial.
     eps : float
-        Stop when f, 0 to 1, moves by less. A smaller one lets the ratios drift further from the times.
-    pixels, samples : int
-        How many pixels to take, on an even grid, and how many means to make of them.
-    valid : (P, H, W) bool, optional
-        False where a photograph holds no picture.
+        Stop when f^-1, 0 to 1, changes by less. A smaller one lets the ratios drift further from the times.
 
     Returns
     -------
@@ -212,12 +149,11 @@ def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = No
     Raises
     ------
     ValueError
-        For fewer than two photographs or two times, and photographs that share no levels worth using.
+        For photographs that share no levels worth using.
 
     References
     ----------
-    Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999. For the standard error, Breiman, Friedman,
-    Olshen and Stone, Classification and regression trees, 1984, sec. 3.4.3.
+    Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999.
 
     Examples
     --------
@@ -227,5 +163,12 @@ def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = No
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    g = np.stack([curve(c) for c in calibrate(images, times, valid=valid, **knobs).c], axis=-1)
-    return g.reshape(256, *np.shape(images)[3:])
+    by_time = np.argsort(times)
+    images, t = np.asarray(images)[by_time], np.asarray(times, np.float64)[by_time]
+    every = max(1, int(np.sqrt(images.size / len(t) / 12_000)))  # an even grid of some thousand pixels
+    M = images[:, ::every, ::every].reshape(len(t), -1, *images.shape[3:]).T / np.iinfo(images.dtype).max
+    M = M.reshape(-1, *M.shape[-2:])
+    if not all(in_range(own).any() for own in M):
+        raise ValueError("expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames")
+    *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)
+    return np.stack([curve(c) for c in state.c], axis=-1).reshape(256, *images.shape[3:])

@@ -5,8 +5,9 @@ import pytest
 
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
+from hdrlab.core.steps import last
 from hdrlab.response import ambiguity, likelihood, marginal, mitsunaga, polynomial
-from hdrlab.response.pairs import average, moments
+from hdrlab.response.self_calibration import average
 
 STATED = np.full(3, 0.5)
 SIGMA = 0.005
@@ -21,7 +22,7 @@ def model(seed=0, count=60):
 
 def estimate(one):
     """Return the paper's state and ours for a trial."""
-    paper = mitsunaga.fit(moments(average(one.Z)[None]), STATED, 5)
+    paper = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
     return paper, marginal.fit(one.Z, paper.c[0], paper.R, stated=STATED, trust=0.058)
 
 
@@ -40,14 +41,14 @@ def test_level_probabilities_are_those_of_a_noisy_camera():
 def test_predictions_are_the_brightness_of_the_other_frames():
     c, tau, at = model()
     m = likelihood.predict(c, tau, at)[0]
-    X = polynomial.value(at.x, c) * np.exp(tau[:, None] - tau[at.at])
-    assert np.allclose(polynomial.value(m, c), np.minimum(X, 1), atol=1e-6)
+    X = mitsunaga.value(at.x, c) * np.exp(tau[:, None] - tau[at.at])
+    assert np.allclose(mitsunaga.value(m, c), np.minimum(X, 1), atol=1e-6)
     assert np.allclose(m[at.at, np.arange(len(at.x))], at.x, atol=1e-6)
 
 
 def test_nodes_cover_what_the_longest_frame_clips():
     c, tau, at = model()
-    exposures = np.sort(polynomial.value(at.x, c) * np.exp(-tau[at.at]))
+    exposures = np.sort(mitsunaga.value(at.x, c) * np.exp(-tau[at.at]))
     assert exposures[0] < 0.05 and exposures[-1] > 0.9 * np.exp(2.1)
     assert np.all(np.diff(exposures) > 0) and np.diff(np.log(exposures[5:])).max() < 0.5
 
@@ -90,7 +91,7 @@ def test_the_support_holds_nearly_all_of_the_likelihood():
 
 def test_every_step_raises_the_likelihood():
     one = ambiguity.trial(np.random.default_rng(3), pixels=2000)
-    start = mitsunaga.fit(moments(average(one.Z)[None]), STATED, 5)
+    start = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
     states = list(marginal.fit_steps(one.Z, start.c[0], start.R))
     second = 1 + next(i for i, state in enumerate(states) if state.promise < 0.01)
     for climb in (states[:second], states[second:]):  # each with nodes of its own
@@ -129,7 +130,7 @@ def test_it_climbs_to_the_same_place_from_the_truth(seed):
 
 def test_ratios_that_are_trusted_stay_and_the_curve_gains():
     one = ambiguity.trial(np.random.default_rng(1))
-    paper = mitsunaga.fit(moments(average(one.Z)[None]), STATED, 5)
+    paper = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
     state = marginal.fit(one.Z, paper.c[0], paper.R, stated=one.R, trust=1e-5)
     assert np.allclose(state.R, one.R, atol=1e-4)
     assert ambiguity.mean_error(state.c, one.c) < 0.1
@@ -139,7 +140,7 @@ def test_ratios_that_are_trusted_stay_and_the_curve_gains():
 def test_the_ratios_of_the_canon_camera(seed):
     ratios = np.array([0.419, 0.292, 0.570, 0.512])
     one = ambiguity.trial(np.random.default_rng(seed), ratios=ratios)
-    start = mitsunaga.fit(moments(average(one.Z)[None]), [0.5, 0.25, 0.5, 0.5], 5)
+    start = last(mitsunaga.fit_steps(average(one.Z)[None], [0.5, 0.25, 0.5, 0.5], 5))
     assert np.abs(marginal.fit(one.Z, start.c[0], start.R).R - ratios).max() < 0.005
 
 
@@ -147,7 +148,7 @@ def test_a_simulated_camera_is_recovered():
     E = 10 ** np.random.default_rng(6).uniform(-1.5, 1.5, (50, 60))
     taken = camera.shoot(E, camera.times_around(E, 3), camera.Camera(response="cubic", gray_noise=0.7))
     (state,) = marginal.calibrate(taken.images, taken.times, order=5)
-    f, truth = np.exp(polynomial.curve(state.c)), np.exp(true_g("cubic"))
+    f, truth = np.exp(mitsunaga.curve(state.c)), np.exp(true_g("cubic"))
     assert np.sqrt(np.mean((f / f[-1] - truth / truth[-1]) ** 2)) < 0.005
 
 

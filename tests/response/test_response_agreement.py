@@ -11,7 +11,7 @@ from hdrlab.core.metrics import response_rmse
 from hdrlab.fast import debevec
 from hdrlab.fast.merge import merge
 from hdrlab.pipeline import recovery
-from hdrlab.response import grossberg, mann, marginal, mitsunaga, space
+from hdrlab.response import grossberg, mann, marginal, space
 
 FREE = {
     "debevec": debevec.recover,
@@ -19,7 +19,7 @@ FREE = {
     "histograms": grossberg.recover,
 }
 FORMULAS = {
-    "polynomial": mitsunaga.recover,  # of the order that it chooses
+    "polynomial": recovery.method("mitsunaga"),  # of the order that it chooses
     "likelihood": marginal.recover,
     "space": space.recover,
     "power law": mann.recover,

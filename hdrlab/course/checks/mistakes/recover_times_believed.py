@@ -4,13 +4,14 @@
 import numpy as np
 
 from hdrlab.response import mitsunaga
-from hdrlab.response.polynomial import curve
 
 TASK = "recover"
 
 
 def recover(images, times, *, order=5, eps=1e-3):
-    parts, R = mitsunaga.averages(images, times, pixels=12_000, samples=400, valid=None)
-    m = mitsunaga.moments(np.concatenate(parts, axis=1))
-    g = np.stack([curve(c) for c in mitsunaga.coefficients(m, R, order)], axis=-1)
-    return g.reshape(256, *np.shape(images)[3:])
+    by_time = np.argsort(times)
+    t, M = np.asarray(times)[by_time], images[by_time].reshape(len(times), -1, *images.shape[3:]).T / 255
+    R = t[:-1] / t[1:]
+    found = [mitsunaga.gram(*mitsunaga.neighbours(own, order), R) for own in M.reshape(-1, *M.shape[-2:])]
+    g = np.stack([mitsunaga.curve(mitsunaga.coefficients(H)) for H in found], axis=-1)
+    return g.reshape(256, *images.shape[3:])
