@@ -1,4 +1,4 @@
-"""You answer f, the exposure of each level; asked is its logarithm, g = ln f."""
+"""You answer f^-1, the exposure of each level; asked is its logarithm, g = ln f^-1."""
 
 import numpy as np
 

@@ -23,7 +23,7 @@ def photographs(rng, response, frames=5, shape=(60, 80)):
 
 
 def same_curve(g, response, tolerance):
-    """Compare f = exp g, its unit fitted, over levels 10 to 250."""
+    """Compare f^-1 = exp g, its unit fitted, over levels 10 to 250."""
     truth = responses.true_g(response)
     error = laws.curve_error(g, truth)
     if not error <= tolerance:
@@ -49,11 +49,11 @@ def test_every_level_has_a_finite_g(subject, rng):
 
 @pytest.mark.points(7)
 def test_the_curve_of_a_camera_comes_out(subject, rng):
-    """Plot f over M, from 0 to 1: it goes through (0, 0) and (1, 1).
+    """Plot f^-1 over M, from 0 to 1: it goes through (0, 0) and (1, 1).
 
-    With known ratios R the error sum (f(M_q) - R f(M_q+1))^2 is least squares in the coefficients.
+    With known ratios R the error sum (f^-1(M_q) - R f^-1(M_q+1))^2 is least squares in the coefficients.
 
-    Use samples between 0.05 and 0.98 in both frames alone, and let f(1) = 1 fix the scale.
+    Use samples between 0.05 and 0.98 in both frames alone, and let f^-1(1) = 1 fix the scale.
     """
     for response in ("linear", "gamma"):
         taken = photographs(rng, response)
@@ -78,9 +78,9 @@ def test_frames_in_another_order_give_the_same_curve(subject, rng):
 def test_rough_times_are_corrected(subject, rng):
     """The method takes the times for rough. Which quantity does it correct?
 
-    With the curve known, R is the quotient of the sums of f over the two frames.
+    With the curve known, R is the quotient of the sums of f^-1 over the two frames.
 
-    Take turns: coefficients, ratios, coefficients, until f moves by less than eps.
+    Alternate: coefficients, ratios, coefficients, until f^-1 changes by less than eps.
     """
     taken = photographs(rng, "linear", frames=4)
     rough = taken.times * 1.1 ** np.arange(4)  # each a tenth more than it says
@@ -92,9 +92,9 @@ def test_rough_times_are_corrected(subject, rng):
 def test_the_curve_rises_at_all_levels(subject, rng):
     """A level that is brighter can never mean less light.
 
-    ln f needs f above 0, and g that rises.
+    ln f^-1 needs f^-1 above 0, and g that rises.
 
-    Clamp the increments of f from level to level before you take the logarithm.
+    Clamp the increments of f^-1 from level to level before you take the logarithm.
     """
     for response in ("gamma", "film"):
         taken = photographs(rng, response)
