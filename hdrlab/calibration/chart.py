@@ -128,7 +128,7 @@ def read_patches(
     H = homography(UNIT_SQUARE * [columns + gap * (columns - 1), rows + gap * (rows - 1)], corners)
     shape = np.array(stack.shape[1:3])
     if np.any(np.asarray(corners) < -0.5) or np.any(np.asarray(corners) > shape[::-1] - 0.5):
-        raise ValueError(f"expected corners within a picture of {shape} pixels, got {corners}")
+        raise ValueError(f"expected corners within a picture of {shape} pixels, got {describe(corners)}")
     M = np.empty((rows, columns, *stack.shape[3:]))
     for row, column in np.ndindex(rows, columns):
         core_corners = np.array([column, row]) * (1 + gap) + 0.5 + core * (UNIT_SQUARE - 0.5)

@@ -115,7 +115,7 @@ def solve_increments(
     """Return c >= 0 and the cost of all blends' equations together; with offsets free, c_0 is 0."""
     rows = [eliminate(*system) for system in systems]
     rows.append(np.pad(penalty, ((0, 0), (0, 1))))
-    R = np.linalg.qr(np.vstack(rows), mode="r")  # K + 1 rows with the same least squares
+    R = np.asarray(np.linalg.qr(np.vstack(rows), mode="r"))  # K + 1 rows with the same least squares
     R[:, 0] *= not offset
     c, norm = nnls(R[:, :-1], R[:, -1])
     return c, float(norm**2)

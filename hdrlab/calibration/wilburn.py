@@ -52,6 +52,11 @@ def complete(free: F64) -> F64:
     return np.concatenate([[0.0, 1 - free.sum()], free])
 
 
+def evaluate(m: F64, a: F64) -> F64:
+    """Return g(m) = sum_k a_k m^k [Wilburn08 sec. 2.2]."""
+    return np.asarray(polyval(m, a), np.float64)
+
+
 def fit_line(irradiance: F64, X: F64) -> F64:
     """Return s and r of the straight line s I + r that fits X best: least squares."""
     return np.polyfit(irradiance, X, 1)
@@ -86,7 +91,7 @@ def join_steps(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12) -> I
 
     def monotone_error(free: F64) -> float:
         a = complete(free)
-        return error(a, Q) if polyval(GRID, polyder(a)).min() >= 0 else np.inf
+        return error(a, Q) if evaluate(GRID, np.asarray(polyder(a))).min() >= 0 else np.inf
 
     free = np.zeros(degree - 1)
     for _ in range(runs):
@@ -136,5 +141,5 @@ def join(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: floa
     """
     a = last(join_steps(blends, degree=degree, runs=runs)).a
     usable = select_blends(blends)
-    s, r = np.transpose([fit_line(blend.I, polyval(blend.M, a)) for blend in rescale(usable)])
-    return build_response(usable, polyval(np.linspace(0, 1, TABLE_SIZE), a), s, r, ends=ends)
+    s, r = np.transpose([fit_line(blend.I, evaluate(blend.M, a)) for blend in rescale(usable)])
+    return build_response(usable, evaluate(np.linspace(0, 1, TABLE_SIZE), a), s, r, ends=ends)

@@ -99,7 +99,7 @@ def solve_polynomial(found: Equations, *, order: int = 10, n: int = 256) -> F64:
         raise ValueError(f"expected an order to 20 and levels measured well in two exposures, got {order}")
     M, MT = found.m / (n - 1), found.T / (n - 1)
     D = found.weight[:, None] * (terms(M, order) - found.R[:, None] * terms(MT, order))
-    return np.linalg.lstsq(D[:, 1:], -D[:, 0])[0]
+    return np.asarray(np.linalg.lstsq(D[:, 1:], -D[:, 0])[0])
 
 
 def recover(
