@@ -33,7 +33,7 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     bracket = camera.shoot(scene, times, CAMERA, offsets=shaken, rng=rng)
     yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
     for assembly in pipeline.assemble_steps(bracket):
-        yield f"{assembly.stage:<10} {_said(assembly)}"
+        yield f"{assembly.stage:<10} {_summarise(assembly)}"
     picture = pipeline.develop(assembly.E, OPERATOR)
     yield f"picture    {OPERATOR}, {picture.shape[1]} x {picture.shape[0]}"
     for suffix in (".hdr", ".exr", ".pfm"):
@@ -48,7 +48,7 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     yield f"report     {page}"
 
 
-def _said(assembly: pipeline.Assembly) -> str:
+def _summarise(assembly: pipeline.Assembly) -> str:
     """Return what a stage of the pipeline has to say."""
     match assembly.stage:
         case "align":

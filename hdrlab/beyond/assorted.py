@@ -6,10 +6,10 @@ c      channel         (H, W) int, 0 to 2: the colour of each pixel; None on a g
 X      exposure        (H, W), X = e E_c; a pixel is full at 1
 Z      level           (H, W) uint8 or uint16
 w      weight          (H, W), 1 / variance of Z / e; 0 where a pixel is full
-E^     what comes back: (G w Z / e) / (G w), G a Gaussian: a mean of the neighbours that know something
+E^     what comes back: (G w Z / e) / (G w), G a Gaussian: a mean of the neighbours that measure it
 
-One photograph holds what a bracket would, and pays with sharpness: where the light is strong only the dark
-filters tell, where it is weak only the clear ones. The range grows by log10(max e / min e) decades at the
+One photograph holds what a bracket would, and pays with sharpness: strong light is measured by the dark
+filters alone, weak light by the clear ones. The range grows by log10(max e / min e) decades at the
 bright end, and loses a quarter of a decade at the dark one, where every fourth pixel has to do for all.
 """
 
@@ -124,7 +124,7 @@ def reconstruct(
     Z : (H, W) uint8 or uint16, linear
     e : (H, W) transparencies
     c : (H, W) channels 0 to 2, or None for a gray sensor
-    sigma : of G, pixels: small, so that it hardly blurs where many pixels know; it reaches two pixels far
+    sigma : of G, pixels: small, so that it hardly blurs where many pixels measure; it reaches two pixels far
     full_well, read_noise : electrons, for the weights
 
     Returns
@@ -163,7 +163,7 @@ def reconstruct(
 
 
 def _fill(values: F64, w: F64, e: F64, sigma: float, mask: Array | bool = True) -> F64:
-    """Return E^ from the pixels in reach, from farther ones where none knows, at last the bound 1 / min e."""
+    """Return E^ from the pixels in reach, else from farther ones, at last the bound 1 / min e."""
     E, total = normalised_convolution(values, w, sigma)
     for wider in (2 * sigma, 4 * sigma):
         unknown = total < 1e-6 * w.max() * (e.min() / e.max()) ** 2

@@ -1,6 +1,6 @@
-"""Optical flow between frames, and pictures brought along it (Kang et al., SIGGRAPH 2003, sec. 4).
+"""Optical flow between frames, and pictures warped along it (Kang et al., SIGGRAPH 2003, sec. 4).
 
-a, b   pictures   (H, W) float32, brought to one exposure, values of `ldr_values`
+a, b   pictures   (H, W) float32, boosted to one exposure, values of `ldr_values`
 u      flow       (2, H, W), pixels down and right: a(p) is b(p + u(p))
 f      any map    (H, W[, C])
 
@@ -20,7 +20,7 @@ Flow = Callable[[F32, F32], F32]
 
 
 def tvl1(a: F32, b: F32) -> F32:
-    """Return u for which a(p) is b(p + u(p)); 0 where a picture is too small to tell.
+    """Return u for which a(p) is b(p + u(p)); 0 where a picture is too small.
 
     Examples
     --------

@@ -68,8 +68,8 @@ def distance(P: F32, Q: Sources, at: Indices) -> F32:
     rows, d = P.reshape(-1, P.shape[-1]), np.empty(index.size, np.float32)
     for start in range(0, index.size, PATCHES_PER_CHUNK):
         part = slice(start, start + PATCHES_PER_CHUNK)
-        apart = rows[part] - Q.rows[index[part]]
-        d[part] = np.einsum("ij,ij->i", apart, apart)
+        difference = rows[part] - Q.rows[index[part]]
+        d[part] = np.einsum("ij,ij->i", difference, difference)
     return (d + Q.price[index]).reshape(at.shape[:2])
 
 
@@ -80,7 +80,7 @@ def start_field(P: F32, Q: Sources, at: Indices) -> Field:
 
 
 def clip_places(at: Indices, shape: tuple[int, int, int]) -> Indices:
-    """Return places brought into the sources."""
+    """Return places clipped to the sources."""
     return np.clip(at, 0, np.array(shape) - 1)
 
 
@@ -136,8 +136,8 @@ def upscale_field(at: Indices, shape: tuple[int, int]) -> Indices:
     ratios = np.divide(shape, at.shape[:2])
     own = [(np.arange(n) / r).astype(int) for n, r in zip(shape, ratios, strict=True)]
     coarse = np.stack([np.zeros(shape, int), *np.meshgrid(*own, indexing="ij")], axis=-1)
-    apart = at[np.ix_(*own)] - coarse  # which source, and how far away in pixels of the coarser scale
-    return identity_field(*shape) + np.rint(apart * np.array([1, *ratios])).astype(int)
+    shift = at[np.ix_(*own)] - coarse  # which source, and how far away in pixels of the coarser scale
+    return identity_field(*shape) + np.rint(shift * np.array([1, *ratios])).astype(int)
 
 
 def sum_votes(S: F32, at: Indices, shape: tuple[int, int], side: int) -> tuple[F32, F32]:

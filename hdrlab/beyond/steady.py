@@ -67,10 +67,10 @@ def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> FrameStatistics:
     )
 
 
-def adapt(around: Sequence[FrameStatistics], *, key: float) -> tuple[float, float]:
+def adapt(window: Sequence[FrameStatistics], *, key: float) -> tuple[float, float]:
     """Return Lav = exp(mean of the frames' logarithms), and white, at least 1  [Kang03 sec. 5]."""
-    average = float(np.exp(np.mean([one.log for one in around])))
-    high = float(np.exp(np.mean(np.log([max(one.high, SMALLEST_LUMINANCE) for one in around]))))
+    average = float(np.exp(np.mean([one.log for one in window])))
+    high = float(np.exp(np.mean(np.log([max(one.high, SMALLEST_LUMINANCE) for one in window]))))
     return average, max(1.0, key * high / average)
 
 
@@ -82,7 +82,7 @@ def tonemap_steps(
     span: int = 1,
     **knobs: Any,
 ) -> Iterator[State]:
-    """Yield the State of each frame as soon as `span` more have been seen.
+    """Yield the State of each frame as soon as `span` more are there.
 
     Parameters
     ----------
@@ -112,9 +112,9 @@ def tonemap_steps(
     """
     if not 0 < key < np.inf or span < 0:
         raise ValueError(f"expected a positive key and a span of at least 0, got {key} and {span}")
-    for place, around in slide_windows((measure_frame(E) for E in frames), span):
-        frame = around[place]
-        average, white = adapt(around, key=key)
+    for place, window in slide_windows((measure_frame(E) for E in frames), span):
+        frame = window[place]
+        average, white = adapt(window, key=key)
         own = float(np.exp(frame.log))
         Ld = operator(frame.L, key=key * own / average, white=white, **knobs)
         yield State(frame.E, Ld, own, average, white)

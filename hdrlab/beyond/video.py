@@ -5,10 +5,10 @@ g      response       (n[, 3]), ln exposure of each level
 v_i    frame i        (H, W, C), in values, see `ldr_values`
 R_i    radiance       (H, W, C), what frame i says, exp g(Z_i) / t_i
 f_W    weight         w(Z_i), of each pixel and channel, 0 where it is clipped or black
-f_MW   consistency    (H, W, 1), 0 to 1: 0 where a neighbour, brought to frame i, contradicts it
+f_MW   consistency    (H, W, 1), 0 to 1: 0 where a neighbour, warped to frame i, contradicts it
 alpha  exposure       (H, W, 1), 1 where frame i is well exposed, 0 where it is clipped or black
-U      along          neighbours i - 1 and i + 1 brought to frame i, along the flow from i (unidirectional)
-B      between        the same, brought half-way to each other (bidirectional)
+U      along          neighbours i - 1 and i + 1 warped to frame i, along the flow from i (unidirectional)
+B      between        the same, warped half-way to each other (bidirectional)
 
 Each frame has one exposure, and what it lacks its neighbours have, a moment earlier and later. Where frame i
 is well exposed, its neighbours are boosted to its exposure and followed. Where it is not there is nothing to
@@ -73,8 +73,8 @@ class State(NamedTuple):
     frame : which, from 0
     E : (H, W[, 3]), radiance
     alone : (H, W, C), radiance of the frame by itself
-    along : U, its neighbours brought to it, one where there is one
-    between : B, two; at either end the one neighbour, brought to the frame for want of another
+    along : U, its neighbours warped to it, one where there is one
+    between : B, two; at either end the one neighbour, warped to the frame
     alpha : (H, W, 1)
     """
 
@@ -93,7 +93,7 @@ def estimate_motion(a: Frame, b: Frame, flow: Flow) -> F32:
 
 
 def warp_frame(frame: Frame, u: F32) -> Term:
-    """Return a frame brought along a flow; it has no weight where that leads out of the picture."""
+    """Return a frame warped along a flow; it has no weight where that leads out of the picture."""
     return Term(warp(frame.R, u), warp(frame.w, u) * lands_inside(u)[..., None])
 
 
@@ -104,12 +104,12 @@ def consistency(v: F32, v_: F32) -> F32:
 
 
 def weigh_neighbour(i: Frame, term: Term) -> Term:
-    """Return a neighbour weighted by f_W f_MW alpha: as far as frame i can tell, and agrees."""
+    """Return a neighbour weighted by f_W f_MW alpha: as far as frame i is well exposed and agrees."""
     return term._replace(w=term.w * consistency(i.v, expose(term.R, i.t, i.full)) * i.alpha)
 
 
 def warp_half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
-    """Return both frames brought to the moment half-way between them, and trusted where they agree there."""
+    """Return both frames warped to the moment half-way between them, and trusted where they agree there."""
     terms = [warp_frame(*each) for each in zip((a, b), halve_flow(estimate_motion(a, b, flow)), strict=True)]
     longer = max(a.t, b.t)
     agree = consistency(*(expose(term.R, longer, a.full) for term in terms))

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.capture import camera, exposure
-from hdrlab.capture.metering import GRAY, At, correction, reading, weights
+from hdrlab.capture.metering import MIDDLE_GRAY, At, correction, reading, weights
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, F64
@@ -61,7 +61,7 @@ def expose_steps(
     *,
     at: At = (0.5, 0.5),
     start: float = 12.0,
-    target: float = GRAY,
+    target: float = MIDDLE_GRAY,
     max_shots: int = 8,
     photograph: Callable[[ArrayLike, float], F32] = measure_brightness,
 ) -> Iterator[State]:

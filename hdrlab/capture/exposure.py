@@ -30,7 +30,12 @@ SHUTTER = """
 APERTURE = """
     1 1.1 1.2 1.4 1.6 1.8 2 2.2 2.5 2.8 3.2 3.5 4 4.5 5 5.6 6.3 7.1 8 9 10 11 13 14 16 18 20 22 25 29 32
 """
-LONGEST, SATURATED, LENS = 5, 78.0, 0.65  # stops: 30 is 2^5 s; lx s at ISO 1 [ISO 12232]; what a lens passes
+# stops: the dial's 30 is 2^5 s
+LONGEST_STOP = 5
+# lx s at ISO 1 [ISO 12232]
+SATURATION_EXPOSURE = 78.0
+# of the light, through a usual lens
+LENS_TRANSMITTANCE = 0.65
 
 
 class Dial(NamedTuple):
@@ -49,7 +54,7 @@ def shutter_series(per_stop: int = 1) -> Dial:
     >>> dial.names[11], float(1 / dial.values[11])
     ('1/60', 64.0)
     """
-    return _series(SHUTTER, per_stop, lambda stop: 2.0 ** (LONGEST - stop))
+    return _series(SHUTTER, per_stop, lambda stop: 2.0 ** (LONGEST_STOP - stop))
 
 
 def aperture_series(per_stop: int = 1) -> Dial:
@@ -165,7 +170,7 @@ def saturating_luminance(T: Real, *, F: float = 8.0, S: float = 100.0) -> Real:
     9830
     """
     T, F, S = _positive("shutter time", T), _positive("f-number", F), _positive("ISO speed", S)
-    return SATURATED * F**2 / (LENS * S * T)
+    return SATURATION_EXPOSURE * F**2 / (LENS_TRANSMITTANCE * S * T)
 
 
 def _positive(what: str, value: Real) -> Any:

@@ -42,8 +42,8 @@ def add_glare(E: ArrayLike, spread: GlareSpread = FINGERPRINTS) -> F32:
     --------
     >>> E = np.full((20, 30), 0.01, np.float32)
     >>> E[10, 15] = 1000  # a lamp
-    >>> seen = add_glare(E, GlareSpread(0.02))
-    >>> bool(seen[10, 18] > 10 * seen[0, 0] > 0.1), float(seen[10, 15].round(1))
+    >>> F = add_glare(E, GlareSpread(0.02))
+    >>> bool(F[10, 18] > 10 * F[0, 0] > 0.1), float(F[10, 15].round(1))
     (True, 980.0)
     """
     share, power, core = validate_spread(spread)
@@ -100,14 +100,14 @@ def add_flare(
     radius: float = 12.0,
     share: float = 1e-4,
 ) -> F32:
-    """Return the radiance behind a lens that scatters and reflects: the veil, and a reflection at each place.
+    """Return the radiance behind a lens that scatters and reflects: glare, and a reflection at each place.
 
     Examples
     --------
     >>> add_flare(np.ones((20, 30)), places=()).shape
     (20, 30)
     """
-    seen = add_glare(E, spread)
+    F = add_glare(E, spread)
     for place in places:
-        seen = seen + reflect(E, place=place, radius=radius, share=share)
-    return seen
+        F = F + reflect(E, place=place, radius=radius, share=share)
+    return F

@@ -1,7 +1,7 @@
 """Metering: one number from a picture, and the exposure that follows (Battiato et al. 2008, sec. 1.2).
 
 B      brightness     (H, W) in [0, 1], linear: the exposure of each pixel, 1 where it is full
-w      weight         (H, W) >= 0, sum 1: how much each pixel has to say
+w      weight         (H, W) >= 0, sum 1: how much each pixel counts
 B_pre  the reading    sum of w B over the picture
 B_opt  what the reading should be: 0.18, a surface that reflects a fifth of the light
 EV     exposure value, stops: one more halves the light
@@ -21,7 +21,8 @@ from hdrlab.core.types import F64, Array
 
 At = tuple[float, float]
 
-GRAY = 0.18  # B_opt
+# B_opt, share of full
+MIDDLE_GRAY = 0.18
 # how bright a full pixel is taken to be: it says "at least 1", and too dark a next shot is soon corrected
 FULL_PIXEL_BRIGHTNESS = 16.0
 
@@ -53,7 +54,7 @@ def _normal(w: ArrayLike) -> F64:
 
 
 def average(shape: tuple[int, int]) -> F64:
-    """Return w = 1 / (H W): every pixel has the same say."""
+    """Return w = 1 / (H W): every pixel counts alike."""
     return _normal(np.ones(shape))
 
 
@@ -181,7 +182,7 @@ def multi_spot(B: ArrayLike, places: Sequence[At], *, share: float = 0.03) -> fl
     return float(np.exp(np.mean(np.log(np.maximum(read, 2.0**-14)))))
 
 
-def optimum(EV_pre: float, B_pre: float, B_opt: float = GRAY) -> float:
+def optimum(EV_pre: float, B_pre: float, B_opt: float = MIDDLE_GRAY) -> float:
     """Return EV_opt = EV_pre + log2 B_pre - log2 B_opt [Battiato08 eq. 1.2]; right where no pixel is full.
 
     Examples
@@ -198,7 +199,7 @@ def predict_reading(B: ArrayLike, w: F64, stops: float) -> float:
     return float((w * np.minimum(np.where(B < 1, B, FULL_PIXEL_BRIGHTNESS) * 2.0**stops, 1)).sum())
 
 
-def correction(B: ArrayLike, w: F64, B_opt: float = GRAY, *, most: float = 8.0) -> float:
+def correction(B: ArrayLike, w: F64, B_opt: float = MIDDLE_GRAY, *, most: float = 8.0) -> float:
     """Return the stops after which the reading will be B_opt, at most `most` either way, found by halving.
 
     Where nothing is full, and nothing will be, this is log2 B_opt - log2 B_pre, eq. 1.2.

@@ -19,7 +19,8 @@ from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
 from hdrlab.core.types import F32, Mask
 
-SUN = np.array([-0.5, -0.5, 0.7])  # (y, x, z), where a ball is lit from: above, left and the camera's side
+# (y, x, z), where a ball is lit from: above, left and the camera's side
+SUN_DIRECTION = np.array([-0.5, -0.5, 0.7])
 
 
 class Figure(NamedTuple):
@@ -84,7 +85,11 @@ def ball(
     y, x = np.indices(shape) - middle[:, None, None]
     mask = np.clip(radius + 0.5 - np.hypot(y, x), 0, 1)
     z = np.sqrt(np.maximum(radius**2 - y**2 - x**2, 0))
-    facing = np.maximum((SUN[0] * y + SUN[1] * x + SUN[2] * z) / (radius * np.linalg.norm(SUN)), 0)
+    facing = np.maximum(
+        (SUN_DIRECTION[0] * y + SUN_DIRECTION[1] * x + SUN_DIRECTION[2] * z)
+        / (radius * np.linalg.norm(SUN_DIRECTION)),
+        0,
+    )
     bands = 0.7 + 0.3 * np.cos(np.pi * stripes * (x + y) / (2**0.5 * radius))
     shade = (mask * (0.15 + 0.85 * facing) * (bands if stripes else 1)).astype(np.float32)
     light = shade if colour.ndim == 0 else shade[..., None]
@@ -177,9 +182,9 @@ def shoot(
     rng, still = np.random.default_rng(rng), camera.views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
     moments, masks, shots = [], [], []
     for j in np.argsort(seconds, kind="stable"):
-        seen, mask = (camera.views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
-        shots.append(camera.shoot(seen, seconds[j], model, rng=rng))
-        moments.append(seen)
+        E_j, mask = (camera.views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
+        shots.append(camera.shoot(E_j, seconds[j], model, rng=rng))
+        moments.append(E_j)
         masks.append(mask)
     images, taken = (np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times"))
     order = short_to_long(images, taken)

@@ -21,8 +21,10 @@ from numpy.typing import ArrayLike
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64, Array, Mask
 
-ROUNDING = 1 / 12  # levels^2, the variance that rounding to whole levels adds
-SAFE = 0.8  # of the highest signal: above it the well may have begun to cut the noise off
+# levels^2: what rounding to whole levels adds
+ROUNDING_VARIANCE = 1 / 12
+# of the highest signal: above it a full well may cut the noise off
+SAFE_SIGNAL_SHARE = 0.8
 
 
 class Transfer(NamedTuple):
@@ -33,7 +35,7 @@ class Transfer(NamedTuple):
     gain : K, electrons per level
     read_noise : R, electrons
     black : level of no light
-    full_well : electrons at the highest signal that was seen; the well, where the brightest pair is full
+    full_well : electrons at the highest measured signal; the well, where the brightest pair is full
     S, V : (M,) levels and levels^2, the photon transfer curve
     used : (M,) bool, the pairs that the line was drawn through
     """
@@ -57,7 +59,7 @@ def line(S: F64, V: F64) -> float:
 
     A variance of n pixels errs by V sqrt(2 / n), so the weights are 1 / V^2; the first pair is the dark one.
     """
-    w = 1 / np.maximum(V, ROUNDING) ** 2
+    w = 1 / np.maximum(V, ROUNDING_VARIANCE) ** 2
     return float((w * S * (V - V[0])).sum() / (w * S**2).sum())
 
 
@@ -67,7 +69,7 @@ def calibrate(Z: ArrayLike) -> Transfer:
     Parameters
     ----------
     Z : (M, 2, H, W) RAW levels, whole numbers, from dark to bright: Z[0] with the lens cap on, the others of
-        an evenly lit surface. At least two brighter pairs; ten that go up to a full well tell that as well.
+        an evenly lit surface. At least two brighter pairs; with ten, up to a full well, that too.
         Of a sensor with filters, the pixels of one colour.
 
     Returns
@@ -77,7 +79,7 @@ def calibrate(Z: ArrayLike) -> Transfer:
     Raises
     ------
     ValueError
-        For levels that are no pairs, or fewer than two lit pairs below the full ones, or no noise to read.
+        For levels that are no pairs, or fewer than two bright pairs below the full ones, or no noise to read.
 
     References
     ----------
@@ -97,12 +99,12 @@ def calibrate(Z: ArrayLike) -> Transfer:
         raise ValueError(f"expected levels (M, 2, H, W), a dark pair and two more or more, got {describe(Z)}")
     mean = Z.mean(axis=(1, 2, 3))
     S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
-    used = (S <= SAFE * S.max()) & (S >= 0)
+    used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)
     if used.sum() < 3 or not S.max() > 0:
         got = S.round(1).tolist()
         raise ValueError(f"expected two pairs between the dark and the brightest, got signals {got}")
     slope = line(S[used], V[used])
     if not slope > 0:
         raise ValueError("expected noise that grows with the light, as of RAW levels; got one that does not")
-    R = np.sqrt(max(V[0] - ROUNDING, 0)) / slope
+    R = np.sqrt(max(V[0] - ROUNDING_VARIANCE, 0)) / slope
     return Transfer(1 / slope, float(R), float(mean[0]), float(S.max() / slope), S, V, used)

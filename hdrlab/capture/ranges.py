@@ -2,7 +2,7 @@
 
 L    luminance   of the scene, any linear unit; X = s t L, exposure, 1 fills the well
 N    electrons   full_well X;  FWC, full well capacity;  NF, noise floor: the noise of a dark pixel
-SNR  N over its noise; below 1 a pixel tells nothing
+SNR  N over its noise; below 1 a pixel measures nothing
 Z    level       of the converter
 DR   log10(FWC / NF), decades: a decade is 3.32 stops, and 20 dB
 
@@ -28,7 +28,7 @@ class Range(NamedTuple):
     decibels: float
 
 
-class Held(NamedTuple):
+class ExposedLevels(NamedTuple):
     """What one exposure makes of each luminance (K,): its level, the signal over noise, and what is lost."""
 
     Z: NDArray[np.int64]
@@ -74,7 +74,7 @@ def snr(X: ArrayLike, sensor: Sensor) -> F64:
     return N / np.sqrt(N + noise_floor(sensor) ** 2)
 
 
-def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0) -> Held:
+def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0) -> ExposedLevels:
     """Return what an exposure holds of luminances L (K,): figures 1.10 to 1.12 of the overview, as data.
 
     Levels are those without noise. Lost are luminances that are full, and those whose SNR is below 1.
@@ -90,8 +90,8 @@ def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: flo
     X = sensitivity * time * L
     N = np.minimum(sensor.full_well * X, full_electrons(sensor))
     Z = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black
-    told = snr(X, sensor)
-    return Held(Z, told, sensor.full_well * X >= full_electrons(sensor), told < 1)
+    ratio = snr(X, sensor)
+    return ExposedLevels(Z, ratio, sensor.full_well * X >= full_electrons(sensor), ratio < 1)
 
 
 def levels_per_stop(bits: int) -> NDArray[np.int64]:

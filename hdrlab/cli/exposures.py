@@ -75,7 +75,7 @@ def meter(photo: Path, mode: str, at: str) -> None:
     asked, full = (w > w.max() / 100).mean(), float((w * (B >= 1)).sum())
     click.echo(f"{mode}: asks {asked:.0%} of the pixels; {full:.0%} of what it hears is full pixels")
     click.echo(
-        f"reading {read:.3f} of full, where {metering.GRAY} is wanted: {abs(stops):.1f} stops "
+        f"reading {read:.3f} of full, where {metering.MIDDLE_GRAY} is wanted: {abs(stops):.1f} stops "
         + ("too dark" if stops > 0 else "too bright")
     )
     said = decode.look(photo).exposure

@@ -1,4 +1,4 @@
-"""Mosaics: a sensor has one filter per pixel, and what it did not see its neighbours tell (Bayer, 1976).
+"""Mosaics: a sensor has one filter per pixel, and its neighbours fill in the other colours (Bayer, 1976).
 
 E    light      (H, W, 3), what falls on the sensor
 c    channel    (H, W) int, 0 to 2: the colour of each pixel's filter
@@ -15,8 +15,10 @@ from scipy.ndimage import correlate
 from hdrlab.core.arrays import Array, describe
 from hdrlab.core.types import Indices
 
-BAYER = np.array([[0, 1], [1, 2]])  # R G / G B
-TENT = np.array([[1.0, 2, 1], [2, 4, 2], [1, 2, 1]]) / 4  # falls to 0 at a distance of two pixels
+# channels, R G / G B
+BAYER = np.array([[0, 1], [1, 2]])
+# weights, which fall to 0 at a distance of two pixels
+TENT = np.array([[1.0, 2, 1], [2, 4, 2], [1, 2, 1]]) / 4
 
 
 def tile(pattern: ArrayLike, shape: tuple[int, ...]) -> Array:
@@ -58,9 +60,11 @@ def demosaic(X: ArrayLike, c: ArrayLike) -> NDArray[np.floating[Any]]:
     """
     X, c = np.asarray(X), as_channels(c, np.shape(X))
     X = X.astype(np.result_type(X, np.float32), copy=False)
-    return np.stack([np.where(c == k, X, _beside(X, (c == k).astype(X.dtype))) for k in range(3)], axis=-1)
+    return np.stack(
+        [np.where(c == k, X, _neighbour_mean(X, (c == k).astype(X.dtype))) for k in range(3)], axis=-1
+    )
 
 
-def _beside(X: Array, m: Array) -> Array:
-    around = correlate(m, TENT, mode="constant")
-    return correlate(X * m, TENT, mode="constant") / np.maximum(around, 1e-9)
+def _neighbour_mean(X: Array, m: Array) -> Array:
+    weight = correlate(m, TENT, mode="constant")
+    return correlate(X * m, TENT, mode="constant") / np.maximum(weight, 1e-9)

@@ -22,12 +22,13 @@ from hdrlab.io import raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import check_size
 
-logging.getLogger("tifffile").addHandler(logging.NullHandler())  # what is wrong is said by our errors
+logging.getLogger("tifffile").addHandler(logging.NullHandler())  # our errors report what is wrong
 
 Exif = tuple[int, Exposure]  # the orientation and the exposure
 Looks = tuple[str, tuple[int, ...], np.dtype[Any], Exif]  # kind, shape as it is stored, dtype
 
-BEST_COMPRESSION = 1 << 12  # bytes of a picture in one of the file: more than any of these formats reaches
+# bytes of a picture in one of the file: more than any of these formats reaches
+BEST_COMPRESSION_RATIO = 1 << 12
 MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
 MODES |= {"F": "floating point", "I": "32-bit integers"}
 UPRIGHT: dict[int, Callable[[Array], Array]] = {  # the EXIF orientations
@@ -68,7 +69,7 @@ def look(path: str | Path) -> Header:
     else:
         raise ValueError(f"{path}: expected a JPEG, PNG or TIFF photograph, got {head[:8]!r}")
     orientation, exposure = exif
-    check_size(path, shape[0], shape[1], int(np.prod(shape)) * dtype.itemsize // BEST_COMPRESSION)
+    check_size(path, shape[0], shape[1], int(np.prod(shape)) * dtype.itemsize // BEST_COMPRESSION_RATIO)
     if orientation > 4:
         shape = (shape[1], shape[0], *shape[2:])
     return Header(path, kind, shape, dtype, orientation, exposure)
@@ -119,7 +120,7 @@ DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff}
 
 
 def _look_pillow(path: Path, head: bytes) -> Looks:
-    """Return what is said by the header of a JPEG or PNG file."""
+    """Return what is stated by the header of a JPEG or PNG file."""
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of sizes, which check_size judges, and of odd EXIF
@@ -141,7 +142,7 @@ def _look_pillow(path: Path, head: bytes) -> Looks:
 
 
 def _look_tiff(path: Path) -> Looks:
-    """Return what is said by the first page of a TIFF file."""
+    """Return what is stated by the first page of a TIFF file."""
     try:
         with tifffile.TiffFile(path) as file:
             page = file.pages.first

@@ -41,12 +41,11 @@ def describe_file(path: str | Path) -> dict[str, Any]:
 def _photo(path: str | Path) -> dict[str, Any]:
     header = look(path)
     height, width, channels = (*header.shape, 1)[:3]
-    said = header.exposure._asdict()
     return {
         "format": header.kind,
         **_size(height, width, channels, np.dtype(header.dtype).name),
         "orientation": header.orientation,
-        **{key: value for key, value in said.items() if value is not None},
+        **{key: value for key, value in header.exposure._asdict().items() if value is not None},
     }
 
 

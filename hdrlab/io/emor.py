@@ -16,7 +16,8 @@ import numpy as np
 
 from hdrlab.core.types import F64
 
-LARGEST = 64 << 20  # bytes: far beyond any such file
+# bytes: far beyond any such file
+MAX_FILE_BYTES = 64 << 20
 
 
 class Emor(NamedTuple):
@@ -29,7 +30,7 @@ class Emor(NamedTuple):
 
 def _text(path: str | Path) -> str:
     path = Path(path)
-    if (size := path.stat().st_size) > LARGEST:
+    if (size := path.stat().st_size) > MAX_FILE_BYTES:
         raise ValueError(f"{path}: expected a file of response curves, this one has {size} bytes")
     return path.read_text(encoding="latin-1")
 
@@ -69,8 +70,8 @@ def read_emor(path: str | Path) -> Emor:
         raise ValueError(f"{path}: expected blocks of numbers, {error}") from error
     sizes = {len(block) for block in blocks}
     if parts[0].strip() or len(blocks) < 3 or len(sizes) != 1 or min(sizes) < 2:
-        said = f"{len(blocks)} blocks of {sorted(sizes)} numbers"
-        raise ValueError(f"{path}: expected an axis, a mean and components of one length, got {said}")
+        got = f"{len(blocks)} blocks of {sorted(sizes)} numbers"
+        raise ValueError(f"{path}: expected an axis, a mean and components of one length, got {got}")
     if not all(np.isfinite(block).all() for block in blocks) or np.any(np.diff(blocks[0]) <= 0):
         raise ValueError(f"{path}: expected finite numbers and an axis that rises")
     return Emor(blocks[0], blocks[1], np.stack(blocks[2:]))

@@ -19,7 +19,8 @@ from hdrlab.core.types import F32, Array
 from hdrlab.io.files import check_size, replacing
 
 LARGEST_HALF = 65504.0
-BEST_COMPRESSION = 1 << 16  # bytes of a picture in one of the file: more than any of the methods reaches
+# bytes of a picture in one of the file: more than any of the methods reaches
+BEST_COMPRESSION_RATIO = 1 << 16
 Part = tuple[dict[str, Any], dict[str, Array]]
 COLOURS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
 
@@ -44,12 +45,12 @@ class Header(NamedTuple):
 
 def read_header(path: str | Path) -> Header:
     """Return the Header of the first part of the OpenEXR file at `path`, or raise a ValueError."""
-    return _header(path, _first_part(path, header_only=True)[0])
+    return read_headers(path, 1)[0]
 
 
-def read_headers(path: str | Path) -> list[Header]:
-    """Return the Header of each part of the OpenEXR file at `path`, or raise a ValueError."""
-    return [_header(path, attributes) for attributes, _ in parts(path, header_only=True)]
+def read_headers(path: str | Path, count: int | None = None) -> list[Header]:
+    """Return the Header of each of the first `count` parts of the OpenEXR file, or raise a ValueError."""
+    return [_header(path, attributes) for attributes, _ in parts(path, count, header_only=True)]
 
 
 def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
@@ -92,7 +93,7 @@ def read(path: str | Path) -> F32:
     names = set(header.channels)
     if names not in COLOURS and names - {"A"} != {"Y"} and len(names) != 1:
         raise ValueError(f"{path}: expected the channels R, G, B or Y, got {', '.join(header.channels)}")
-    _, planes = _first_part(path, separate_channels=names not in COLOURS)
+    ((_, planes),) = parts(path, 1, separate_channels=names not in COLOURS)
     if names in COLOURS:
         E = next(iter(planes.values()))[..., :3]
     else:
@@ -103,7 +104,7 @@ def read(path: str | Path) -> F32:
 def read_dtypes(path: str | Path) -> tuple[str, ...]:
     """Return the name of each channel's dtype: float16, float32 or uint32."""
     header = read_header(path)
-    _, planes = _first_part(path, separate_channels=True)
+    ((_, planes),) = parts(path, 1, separate_channels=True)
     return tuple(planes[name].dtype.name for name in header.channels)
 
 
@@ -138,20 +139,20 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
         file.write(str(name))
 
 
-def _first_part(path: str | Path, **options: bool) -> Part:
-    """Return the header and the pixels of the first part."""
-    return parts(path, count=1, **options)[0]
-
-
-def parts(path: str | Path, *, count: int | None = None, **options: bool) -> list[Part]:
+def parts(
+    path: str | Path, count: int | None = None, *, header_only: bool = False, separate_channels: bool = False
+) -> list[Part]:
     """Return the header, and the pixels by channel, of the first `count` parts of the file at `path`."""
     with open(path, "rb") as start:  # the module takes a missing file for one that is not OpenEXR
         magic = start.read(4)
     if magic != b"v/1\x01":
         raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
-    said = io.StringIO()  # the module prints what is wrong with a part, and leaves the part out
+    printed = io.StringIO()  # the module prints what is wrong with a part, and leaves the part out
     try:
-        with contextlib.redirect_stdout(said), OpenEXR.File(str(path), **options) as file:
+        with (
+            contextlib.redirect_stdout(printed),
+            OpenEXR.File(str(path), separate_channels, header_only) as file,
+        ):
             found = []
             for part in file.parts[:count]:
                 channels = [(one.name, one.xSampling, one.ySampling) for one in part.header["channels"]]
@@ -160,7 +161,7 @@ def parts(path: str | Path, *, count: int | None = None, **options: bool) -> lis
             found[0]  # a file without a part is damaged too
             return found
     except Exception as error:  # damaged files make it raise what they like, UnicodeDecodeError included
-        reason = said.getvalue().strip().rpartition(" - ")[2] or str(error)
+        reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)
         raise ValueError(f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})") from None
 
 
@@ -168,7 +169,7 @@ def _window(path: str | Path, window: tuple[NDArray[np.int32], NDArray[np.int32]
     """Return the Window of an attribute (left, top), (right, bottom), after a look at its size."""
     (left, top), (right, bottom) = (corner.tolist() for corner in window)
     height, width = bottom - top + 1, right - left + 1
-    check_size(path, height, width, height * width * channels // BEST_COMPRESSION)
+    check_size(path, height, width, height * width * channels // BEST_COMPRESSION_RATIO)
     return Window(top, left, height, width)
 
 

@@ -8,7 +8,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
 
-MAX_PIXELS = 1 << 27  # 134 million: beyond any camera, and 1.6 GB as float32 RGB
+# 134 million: beyond any camera, and 1.6 GB as float32 RGB
+MAX_PIXELS = 1 << 27
 
 
 @contextmanager
@@ -60,18 +61,19 @@ def reserve(file: BinaryIO, size: int) -> None:
                 raise
 
 
-def check_size(path: str | Path, height: int, width: int, least: int = 0, *, held: int | None = None) -> None:
+def check_size(
+    path: str | Path, height: int, width: int, least: int = 0, *, available: int | None = None
+) -> None:
     """Raise a ValueError where a header claims an absurd size, before anything of that size is allocated.
 
-    `least` is the number of bytes that such a picture takes at the format's best compression, and `held`
-    the number that the file has for it: all its bytes, unless told.
+    `least` is the number of bytes that such a picture takes at the format's best compression, and
+    `available` the number that the file has for it: all its bytes by default.
     """
     claim = f"{path}: its header claims {width} x {height} pixels"
     if height < 1 or width < 1:
         raise ValueError(f"{claim}, expected at least one")
     if height * width > MAX_PIXELS:
         raise ValueError(f"{claim}, expected at most {MAX_PIXELS} in all")
-    if held is None:
-        held = Path(path).stat().st_size
-    if held < least:
-        raise ValueError(f"{claim}, which take {least} bytes or more, got {held}: it is cut short or damaged")
+    size = Path(path).stat().st_size if available is None else available
+    if size < least:
+        raise ValueError(f"{claim}, which take {least} bytes or more, got {size}: it is cut short or damaged")

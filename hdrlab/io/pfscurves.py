@@ -29,7 +29,7 @@ BINS = np.arange(256) * 4095 // 255  # where Luminance HDR looks up the 256 leve
 
 def write_pfstools(path: Path, g: F64) -> None:
     """Write g as pfstools does, with 10 digits."""
-    columns = columns_of(g)
+    columns = g.reshape(len(g), -1)
     names = MATRICES[columns.shape[1]]
     weights = [f" {w:.9e} {z:4d}\n" for z, w in enumerate(gaussian(len(g)).tolist())]
     blocks = [*map(_block, names, columns.T), WEIGHTS.format(len(g)), *weights, "\n"]
@@ -49,7 +49,7 @@ def _block(name: str, g: F64) -> str:
 
 def read_pfstools(path: Path) -> F64:
     """Return ln f of a file of pfstools, or raise a ValueError."""
-    text = text_of(path).replace("\r\n", "\n")
+    text = path.read_text(encoding="latin-1").replace("\r\n", "\n")
     heads = list(BLOCK.finditer(text))
     rows = {int(head[2]) for head in heads}
     if tuple(head[1] for head in heads) not in MATRICES.values() or len(rows) != 1:
@@ -70,7 +70,7 @@ def _read_block(text: str, rows: int) -> F64:
 
 def write_luminance(path: Path, g: F64) -> None:
     """Write g, read at 256 levels, as Luminance HDR does, with 9 decimals and lines between the levels."""
-    columns = columns_of(as_table(g, 256))
+    columns = as_table(g, 256).reshape(256, -1)
     fine = np.stack([np.interp(np.arange(4096), BINS, one) for one in columns.T], axis=-1)
     fine = np.repeat(fine, 3 // fine.shape[1], axis=1)  # the program knows no gray
     pairs = np.stack([fine / np.log(10), np.exp(fine)], axis=-1).reshape(4096, 6)
@@ -84,11 +84,6 @@ def from_luminance(body: str) -> F64:
     if len(table) != 4096:
         raise ValueError(f"expected the 4096 lines of Luminance HDR, got {len(table)}: is it cut short?")
     return ln_exposure(table[BINS, 1::2])
-
-
-def columns_of(g: F64) -> F64:
-    """Return g as (n, channels)."""
-    return g.reshape(len(g), -1)
 
 
 def squeeze_gray(columns: F64) -> F64:
@@ -129,8 +124,3 @@ def numbers(text: str, columns: int, separator: str | None = None) -> F64:
             raise ValueError(f"expected {columns} numbers in line {count} of its table, got {line[:60]!r}")
         rows.append(row)
     return np.array(rows, np.float64).reshape(-1, columns)
-
-
-def text_of(path: Path) -> str:
-    """Return a file's text; bytes that are none become letters that no number has."""
-    return path.read_text(encoding="latin-1")

@@ -5,7 +5,7 @@
 
 All frames of a bracket must be developed alike: LibRaw's brightening, which looks at the picture, is off;
 the white level is the camera's, not the brightest value found; one white balance, of the shortest exposure,
-serves all. Once the camera's colours are mixed into those of sRGB, nobody can tell which were clipped: so a
+serves all. Once the camera's colours are mixed into those of sRGB, clipped ones are no longer known: so a
 pixel that is clipped in any colour is made white in all.
 """
 
@@ -22,8 +22,10 @@ from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 
 SUFFIXES = frozenset({".cr2", ".cr3", ".nef", ".arw", ".dng", ".raf", ".rw2", ".orf", ".pef"})
-WHITE = 65535
-ROWS = 64
+# of a clipped pixel
+WHITE_LEVEL = 65535
+# rows
+BAND_ROWS = 64
 
 Balance = tuple[float, float, float, float]
 
@@ -70,10 +72,10 @@ def decode(path: str | Path, white_balance: Balance | None = None) -> NDArray[np
 def to_srgb(camera: NDArray[np.uint16], matrix: F32) -> NDArray[np.uint16]:
     """Return the camera's colours as sRGB's, Z = M camera, and white where any of them is clipped."""
     Z = np.empty_like(camera)
-    for y in range(0, len(camera), ROWS):
-        band = camera[y : y + ROWS]
-        mixed = np.clip(np.rint(band @ matrix.T), 0, WHITE)
-        Z[y : y + ROWS] = np.where((band == WHITE).any(axis=-1, keepdims=True), WHITE, mixed)
+    for y in range(0, len(camera), BAND_ROWS):  # of a whole photograph the float values would fill the memory
+        band = camera[y : y + BAND_ROWS]
+        mixed = np.clip(np.rint(band @ matrix.T), 0, WHITE_LEVEL)
+        Z[y : y + BAND_ROWS] = np.where((band == WHITE_LEVEL).any(axis=-1, keepdims=True), WHITE_LEVEL, mixed)
     return Z
 
 
@@ -86,8 +88,8 @@ def _open(path: str | Path) -> Iterator[Any]:
         with rawpy.imread(str(path)) as file:
             yield file
     except (rawpy.LibRawError, rawpy.NotSupportedError) as error:
-        said = error.args[0].decode() if isinstance(error.args[0], bytes) else error
-        raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {said}") from None
+        reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
+        raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None
 
 
 def _rawpy() -> Any:

@@ -25,18 +25,18 @@ from hdrlab.core.types import F64
 from hdrlab.io.files import replacing
 from hdrlab.io.pfscurves import (
     LUMINANCE,
-    columns_of,
     from_luminance,
     numbers,
     read_pfstools,
     squeeze_gray,
-    text_of,
     write_luminance,
     write_pfstools,
 )
 
-LARGEST = 32 << 20  # bytes: three channels of 65536 levels take 10 million
-FURTHEST = 80  # e^80 is near the end of float32, in which other programs keep exposures
+# bytes: three channels of 65536 levels take 10 million
+MAX_FILE_BYTES = 32 << 20
+# ln exposure: e^80 is near the end of float32, in which other programs keep exposures
+MAX_LN_EXPOSURE = 80
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
 UNIT = " (ln exposure)"
 
@@ -104,8 +104,8 @@ def read_curve(path: str | Path) -> F64:
     """
     form = FORMS[suffix_of(path)]
     size = Path(path).stat().st_size
-    if size > LARGEST:
-        raise ValueError(f"{path}: expected a response of at most {LARGEST} bytes, got {size}")
+    if size > MAX_FILE_BYTES:
+        raise ValueError(f"{path}: expected a response of at most {MAX_FILE_BYTES} bytes, got {size}")
     try:
         g = as_curve(form.read(Path(path)))
     except ValueError as error:
@@ -141,20 +141,22 @@ def as_curve(g: ArrayLike) -> F64:
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
         raise ValueError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
-    if not np.all(np.abs(curve) <= FURTHEST):  # NaN neither
-        raise ValueError(f"expected ln exposures from -{FURTHEST} to {FURTHEST}, got {describe(curve)}")
+    if not np.all(np.abs(curve) <= MAX_LN_EXPOSURE):  # NaN neither
+        raise ValueError(
+            f"expected ln exposures from -{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}, got {describe(curve)}"
+        )
     return curve.astype(np.float64)
 
 
 def _write_csv(path: Path, g: F64) -> None:
-    columns = columns_of(g)
+    columns = g.reshape(len(g), -1)
     header = ",".join(["level", *(name + UNIT for name in CHANNELS[columns.shape[1]])])
     lines = [",".join([str(z), *map(repr, row)]) for z, row in enumerate(columns.tolist())]
     path.write_text("\n".join([header, *lines, ""]), encoding="ascii")
 
 
 def _read_csv(path: Path) -> F64:
-    header, _, body = text_of(path).partition("\n")
+    header, _, body = path.read_text(encoding="latin-1").partition("\n")
     if header.replace(" ", "").strip() == LUMINANCE:
         return from_luminance(body)
     names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
@@ -175,7 +177,7 @@ def _read_npz(path: Path) -> F64:
     try:
         with zipfile.ZipFile(path) as archive:
             claimed = archive.getinfo("g.npy").file_size
-        if claimed > LARGEST:
+        if claimed > MAX_FILE_BYTES:
             raise ValueError(f"its g claims {claimed} bytes")
         with np.load(path, allow_pickle=False) as file:
             return np.asarray(file["g"])

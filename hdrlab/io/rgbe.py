@@ -20,10 +20,13 @@ from hdrlab.core.types import F32
 from hdrlab.io.files import check_size, replacing
 from hdrlab.io.rgbe_header import read_header
 
-SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)  # 2^(e - 128) / 256
+# 2^(e - 128) / 256, of each exponent e
+SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)
 SCALE[0] = 0
-RUN = 127  # the longest run that one code of two bytes stands for
-ROWS = 64
+# pixels: the longest run that one code of two bytes stands for
+LONGEST_RUN = 127
+# rows: a band that is encoded at a time
+BAND_ROWS = 64
 
 
 def read(path: str | Path) -> F32:
@@ -62,7 +65,7 @@ def read(path: str | Path) -> F32:
     if 8 <= length <= 32767 and b"\2\2\0" <= data[:3] < b"\2\2\x80" and len(data) > 3:
         E = _run_lengths(path, data, scanlines, length)
     else:
-        check_size(path, scanlines, length, 4 * scanlines, held=len(data))
+        check_size(path, scanlines, length, 4 * scanlines, available=len(data))
         E = to_radiance(_pixels(path, data, scanlines, length))
     E = _upright(E, header.axes)
     if np.any(header.exposure != 1):
@@ -97,11 +100,11 @@ def write(path: str | Path, E: ArrayLike) -> None:
         raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
     if E.ndim == 2:
         E = np.broadcast_to(E[..., None], (height, width, 3))
-    room = bytearray(ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
+    room = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
     with replacing(path) as name, open(name, "wb") as file:
         file.write(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode())
-        for y in range(0, height, ROWS):
-            band = np.ascontiguousarray(E[y : y + ROWS])
+        for y in range(0, height, BAND_ROWS):
+            band = np.ascontiguousarray(E[y : y + BAND_ROWS])
             file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))
 
 
@@ -129,7 +132,9 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
     """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
     if (stated := data[2] * 256 + data[3]) != length:
         raise ValueError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
-    check_size(path, scanlines, length, scanlines * (4 + 4 * 2 * -(-length // RUN)), held=len(data))
+    check_size(
+        path, scanlines, length, scanlines * (4 + 4 * 2 * -(-length // LONGEST_RUN)), available=len(data)
+    )
     E = np.empty((scanlines, length, 3), np.float32)
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)

@@ -17,7 +17,7 @@ def elapsed(what: str, *, stream: TextIO | None = None, delay: float = 1.0) -> I
     Parameters
     ----------
     what : the work
-    stream : standard error, unless told
+    stream : standard error by default
     delay : seconds before the first sign, and between two of them
 
     Examples
@@ -41,9 +41,9 @@ def elapsed(what: str, *, stream: TextIO | None = None, delay: float = 1.0) -> I
 
 
 def _tick(what: str, stream: TextIO, delay: float, done: Event) -> None:
-    begun, line = monotonic(), ""
+    start, line = monotonic(), ""
     while not done.wait(delay):
-        line = f"{what}: {monotonic() - begun:.0f} s"
+        line = f"{what}: {monotonic() - start:.0f} s"
         stream.write("\r" + line)
         stream.flush()
     if line:

@@ -12,7 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 
 Image = NDArray[np.uint8]
 
-BYTES = 2 / 3  # for each pixel, at most: runs of a plot take fewer, those of a photograph more than its JPEG
+# bytes a pixel, at most: runs of a plot take fewer, those of a photograph more than its JPEG
+MAX_RUN_BYTES = 2 / 3
 
 
 def webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
@@ -56,7 +57,7 @@ def runs(image: Image) -> bytes:
 def quick(image: Image) -> bytes:
     """Return `image` as it is soonest on a page: a plot as its runs, what has too many of these as JPEG."""
     found = runs(image)
-    return found if len(found) <= BYTES * image.shape[0] * image.shape[1] else jpeg(image)
+    return found if len(found) <= MAX_RUN_BYTES * image.shape[0] * image.shape[1] else jpeg(image)
 
 
 def half(values: ArrayLike) -> tuple[bytes, float]:

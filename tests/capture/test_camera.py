@@ -292,7 +292,7 @@ def test_black_pixels_do_not_lengthen_the_exposure():
         (dict(response="polaroid"), "film"),
         (dict(offsets=[[0, 0], [1, 1]]), "one per time"),
         (dict(offsets=3), "one per time"),
-        (dict(offsets=[[np.nan, 0]]), "finite moves"),
+        (dict(offsets=[[np.nan, 0]]), "finite homographies"),
         (dict(times=[1.0, 2.0], offsets=[[0, 0], [0, 30]]), "span less"),
     ],
 )

@@ -100,7 +100,7 @@ def test_automatic_exposure_is_within_a_sixth_of_a_stop_after_at_most_four_shots
     assert len(states) <= 4
     B = autoexposure.measure_brightness(SCENES[name].E, states[-1].EV_opt)
     read = metering.reading(B, metering.weights(B, mode))
-    assert abs(np.log2(read / metering.GRAY)) < 1 / 6
+    assert abs(np.log2(read / metering.MIDDLE_GRAY)) < 1 / 6
 
 
 def test_against_the_light_only_the_narrow_modes_expose_the_face():
@@ -113,7 +113,7 @@ def test_against_the_light_only_the_narrow_modes_expose_the_face():
 def test_snow_comes_out_gray_in_every_mode_and_two_stops_more_make_it_white(mode):
     off = settled("snow", mode)
     assert -2.5 < off < -1.9
-    assert abs(settled("snow", mode, target=metering.GRAY * 2**-off)) < 0.2
+    assert abs(settled("snow", mode, target=metering.MIDDLE_GRAY * 2**-off)) < 0.2
 
 
 def test_a_black_locomotive_comes_out_gray_where_the_spot_lies_on_it():
@@ -130,7 +130,7 @@ def test_twice_the_light_gives_one_ev_more():
 def test_a_black_and_a_burnt_out_first_shot_are_both_survived():
     for start in (-10, 40):
         states = list(autoexposure.expose_steps(SCENES["snow"].E, "average", start=start, max_shots=20))
-        assert abs(np.log2(states[-1].B_pre / metering.GRAY)) < 1 / 6
+        assert abs(np.log2(states[-1].B_pre / metering.MIDDLE_GRAY)) < 1 / 6
 
 
 def test_what_means_nothing_is_refused():

@@ -43,7 +43,7 @@ def test_the_same_room_is_rendered_every_time(room):
 
 
 def test_the_room_does_not_depend_on_the_bands_it_is_rendered_in(room, monkeypatch):
-    monkeypatch.setattr(view, "BAND", 192 * 4 * 3)
+    monkeypatch.setattr(view, "SIGHTS_PER_BAND", 192 * 4 * 3)
     assert np.allclose(view.room((128, 192)), room, rtol=1e-5)
 
 

@@ -12,7 +12,8 @@ from hdrlab.capture.room.textures import Points
 from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32
 
-BAND = 2**16  # lines of sight traced at a time: their arrays stay near the processor
+# lines of sight traced at a time: their arrays stay near the processor
+SIGHTS_PER_BAND = 2**16
 
 
 def sight(shape: tuple[int, int], rows: NDArray[np.int_]) -> tuple[Points, float]:
@@ -65,7 +66,7 @@ def room(
         raise ValueError(f"expected finite lights of at least 0 cd/m^2, got sun {sun} and lamp {lamp}")
     height, width = shape
     E = np.empty((height, width, 3), np.float32)
-    step = max(BAND // (width * samples**2), 1)
+    step = max(SIGHTS_PER_BAND // (width * samples**2), 1)
     for top in range(0, height, step):
         rows = np.arange(samples * top, samples * min(top + step, height))
         d, pixel = sight((samples * height, samples * width), rows)

@@ -91,7 +91,7 @@ def looked(state: State) -> Axes:
     full = f"{np.mean(state.B >= 1):.0%} of the pixels full"
     text = f"EV {state.EV:.2f}: reading {state.B_pre:.3f}, {full}\n"
     ring = state.w >= state.w.max() / 2
-    return sensors.titled(Z, text + f"wanted {metering.GRAY}: next EV {state.EV_opt:.2f}", ring=ring)
+    return sensors.titled(Z, text + f"wanted {metering.MIDDLE_GRAY}: next EV {state.EV_opt:.2f}", ring=ring)
 
 
 class Calibrated(NamedTuple):

@@ -1,7 +1,7 @@
 """What a sensor holds and loses -> pictures and matplotlib Axes, in the look of `show.plots`.
 
 L      luminance   (K,) or (H, W), cd/m^2
-held   what one exposure makes of it: `capture.ranges.Held`
+held   what one exposure makes of it: `capture.ranges.ExposedLevels`
 full, noise        (H, W) bool, pixels that are full, and those that noise has swallowed
 found  a photon transfer curve: `capture.photon_transfer.Transfer`
 
@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
-from hdrlab.capture.ranges import Held
+from hdrlab.capture.ranges import ExposedLevels
 from hdrlab.core.arrays import describe
 from hdrlab.core.picture import as_picture
 from hdrlab.show.plots import axes, fixed, picture_axes
@@ -42,7 +42,7 @@ def marked(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[np.
 
 
 def window(
-    L: ArrayLike, held: Held, *, limits: tuple[float, float] | None = None, ax: Axes | None = None
+    L: ArrayLike, held: ExposedLevels, *, limits: tuple[float, float] | None = None, ax: Axes | None = None
 ) -> Axes:
     """Draw how the pixels of a scene spread over luminance, and which of them one exposure holds."""
     L, ax = np.asarray(L, np.float64).ravel(), ax or axes()
@@ -62,7 +62,7 @@ def window(
     return _logarithmic(ax)
 
 
-def staircase(L: ArrayLike, held: Held, *, ax: Axes | None = None) -> Axes:
+def staircase(L: ArrayLike, held: ExposedLevels, *, ax: Axes | None = None) -> Axes:
     """Draw the converter's level over luminance, and where nothing is told [Battiato08 fig. 1.10 to 1.12]."""
     L, ax = np.asarray(L, np.float64), ax or axes()
     if L.shape != np.shape(held.Z) or L.ndim != 1:
