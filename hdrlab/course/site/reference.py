@@ -122,6 +122,8 @@ def rows() -> list[tuple[str, str]]:
     for line in lines[ruler + 1 :]:
         if not line:
             break
+        if line.startswith("---"):  # below it stands what is not on the slides
+            continue
         table.append((line[:column].strip(), line[column:].strip()))
     return table
 
