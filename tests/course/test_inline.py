@@ -49,7 +49,7 @@ def test_what_one_function_brings_is_not_brought_again():
 
 
 def test_two_definitions_of_one_name_part_by_their_modules():
-    """Both operators are called tonemap, and each has a Float of its own or shares it."""
+    """Both operators are called tonemap, and each brings the types it needs."""
     both = inline.inlined({"photo": "tonemap.reinhard.tonemap", "slow": "tonemap.chiu.tonemap"})
     scope = {}
     exec("\n\n".join(block.text for block in both.values()), scope)
@@ -57,9 +57,21 @@ def test_two_definitions_of_one_name_part_by_their_modules():
     assert not np.allclose(scope["photo"](L), scope["slow"](L))
 
 
-def test_a_name_in_a_string_stays_and_a_comment_too():
+def test_a_function_under_another_name_keeps_its_words():
     block = inline.inlined({"tent": "core.weights.hat"})["tent"]
-    assert "def tent(" in block.source and ">>> hat()" in block.source
+    assert "def tent(" in block.source and "[Debevec97 eq. 4]" in block.source
+
+
+def test_of_a_docstring_the_first_paragraph_stays_for_the_sheet_has_the_rest():
+    text = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text
+    assert "Return g and lE" in text and "Parameters" not in text and ">>>" not in text
+    assert text.count('"""') % 2 == 0
+
+
+def test_imports_from_one_module_stand_in_one_line():
+    text = inline.inlined({"align": "align.mtb.align"})["align"].text
+    modules = [line.partition(" import ")[0] for line in text.splitlines() if line.startswith("from ")]
+    assert len(modules) == len(set(modules))
 
 
 def test_a_function_that_is_not_there_is_an_error():

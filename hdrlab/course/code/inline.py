@@ -23,7 +23,7 @@ class Block(NamedTuple):
     @property
     def text(self) -> str:
         """All of it, as one cell."""
-        return "\n\n\n".join(filter(None, ("\n".join(self.imports), self.needs, self.source)))
+        return "\n\n\n".join(filter(None, ("\n".join(_grouped(self.imports)), self.needs, self.source)))
 
 
 def inlined(functions: Mapping[str, str]) -> dict[str, Block]:
@@ -69,6 +69,21 @@ def _block(order: Sequence[Key], names: dict[Key, str], done: set[str]) -> Block
     return Block(
         order[-1], tuple(sorted(imports, key=_rank)), _joined(texts[:-1]), texts[-1] if texts else ""
     )
+
+
+def _grouped(imports: Sequence[str]) -> list[str]:
+    """Return the imports, those from one module in one line.
+
+    Examples
+    --------
+    >>> _grouped(["import numpy as np", "from typing import Any", "from typing import NamedTuple"])
+    ['import numpy as np', 'from typing import Any, NamedTuple']
+    """
+    lines: dict[str, str] = {}
+    for line in imports:
+        module, _, name = line.partition(" import ")
+        lines[module] = f"{lines[module]}, {name}" if name and module in lines else line
+    return list(lines.values())
 
 
 def _rank(line: str) -> tuple[bool, bool, str]:
@@ -150,8 +165,20 @@ def _text(key: Key, names: dict[Key, str]) -> str:
         at = statement.lineno - first
         if renamed != key.name and isinstance(statement, ast.FunctionDef | ast.ClassDef):
             written[at] = written[at].replace(f" {key.name}", f" {renamed}", 1)
-        texts.append("\n".join(written))
+        texts.append("\n".join(_shortened(statement, written, first)))
     return "\n".join(texts)
+
+
+def _shortened(statement: ast.stmt, written: list[str], first: int) -> list[str]:
+    """Return a definition's lines with the first paragraph of each docstring; the sheet has the rest."""
+    inner = [one for one in ast.walk(statement) if isinstance(one, ast.FunctionDef | ast.ClassDef)]
+    for one in inner:
+        start, end = one.body[0].lineno - first, (one.body[0].end_lineno or 0) - first
+        blank = next((n for n in range(start, end) if not written[n].strip()), None)
+        if ast.get_docstring(one) is not None and blank is not None:
+            written[blank - 1] += '"""'
+            written[blank : end + 1] = [None] * (end + 1 - blank)  # type: ignore[list-item]
+    return [line for line in written if line is not None]
 
 
 def _edited(line: str, edits: Iterable[tuple[int, int, str]]) -> str:
