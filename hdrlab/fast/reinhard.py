@@ -3,6 +3,8 @@
 Letters as in `tonemap.reinhard`. All is float32, and a pixel beyond all measure is white like any other.
 """
 
+from functools import partial
+
 import numpy as np
 
 from hdrlab.core.arrays import as_luminance
@@ -10,6 +12,7 @@ from hdrlab.core.extremes import positive_median, robust_maximum
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32
 from hdrlab.fast import blur, with_parts
+from hdrlab.fast._bands import banded
 from hdrlab.tonemap import reinhard
 
 # scaled luminance
@@ -38,6 +41,11 @@ def white_point(Lm: F32) -> float:
     return max(1.0, robust_maximum(Lm))
 
 
+def display(Lm: F32, adaptation: F32, white: float = np.inf) -> F32:
+    """Return the lesson's Ld, a band of rows at a time."""
+    return banded(partial(reinhard.display, white=white), Lm, adaptation)
+
+
 def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> F32:
     """Return V1 of each pixel at its own width."""
     padded, V1 = blur._pad(Lm, REACH), np.empty_like(Lm)
@@ -57,5 +65,6 @@ tonemap = with_parts(
     automatic_key=automatic_key,
     scale_to_key=scale_to_key,
     white_point=white_point,
+    display=display,
     local_adaptation=local_adaptation,
 )

@@ -103,7 +103,7 @@ def scale_steps(
     for width, (V1, V2) in zip(WIDTHS, pairwise(blurred), strict=False):
         V = response(V1, V2, width=width, key=key, phi=phi)
         even = even & (np.abs(V) < threshold)
-        adaptation = np.where(even | (width == WIDTHS[0]), V1, adaptation)
+        adaptation = V1 if width == WIDTHS[0] else np.where(even, V1, adaptation)
         yield Scale(width, V1, V, even, adaptation)
 
 

@@ -14,6 +14,14 @@ def scaled(kind, rng):
     return None if kind == "colour" else ((reinhard.scale_to_key(luminance(kind, rng)),), {})
 
 
+def held_back(kind, rng):
+    """Scaled luminance, what it is held back by, and a white for some kinds."""
+    if kind == "colour":
+        return None
+    Lm = reinhard.scale_to_key(luminance(kind, rng))
+    return (Lm, Lm[::-1], {"gray": 2.0}.get(kind, float("inf"))), {}
+
+
 def shown(kind, rng):
     """Luminance, and the modes of the operator."""
     knobs = {"gray": {"key": "auto"}, "clipped": {"local": True}, "tiny": {"local": True, "white": 2.0}}
@@ -25,6 +33,7 @@ PAIRS = {
     "automatic_key": (scene, 1e-4),
     "scale_to_key": (scene, 1e-5),
     "white_point": (scaled, 1e-6),
+    "display": (held_back, 0),
     "local_adaptation": (scaled, 1e-4),
     "tonemap": (shown, 1e-4),
 }
