@@ -16,5 +16,10 @@ def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
     return banded(lambda *rows: _fix(Filtered(*rows), sigma_s=sigma_s), *found, margin=4 * durand.NEAR)
 
 
+def combine(base: F32, detail: F32) -> F32:
+    """Return the lesson's 10^(base + detail)."""
+    return banded(durand.combine, base, detail)
+
+
 layers = with_parts(__name__, durand.layers, bilateral=bilateral, fix_uncertain=fix_uncertain)
-tonemap = with_parts(__name__, durand.tonemap, layers=layers)
+tonemap = with_parts(__name__, durand.tonemap, layers=layers, combine=combine)

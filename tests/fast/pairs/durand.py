@@ -29,6 +29,14 @@ def filtered(kind, rng):
     return (bilateral(np.log10(luminance(kind, rng)), sigma_s=3.0, sigma_r=0.4),), {"sigma_s": 3.0}
 
 
+def both(kind, rng):
+    """A base, and detail on it."""
+    if kind == "colour":
+        return None
+    base = light(kind, rng)
+    return (base, np.float32(0.1 * rng.standard_normal(base.shape))), {}
+
+
 def shown(kind, rng):
     """Luminance, and other knobs for some kinds."""
     if kind == "colour":
@@ -37,4 +45,9 @@ def shown(kind, rng):
     return (10 ** light(kind, rng),), {"sigma_s": 3.0, **knobs.get(kind, {})}
 
 
-PAIRS = {"layers": (split, 0.03), "fix_uncertain": (filtered, 1e-5), "tonemap": (shown, 0.05)}
+PAIRS = {
+    "layers": (split, 0.03),
+    "fix_uncertain": (filtered, 1e-5),
+    "combine": (both, 1e-6),
+    "tonemap": (shown, 0.05),
+}
