@@ -104,12 +104,12 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     """
     import numpy as np
 
-    from hdrlab.enhance import battiato
+    from hdrlab.enhance import battiato, skin
     from hdrlab.io import photos
 
     image = photos.read_photo(photo)
     Z = image if image.dtype == np.uint8 else ((image.astype(np.uint32) + 128) // 257).astype(np.uint8)
-    found = battiato.correct(Z, by=by, way=way, target=target)
+    found = battiato.correct(Z, by=by, find_skin=skin.FINDERS[way], target=target)
     photos.write_picture(out, found.picture)
     click.echo(
         f"what matters: {found.by}, {found.relevant.mean():.0%} of the picture, mean level {found.before:.0f}"

@@ -83,6 +83,14 @@ def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
     return _finite(array, "luminance")
 
 
+def as_picture(picture: ArrayLike) -> Array:
+    """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
+    array = np.asarray(picture)
+    if array.dtype != np.uint8 or array.ndim < 2 or array.shape[2:] not in ((), (3,)) or not array.size:
+        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(array)}")
+    return array
+
+
 def _finite(array: Array, what: str) -> NDArray[np.float32]:
     """Return `array` as float32, or raise a ValueError that counts what is not finite or negative."""
     if array.dtype.kind not in "iuf":

@@ -8,12 +8,11 @@ p        share of the pixels at each level
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import as_picture
 from hdrlab.core.colour import LUMINANCE
-
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64
 
 
 class Statistics(NamedTuple):
@@ -35,18 +34,9 @@ class Statistics(NamedTuple):
     entropy: float
 
 
-def as_picture(picture: ArrayLike) -> NDArray[np.uint8]:
-    """Return a picture as an array, or raise a ValueError that says what came."""
-    array = np.asarray(picture)
-    fits = array.ndim in (2, 3) and array.shape[2:] in ((), (3,)) and array.size > 0
-    if array.dtype != np.uint8 or not fits:
-        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(array)}")
-    return array
-
-
-def gray(picture: ArrayLike) -> Float:
+def gray(picture: ArrayLike) -> F64:
     """Return y = 0.2126 R + 0.7152 G + 0.0722 B of the levels as they are shown; a gray picture as it is."""
-    levels: Float = as_picture(picture).astype(np.float64)
+    levels: F64 = as_picture(picture).astype(np.float64)
     return levels @ LUMINANCE if levels.ndim == 3 else levels
 
 

@@ -12,25 +12,21 @@ look. Find in it the regions that matter: skin where there is some, else the blo
 focus. Give all pixels the light that brings the mean of those regions to 128 (`enhance.relight`).
 """
 
-from typing import NamedTuple
+from collections.abc import Callable
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
-from scipy.ndimage import correlate, correlate1d
+from numpy.typing import ArrayLike
+from scipy.ndimage import correlate1d, laplace
 
-from hdrlab.core.arrays import Array, describe
-from hdrlab.core.picture import as_picture
-from hdrlab.core.steps import last
+from hdrlab.core.arrays import as_picture, describe
+from hdrlab.core.types import F64, Array, Mask
 from hdrlab.enhance import relight, skin
 
-Float = NDArray[np.float64]
-
-LUMA = np.array([0.299, 0.587, 0.114])  # ITU-R BT.601: the Y channel of encoded values
-LAPLACIAN = np.array([[0.0, 1, 0], [1, -4, 1], [0, 1, 0]])
-NOISE = 20.0  # levels: 2 sigma of what a Laplacian, whose weights have norm sqrt 20, makes of noise of 2.2
-BLOCKS = 8  # along a side: N = 64
-LEAST = 1 / 3  # stops, the step of a camera's dial: less is not worth a change
-LEAST_SKIN = 0.01  # share of the picture: less is no face
+# levels: 2 sigma of the Laplacian of noise of 2.2; the norm of its weights is sqrt 20
+NOISE = 20.0
+# share of the picture: less is no face
+SMALLEST_FACE = 0.01
 
 
 class Correction(NamedTuple):
@@ -46,87 +42,63 @@ class Correction(NamedTuple):
     picture : uint8, the corrected picture or mosaic, of the shape that came
     """
 
-    visible: Float
-    relevant: NDArray[np.bool_]
+    visible: F64
+    relevant: Mask
     by: str
     delta: float
     before: float
     after: float
-    picture: NDArray[np.uint8]
+    picture: Array
 
 
-def quarter(mosaic: ArrayLike) -> NDArray[np.uint8]:
-    """Return the quarter-size picture (H/2, W/2, 3) of a Bayer mosaic R G / G B: a cell becomes a pixel."""
-    Z = np.asarray(mosaic)
-    if Z.ndim != 2 or min(Z.shape) < 2 or Z.dtype != np.uint8:
-        raise ValueError(f"expected a Bayer mosaic (H, W) of uint8, at least 2 x 2, got {describe(Z)}")
-    Z = Z[: Z.shape[0] // 2 * 2, : Z.shape[1] // 2 * 2]
-    green = (Z[::2, 1::2].astype(np.uint16) + Z[1::2, ::2] + 1) // 2
-    return np.stack([Z[::2, ::2], green.astype(np.uint8), Z[1::2, 1::2]], axis=-1)
-
-
-def brightness(Z: Array) -> Float:
+def brightness(Z: Array) -> F64:
     """Return Y = 0.299 R + 0.587 G + 0.114 B of the levels; a gray picture as it is."""
-    return Z @ LUMA if Z.ndim == 3 else Z.astype(np.float64)
+    return Z @ skin.LUMA if Z.ndim == 3 else Z.astype(np.float64)
 
 
-def visible(Z: Array, Y: Float, *, a: float = relight.A, c: float = relight.C) -> Array:
-    """Return Z, as floats, with the light that brings the mean of Y to 128."""
-    delta = last(relight.settle_steps(relight.shares(Y), a=a, c=c)).delta
-    return relight.curve(delta, a=a, c=c)[Z]
+def brighten(Z: Array, *, a: float = relight.A, c: float = relight.C) -> F64:
+    """Return the visibility image: Z, as floats, with the light that brings its mean to 128."""
+    *_, state = relight.settle_steps(relight.shares(brightness(Z)), a=a, c=c)
+    return relight.curve(state.delta, a=a, c=c)[Z]
 
 
-def histogram(block: Float) -> Float:
+def histogram(block: F64) -> F64:
     """Return I~[i], the mean of I[i-2] ... I[i+2] [eq. 1.3]; beyond its ends I is 0."""
-    I = np.bincount(np.rint(block).astype(np.intp).ravel(), minlength=256)  # noqa: E741
-    return correlate1d(I.astype(np.float64), np.full(5, 0.2), mode="constant")
+    return correlate1d(relight.shares(block) * block.size, np.full(5, 0.2), mode="constant")
 
 
-def contrast(block: Float) -> float:
+def contrast(block: F64) -> float:
     """Return D, the mean of |i - M| over the smoothed histogram, M its mean [eq. 1.4, 1.5]."""
-    smoothed = histogram(block)
-    i = np.arange(256)
-    M = (i @ smoothed) / smoothed.sum()
-    return float((np.abs(i - M) @ smoothed) / smoothed.sum())
+    i, smoothed = np.arange(256), histogram(block)
+    M = np.average(i, weights=smoothed)
+    return float(np.average(np.abs(i - M), weights=smoothed))
 
 
-def focus(block: Float, *, noise: float = NOISE) -> float:
+def focus(block: F64, *, noise: float = NOISE) -> float:
     """Return F, the mean over the block of |Laplacian| where it exceeds the noise, 0 elsewhere [eq. 1.6]."""
-    edges = np.abs(correlate(block, LAPLACIAN, mode="nearest"))
+    edges = np.abs(laplace(block, mode="nearest"))
     return float(np.where(edges > noise, edges, 0).mean())
 
 
-def blocks(Y: Float, count: int = BLOCKS) -> list[list[Float]]:
+def split_blocks(Y: F64, count: int = 8) -> list[list[F64]]:
     """Return the picture cut into count rows of count blocks, as equal as it can be."""
     rows = np.array_split(Y, min(count, len(Y)))
     return [np.array_split(row, min(count, Y.shape[1]), axis=1) for row in rows]
 
 
-def relevance(D: Float, F: Float, *, share: float = 0.5) -> Float:
+def relevance(D: F64, F: F64, *, share: float = 0.5) -> F64:
     """Return R = share D / max D + (1 - share) F / max F: a linear combination, 0 to 1."""
     return share * D / max(D.max(), 1e-9) + (1 - share) * F / max(F.max(), 1e-9)
 
 
-def by_blocks(Y: Float, *, count: int = BLOCKS, noise: float = NOISE) -> NDArray[np.bool_]:
+def find_relevant_blocks(Y: F64, *, count: int = 8, noise: float = NOISE) -> Mask:
     """Return the mask (H, W) of the blocks whose relevance is at least the mean of all."""
-    cut = blocks(Y, count)
-    D = np.array([[contrast(block) for block in row] for row in cut])
-    F = np.array([[focus(block, noise=noise) for block in row] for row in cut])
+    blocks = split_blocks(Y, count)
+    D = np.array([[contrast(block) for block in row] for row in blocks])
+    F = np.array([[focus(block, noise=noise) for block in row] for row in blocks])
     R = relevance(D, F)
-    chosen = R >= R.mean()
-    masks = [
-        [np.full(block.shape, keep) for block, keep in zip(row, keeps, strict=True)]
-        for row, keeps in zip(cut, chosen, strict=True)
-    ]
-    return np.block(masks)
-
-
-def by_skin(Z: Array, *, way: str = "chrominance") -> NDArray[np.bool_]:
-    """Return the mask (H, W) of skin in a colour picture, by `skin.by_chrominance` or `skin.by_locus`."""
-    ways = {"chrominance": skin.by_chrominance, "locus": skin.by_locus}
-    if way not in ways:
-        raise ValueError(f"expected skin by {' or '.join(ways)}, got {way!r}")
-    return ways[way](Z)
+    relevant = iter((R >= R.mean()).ravel())
+    return np.block([[np.full(block.shape, next(relevant)) for block in row] for row in blocks])
 
 
 def correct(
@@ -134,24 +106,21 @@ def correct(
     *,
     target: float = relight.TARGET,
     by: str = "auto",
-    bayer: bool = False,
-    way: str = "chrominance",
+    find_skin: Callable[..., Mask] = skin.find_by_chrominance,
     noise: float = NOISE,
-    a: float = relight.A,
-    c: float = relight.C,
-    least: float = LEAST,
+    shape: tuple[float, float] = (relight.A, relight.C),
+    least: float = 1 / 3,
 ) -> Correction:
     """Correct the exposure of a photograph by the regions that matter in it.
 
     Parameters
     ----------
-    picture : (H, W, 3) or (H, W) uint8, as the camera made it; or a Bayer mosaic (H, W), R G / G B
+    picture : (H, W, 3) or (H, W) uint8, as the camera made it; for a Bayer mosaic see `correct_mosaic`
     target : mean level that the relevant regions get
     by : "skin", "blocks" (contrast and focus), or "auto": skin where it covers 1 % of the picture
-    bayer : the picture is a mosaic: look at its quarter-size picture, and correct the mosaic
-    way : how skin is found, "chrominance" or "locus"
+    find_skin : function of a picture that returns the mask of skin, one of `skin.FINDERS`
     noise : what a Laplacian makes of the sensor's noise, levels; less is no focus
-    a, c : A and C, the shape of the simulated response
+    shape : A and C of the simulated response
     least : stops; a photograph that lacks less is left as it is
 
     Returns
@@ -161,7 +130,7 @@ def correct(
     Raises
     ------
     ValueError
-        For a picture that is not uint8, a target outside 1 to 254, or an unknown way.
+        For a picture that is not uint8, a target outside 1 to 254, or skin that is asked for and not found.
 
     References
     ----------
@@ -175,24 +144,37 @@ def correct(
     >>> found.by, abs(found.after - 128) < 3
     ('contrast and focus', True)
     """
-    if not 1 <= target <= 254:
-        raise ValueError(f"expected a target level from 1 to 254, got {target}")
-    if by not in ("auto", "skin", "blocks"):
-        raise ValueError(f"expected by auto, skin or blocks, got {by!r}")
-    Z = as_picture(picture)
-    seen = quarter(Z) if bayer else Z
-    Y = brightness(seen)
-    lit = visible(seen, Y, a=a, c=c)
-    found = by_skin(lit, way=way) if seen.ndim == 3 and by != "blocks" else np.zeros(Y.shape, bool)
-    if by == "skin" and not found.any():
+    if not (1 <= target <= 254 and by in ("auto", "skin", "blocks")):
+        raise ValueError(f"expected a target from 1 to 254 and by auto, skin or blocks, got {target}, {by!r}")
+    Z, (a, c) = as_picture(picture), shape
+    Y, visible = brightness(Z), brighten(Z, a=a, c=c)
+    faces = find_skin(visible) if Z.ndim == 3 and by != "blocks" else np.zeros(Y.shape, bool)
+    if by == "skin" and not faces.any():
         raise ValueError("expected a colour picture with skin in it, found none")
-    faces = by == "skin" or found.mean() >= LEAST_SKIN
-    relevant = found if faces else by_blocks(brightness(lit), noise=noise)
-    held = relevant & (Y > 0) & (Y < 255)  # black and white stay what they are, and would drag the mean
-    held = held if held.any() else relevant
-    delta = last(relight.settle_steps(relight.shares(Y[held]), target, a=a, c=c)).delta
-    delta = delta if abs(delta) >= least else 0.0
+    by = "skin" if by == "skin" or faces.mean() >= SMALLEST_FACE else "contrast and focus"
+    relevant = faces if by == "skin" else find_relevant_blocks(brightness(visible), noise=noise)
+    inner = relevant & (Y > 0) & (Y < 255)  # black and white stay what they are, and would drag the mean
+    inner = inner if inner.any() else relevant
+    *_, state = relight.settle_steps(relight.shares(Y[inner]), target, a=a, c=c)
+    delta = state.delta if abs(state.delta) >= least else 0.0
     changed = relight.table(delta, a=a, c=c)[Z]
-    after = brightness(quarter(changed) if bayer else changed)[held].mean()
-    why = "skin" if faces else "contrast and focus"
-    return Correction(brightness(lit), relevant, why, delta, float(Y[held].mean()), float(after), changed)
+    before, after = (float(brightness(one)[inner].mean()) for one in (Z, changed))
+    return Correction(brightness(visible), relevant, by, delta, before, after, changed)
+
+
+def quarter_size(mosaic: ArrayLike) -> Array:
+    """Return the quarter-size picture (H/2, W/2, 3) of a Bayer mosaic R G / G B: a cell becomes a pixel."""
+    Z = np.asarray(mosaic)
+    if Z.ndim != 2 or min(Z.shape) < 2 or Z.dtype != np.uint8:
+        raise ValueError(f"expected a Bayer mosaic (H, W) of uint8, at least 2 x 2, got {describe(Z)}")
+    Z = Z[: Z.shape[0] // 2 * 2, : Z.shape[1] // 2 * 2]
+    green = (Z[::2, 1::2].astype(np.uint16) + Z[1::2, ::2] + 1) // 2
+    return np.stack([Z[::2, ::2], green.astype(np.uint8), Z[1::2, 1::2]], axis=-1)
+
+
+def correct_mosaic(
+    mosaic: ArrayLike, *, shape: tuple[float, float] = (relight.A, relight.C), **knobs: Any
+) -> Correction:
+    """Return the Correction of a Bayer mosaic by its quarter-size picture; knobs are those of `correct`."""
+    found = correct(quarter_size(mosaic), shape=shape, **knobs)
+    return found._replace(picture=relight.table(found.delta, a=shape[0], c=shape[1])[np.asarray(mosaic)])

@@ -15,15 +15,19 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
+from scipy.special import expit, logit
 
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64, Array
 
 # A and C for which f lies within 4 levels of the curve of sRGB from level 20 to 200, by least squares.
 A, C = 1.79, 0.192
+# level
 TARGET = 128.0
-MOST = 8.0  # stops: a photograph that lacks more holds nothing
-CLOSE = 0.5  # levels
+# stops: a photograph that lacks more shows nothing
+DELTA_LIMIT = 8.0
+# levels
+TOLERANCE = 0.5
 LEVELS = np.arange(256)
 
 
@@ -34,24 +38,22 @@ class State(NamedTuple):
     mean: float
 
 
-def f(q: ArrayLike, *, a: float = A, c: float = C) -> Float:
-    """Return f(q) = 255 / (1 + e^-Aq)^C [Battiato08 eq. 1.9]."""
-    with np.errstate(over="ignore"):  # e^-Aq of no light is infinite, and f of it 0
-        return 255 / (1 + np.exp(-a * np.asarray(q, np.float64))) ** c
+def f(q: ArrayLike, *, a: float = A, c: float = C) -> F64:
+    """Return f(q) = 255 / (1 + e^-Aq)^C [Battiato08 eq. 1.9]; expit(x) = 1 / (1 + e^-x)."""
+    return 255 * expit(a * np.asarray(q, np.float64)) ** c
 
 
-def inverse(Y: ArrayLike, *, a: float = A, c: float = C) -> Float:
+def f_inv(Y: ArrayLike, *, a: float = A, c: float = C) -> F64:
     """Return q = -ln((255 / Y)^(1/C) - 1) / A: level 0 has no light at all, -inf, and level 255 all, inf."""
-    with np.errstate(divide="ignore"):
-        return -np.log((255 / np.asarray(Y, np.float64)) ** (1 / c) - 1) / a
+    return logit((np.asarray(Y, np.float64) / 255) ** (1 / c)) / a
 
 
 def offset(average: float, target: float = TARGET, *, a: float = A, c: float = C) -> float:
-    """Return delta = f^-1(target) - f^-1(average) [Battiato08 eq. 1.10], at most MOST stops either way."""
-    return float(np.clip(inverse(target, a=a, c=c) - inverse(average, a=a, c=c), -MOST, MOST))
+    """Return delta = f^-1(target) - f^-1(average) [Battiato08 eq. 1.10], DELTA_LIMIT stops at most."""
+    return float(np.clip(f_inv(target, a=a, c=c) - f_inv(average, a=a, c=c), -DELTA_LIMIT, DELTA_LIMIT))
 
 
-def curve(delta: float, *, a: float = A, c: float = C) -> Float:
+def curve(delta: float, *, a: float = A, c: float = C) -> F64:
     """Return Y' = f(f^-1(Y) + delta) of the 256 levels [Battiato08 eq. 1.11].
 
     Examples
@@ -59,36 +61,31 @@ def curve(delta: float, *, a: float = A, c: float = C) -> Float:
     >>> curve(1.0)[[0, 64, 128, 255]].round().tolist()
     [0.0, 90.0, 176.0, 255.0]
     """
-    return f(inverse(LEVELS, a=a, c=c) + delta, a=a, c=c)
+    return f(f_inv(LEVELS, a=a, c=c) + delta, a=a, c=c)
 
 
-def table(delta: float, *, a: float = A, c: float = C) -> NDArray[np.uint8]:
+def table(delta: float, *, a: float = A, c: float = C) -> Array:
     """Return the curve rounded to levels: the look-up table (256,); of delta = 0 it is the identity."""
     return np.floor(curve(delta, a=a, c=c) + 0.5).astype(np.uint8)
 
 
-def shares(Y: ArrayLike) -> Float:
+def shares(Y: ArrayLike) -> F64:
     """Return p, the share of the pixels at each of the 256 levels."""
-    counts = np.bincount(np.rint(np.asarray(Y)).astype(np.intp).ravel(), minlength=256)
-    return counts / counts.sum()
+    return np.bincount(np.rint(Y).astype(np.intp).ravel(), minlength=256) / np.size(Y)
 
 
-def settle_steps(
-    p: Float, target: float = TARGET, *, a: float = A, c: float = C, most: int = 12
-) -> Iterator[State]:
+def settle_steps(p: F64, target: float = TARGET, *, a: float = A, c: float = C) -> Iterator[State]:
     """Yield the State before any light and after each round of eq. 1.10, until the mean is on target.
 
     One round, as the paper has it, moves the *average level* to the target. The mean of the moved levels is
     another thing, for f is curved: it is off by 10 levels and more where the regions hold light and shade.
-    So the round is repeated with the mean that came out.
+    So the round is repeated with the mean that resulted, a dozen times at most.
     """
     delta, mean = 0.0, float(p @ LEVELS)
     yield State(delta, mean)
-    for _ in range(most):
-        if abs(mean - target) < CLOSE or not 0 < mean < 255:
+    for _ in range(12):
+        if abs(mean - target) < TOLERANCE or not 0 < mean < 255:
             return
-        moved = float(np.clip(delta + offset(mean, target, a=a, c=c), -MOST, MOST))
-        if moved == delta:
-            return
-        delta, mean = moved, float(p @ curve(moved, a=a, c=c))
+        delta = float(np.clip(delta + offset(mean, target, a=a, c=c), -DELTA_LIMIT, DELTA_LIMIT))
+        mean = float(p @ curve(delta, a=a, c=c))
         yield State(delta, mean)

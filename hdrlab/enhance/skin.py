@@ -17,33 +17,37 @@ the ColorChecker and a little beyond, with more or less blood, shade and white b
 your own.
 """
 
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.colour import decode_srgb, encode_srgb
-
-Float = NDArray[np.float64]
+from hdrlab.core.types import F64, Mask
 
 LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
 CHROMA = np.array([[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]])  # Cb, Cr of RGB [BT.601]
 LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
 BLOOD = np.array([0.0, 0.12, 0.08])  # how much more of it takes from R, G, B, in ln
 UPPER, LOWER = (-1.3767, 1.0743, 0.1452), (-0.776, 0.5601, 0.1766)  # parabolas in r [Soriano03]
-WHITE = 0.0004  # squared radius of the white that is left out of the locus
-REACH = 2.5  # Mahalanobis: of a Gaussian, 96 % lie nearer
+# squared radius of the white that is left out of the locus
+WHITE = 0.0004
+# Mahalanobis distance: of a Gaussian, 96 % lie nearer
+REACH = 2.5
 
 
 class Skin(NamedTuple):
     """What skin looks like: mean (2,) and covariance (2, 2) of (Cb, Cr)."""
 
-    mu: Float
-    S: Float
+    mu: F64
+    S: F64
 
 
-def chrominance(Z: ArrayLike) -> Float:
+# Of the computed training set, at the brightness of a visibility image: fit(synthetic()), as a test repeats.
+DEFAULT = Skin(np.array([-17.12975, 23.91754]), np.array([[20.25376, -25.10826], [-25.10826, 49.34927]]))
+
+
+def chrominance(Z: ArrayLike) -> F64:
     """Return x = 128 (Cb, Cr) / Y of levels (..., 3): the chrominance that a colour would have at level 128.
 
     Cb and Cr alone shrink in the shade, and so would the distance from gray; divided by Y they do not.
@@ -70,7 +74,7 @@ def fit(Z: ArrayLike) -> Skin:
     return Skin(x.mean(axis=0), S)
 
 
-def synthetic(count: int = 4000, *, rng: int | np.random.Generator = 0) -> Float:
+def synthetic(count: int = 4000, *, rng: int | np.random.Generator = 0) -> F64:
     """Return the levels (count, 3) of computed skin, light and dark in equal parts, in light and in shade."""
     rng = np.random.default_rng(rng)
     light, dark = (np.log(decode_srgb(np.array(levels) / 255)) for levels in (LIGHT, DARK))
@@ -81,36 +85,30 @@ def synthetic(count: int = 4000, *, rng: int | np.random.Generator = 0) -> Float
     return 255 * encode_srgb(np.minimum(np.exp(ln), 1))
 
 
-@cache
-def default() -> Skin:
-    """Return the Skin of the computed training set, at the brightness of a visibility image."""
-    return fit(synthetic())
-
-
-def distance(Z: ArrayLike, skin: Skin | None = None) -> Float:
+def distance(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
     """Return d with d^2 = (x - mu)' S^-1 (x - mu), of each pixel (..., 3) [Battiato08 eq. 1.8]."""
-    mu, S = skin or default()
+    mu, S = skin
     away = chrominance(Z) - mu
     return np.sqrt(np.einsum("...i,ij,...j->...", away, np.linalg.inv(S), away))
 
 
-def likelihood(Z: ArrayLike, skin: Skin | None = None) -> Float:
+def likelihood(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
     """Return p(x | skin) = exp(-d^2 / 2) / (2 pi |S|^(1/2)) [Battiato08 eq. 1.7]."""
-    S = (skin or default()).S
+    S = skin.S
     return np.exp(-(distance(Z, skin) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
 
 
-def by_chrominance(Z: ArrayLike, skin: Skin | None = None, *, reach: float = REACH) -> NDArray[np.bool_]:
+def find_by_chrominance(Z: ArrayLike, skin: Skin = DEFAULT, *, reach: float = REACH) -> Mask:
     """Return the pixels (...) whose Mahalanobis distance from skin is below `reach`."""
     return distance(Z, skin) < reach
 
 
-def by_locus(Z: ArrayLike) -> NDArray[np.bool_]:
+def find_by_locus(Z: ArrayLike) -> Mask:
     """Return the pixels (...) between the parabolas of the skin locus, white left out [Soriano03].
 
     Examples
     --------
-    >>> by_locus(np.array([[224, 172, 105], [60, 90, 200]])).tolist()  # skin, and a blue cloth
+    >>> find_by_locus(np.array([[224, 172, 105], [60, 90, 200]])).tolist()  # skin, and a blue cloth
     [True, False]
     """
     Z = np.asarray(Z, np.float64)
@@ -118,3 +116,6 @@ def by_locus(Z: ArrayLike) -> NDArray[np.bool_]:
     r, g = Z[..., 0] / total, Z[..., 1] / total
     white = (r - 1 / 3) ** 2 + (g - 1 / 3) ** 2 <= WHITE
     return (np.polyval(LOWER, r) < g) & (g < np.polyval(UPPER, r)) & ~white & (r > g)
+
+
+FINDERS = {"chrominance": find_by_chrominance, "locus": find_by_locus}

@@ -33,14 +33,14 @@ def test_a_table_rises_and_leaves_black_and_white_alone(delta):
 
 @given(delta=st.floats(-4, 4), more=st.floats(-4, 4))
 def test_light_twice_is_the_sum_of_the_light(delta, more):
-    once = relight.f(relight.inverse(LEVELS) + delta)
-    twice = relight.f(relight.inverse(once[1:255]) + more)
+    once = relight.f(relight.f_inv(LEVELS) + delta)
+    twice = relight.f(relight.f_inv(once[1:255]) + more)
     assert twice == pytest.approx(relight.curve(delta + more)[1:255], abs=1e-4)
 
 
 @given(q=st.floats(-8, 4), a=st.floats(0.4, 3), c=st.floats(0.1, 2))
 def test_the_inverse_inverts_whatever_the_shape(q, a, c):
-    assert relight.inverse(relight.f(q, a=a, c=c), a=a, c=c) == pytest.approx(q, abs=1e-3)
+    assert relight.f_inv(relight.f(q, a=a, c=c), a=a, c=c) == pytest.approx(q, abs=1e-3)
 
 
 def test_the_default_shape_lies_within_four_levels_of_srgb_from_20_to_200():
@@ -92,20 +92,20 @@ def test_focus_hears_an_edge_and_not_the_noise():
 def test_the_blocks_with_detail_are_the_relevant_ones():
     Y = np.full((64, 64), 128.0)
     Y[:16, :16] = np.random.default_rng(2).integers(40, 220, (16, 16))
-    relevant = battiato.by_blocks(Y)
+    relevant = battiato.find_relevant_blocks(Y)
     assert relevant[:16, :16].all() and relevant.sum() == 256
 
 
 def test_sixty_four_blocks_cover_any_picture():
     for shape in ((480, 640), (63, 65), (3, 5), (1, 1)):
-        assert battiato.by_blocks(np.random.default_rng(0).uniform(0, 255, shape)).shape == shape
+        assert battiato.find_relevant_blocks(np.random.default_rng(0).uniform(0, 255, shape)).shape == shape
 
 
 def test_a_quarter_of_a_mosaic_has_each_cells_red_mean_green_and_blue():
     mosaic = np.array([[10, 20], [40, 30]], np.uint8)
-    assert battiato.quarter(mosaic).tolist() == [[[10, 30, 30]]]
+    assert battiato.quarter_size(mosaic).tolist() == [[[10, 30, 30]]]
     with pytest.raises(ValueError, match="Bayer"):
-        battiato.quarter(np.zeros((4, 4, 3), np.uint8))
+        battiato.quarter_size(np.zeros((4, 4, 3), np.uint8))
 
 
 @pytest.mark.parametrize("EV", [12, 12.77, 13.3, 14])
@@ -140,7 +140,7 @@ def test_a_bayer_mosaic_is_corrected_as_its_picture_is():
     Z, _ = photographed(13)
     mosaic = Z[..., 1].copy()
     mosaic[::2, ::2], mosaic[1::2, 1::2] = Z[::2, ::2, 0], Z[1::2, 1::2, 2]
-    of_mosaic, of_picture = battiato.correct(mosaic, bayer=True), battiato.correct(Z)
+    of_mosaic, of_picture = battiato.correct_mosaic(mosaic), battiato.correct(Z)
     assert of_mosaic.picture.shape == mosaic.shape
     assert of_mosaic.by == of_picture.by == "skin"
     assert of_mosaic.delta == pytest.approx(of_picture.delta, abs=0.3)
@@ -153,15 +153,13 @@ def test_a_gray_picture_is_corrected_by_contrast_and_focus():
     assert found.by == "contrast and focus" and found.after == pytest.approx(128, abs=3)
 
 
-@pytest.mark.parametrize("shape", [dict(a=0.7, c=1.0), dict(a=3.0, c=0.1)])
+@pytest.mark.parametrize("shape", [(0.7, 1.0), (3.0, 0.1)])
 def test_another_shape_of_the_response_reaches_the_target_too(shape):
     Z, _ = photographed(13)
-    assert battiato.correct(Z, **shape).after == pytest.approx(128, abs=3)
+    assert battiato.correct(Z, shape=shape).after == pytest.approx(128, abs=3)
 
 
-@pytest.mark.parametrize(
-    "knobs", [dict(target=0), dict(target=255), dict(by="faces"), dict(way="hue", by="skin")]
-)
+@pytest.mark.parametrize("knobs", [dict(target=0), dict(target=255), dict(by="faces")])
 def test_knobs_that_mean_nothing_are_refused(knobs):
     with pytest.raises(ValueError, match="expected"):
         battiato.correct(data.astronaut()[:64, :64], **knobs)
@@ -210,7 +208,7 @@ FOUND = {  # (way, dark): recall in the face, and share of flag, rocket and wall
 @pytest.mark.parametrize("way, dark", FOUND)
 def test_skin_is_found_in_light_and_dark_faces_alike(way, dark):
     Z, face, elsewhere = portrait(dark)
-    found = battiato.by_skin(battiato.visible(Z, battiato.brightness(Z)), way=way)
+    found = skin.FINDERS[way](battiato.brighten(Z))
     recall, mistaken = FOUND[way, dark]
     assert found[face].mean() >= recall and found[elsewhere].mean() <= mistaken
 
@@ -226,28 +224,34 @@ def test_light_and_dark_skin_lie_at_the_same_distance():
 @pytest.mark.parametrize("name", ["brick", "grass", "gravel"])
 def test_walls_grass_and_gravel_are_no_skin(name):
     Z = np.repeat(getattr(data, name)()[..., None], 3, axis=-1)
-    assert not skin.by_chrominance(Z).any() and not skin.by_locus(Z).any()
+    assert not skin.find_by_chrominance(Z).any() and not skin.find_by_locus(Z).any()
 
 
 def test_blue_green_and_gray_are_no_skin():
     Z = np.array([[40, 80, 200], [60, 160, 60], [128, 128, 128], [255, 255, 255], [0, 0, 0]])
-    assert not skin.by_chrominance(Z).any() and not skin.by_locus(Z).any()
+    assert not skin.find_by_chrominance(Z).any() and not skin.find_by_locus(Z).any()
 
 
 def test_a_training_set_of_ones_own_moves_the_skin():
     rng = np.random.default_rng(5)
     green = np.array([60, 160, 60]) + rng.normal(0, 4, (500, 3))
     martian = skin.fit(green)
-    assert skin.by_chrominance(green, martian).mean() > 0.9
-    assert not skin.by_chrominance(np.array(skin.LIGHT), martian)
+    assert skin.find_by_chrominance(green, martian).mean() > 0.9
+    assert not skin.find_by_chrominance(np.array(skin.LIGHT), martian)
+
+
+def test_the_default_skin_is_that_of_the_computed_training_set():
+    fitted = skin.fit(skin.synthetic())
+    assert np.allclose(skin.DEFAULT.mu, fitted.mu, atol=1e-4)
+    assert np.allclose(skin.DEFAULT.S, fitted.S, atol=1e-4)
 
 
 def test_the_density_is_the_gaussian_of_the_distance_and_integrates_to_one():
-    mu, S = skin.default()
+    mu, S = skin.DEFAULT
     assert skin.likelihood(skin.synthetic(100)) == pytest.approx(
         np.exp(-(skin.distance(skin.synthetic(100)) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
     )
-    inside = skin.by_chrominance(skin.synthetic(4000, rng=9))
+    inside = skin.find_by_chrominance(skin.synthetic(4000, rng=9))
     assert 0.9 < inside.mean() < 0.99
 
 

@@ -10,14 +10,14 @@ TRAINING = skin.synthetic(3000)
 
 
 def test_the_ellipse_lies_at_its_reach_from_the_mean():
-    known = skin.default()
+    known = skin.DEFAULT
     edge = np.column_stack(skins.chrominance(TRAINING, known, reach=2.0).lines[1].get_data()) - known.mu
     distance = np.sqrt(np.einsum("ni,ij,nj->n", edge, np.linalg.inv(known.S), edge))
     assert np.allclose(distance, 2.0)
 
 
 def test_the_dots_are_pixels_and_not_too_many():
-    ax = skins.chrominance(TRAINING, skin.default())
+    ax = skins.chrominance(TRAINING, skin.DEFAULT)
     dots = np.column_stack(ax.lines[0].get_data())
     assert 1000 < len(dots) <= skins.MOST and np.allclose(dots[1], skin.chrominance(TRAINING[2]))
 
@@ -27,7 +27,7 @@ def test_pixels_between_the_drawn_parabolas_are_those_of_the_locus():
     r, g = ax.lines[0].get_data()
     upper, lower = (np.interp(r, *line.get_data()) for line in ax.lines[1:])
     inside = (lower < g) & (g < upper)
-    assert np.mean(inside == skin.by_locus(TRAINING[::2])) > 0.97
+    assert np.mean(inside == skin.find_by_locus(TRAINING[::2])) > 0.97
 
 
 @pytest.mark.parametrize("bad", [np.zeros((4, 4)), np.zeros((0, 3))])

@@ -19,8 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
 from hdrlab.capture.ranges import ExposedLevels
-from hdrlab.core.arrays import describe
-from hdrlab.core.picture import as_picture
+from hdrlab.core.arrays import as_picture, describe
 from hdrlab.show.plots import axes, fixed, picture_axes
 from hdrlab.show.plots.nearest import show
 
