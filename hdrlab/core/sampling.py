@@ -54,7 +54,7 @@ def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     return Z if valid is None else Z[_shown_in_all(valid, stack)[y[:, None], x].ravel()]
 
 
-def every_pixel(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
+def every_pixel(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Array:
     """Return Z (N, P[, 3]): all pixels that every frame shows, whatever the count."""
     stack = as_stack(images)
     Z = to_256(stack).reshape(len(stack), -1, *stack.shape[3:]).swapaxes(0, 1)

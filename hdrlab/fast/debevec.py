@@ -5,15 +5,15 @@ normal equations it leaves a system S g = r in g alone (a Schur complement). The
 squared weights: C[i, z] is the sum of w^2 over the frames where sample i has level z.
 """
 
-from collections.abc import Callable
 from itertools import product
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.sampling import by_rank, require_two_exposures
+from hdrlab.core.sampling import require_two_exposures
 from hdrlab.core.types import F64, Indices
+from hdrlab.fast import with_parts
 from hdrlab.response import debevec
 from hdrlab.response.debevec import Solution
 
@@ -65,20 +65,7 @@ def _solve_with_gauge(S: F64, r: F64) -> F64:
     return np.interp(np.arange(n), np.flatnonzero(reached), g[reached])
 
 
-def recover(
-    images: ArrayLike,
-    times: ArrayLike,
-    *,
-    smoothness: float = 30.0,
-    samples: int = 1000,
-    w: ArrayLike | None = None,
-    choose: Callable[..., Indices] = by_rank,
-    valid: ArrayLike | None = None,
-    solve: Callable[..., Solution] = gsolve,
-) -> F64:
-    """Return the response g of the lesson, whose parameters these are, with the `gsolve` above."""
-    knobs = dict(smoothness=smoothness, samples=samples, w=w, choose=choose, valid=valid, solve=solve)
-    return debevec.recover(images, times, **knobs)
+recover = with_parts(__name__, debevec.recover, gsolve=gsolve)
 
 
 def _validate(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> tuple[Indices, F64, F64]:

@@ -139,5 +139,6 @@ def recover(
     steps: Callable[..., Iterator[State]] = recover_steps,
 ) -> F64:
     """Return the response g of the lesson, whose parameters these are, with the `recover_steps` above."""
-    knobs = dict(samples=samples, w=w, choose=choose, valid=valid, steps=steps)
-    return robertson.recover(images, as_times(times, len(images)), **knobs)
+    stack = as_stack(images)
+    t = as_times(times, len(stack))
+    return robertson.recover(stack, t, samples=samples, w=w, choose=choose, valid=valid, steps=steps)

@@ -22,7 +22,6 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack, as_times, describe
 from hdrlab.core.sampling import by_rank
 from hdrlab.core.types import F64, Indices
-from hdrlab.core.weights import make_monotone
 
 
 class Solution(NamedTuple):
@@ -46,8 +45,8 @@ def system(Z: Indices, B: F64, smoothness: float, w: F64) -> tuple[F64, F64]:
     (N, P), n = Z.shape, len(w)
     A, b = np.zeros((N * P + n - 1, n + N)), np.zeros(N * P + n - 1)
     for k, (i, j) in enumerate(np.ndindex(N, P)):
-        z = Z[i, j]
-        A[k, z], A[k, n + i], b[k] = w[z], -w[z], w[z] * B[j]
+        wij = w[Z[i, j]]
+        A[k, Z[i, j]], A[k, n + i], b[k] = wij, -wij, wij * B[j]
     A[N * P, n // 2] = 1
     for z in range(1, n - 1):
         A[N * P + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
@@ -101,7 +100,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     if rank < np.count_nonzero(A.any(axis=0)):
         raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
     reached = np.flatnonzero(A[:, :n].any(axis=0))
-    return Solution(np.interp(np.arange(n), reached, x[reached]), x[n:])
+    return Solution(np.interp(np.arange(n), reached, x[reached]), np.asarray(x[n:]))
 
 
 def recover(
@@ -113,7 +112,6 @@ def recover(
     w: ArrayLike | None = None,
     choose: Callable[..., Indices] = by_rank,
     valid: ArrayLike | None = None,
-    solve: Callable[..., Solution] = gsolve,
 ) -> F64:
     """Return the response g recovered from a bracket, each channel by itself.
 
@@ -135,8 +133,6 @@ def recover(
         `sampling.by_rank` (default), `sampling.by_grid`, or your own with the same signature.
     valid : (P, H, W) bool, optional
         False where a photograph holds no picture.
-    solve : function
-        What solves for g and lE, with the signature of `gsolve`.
 
     Returns
     -------
@@ -162,12 +158,14 @@ def recover(
     """
     stack = as_stack(images)
     B = np.log(as_times(times, len(stack), distinct=2))
-    if w is None:
-        w = weights.cut(np.sqrt(weights.hat() * weights.gaussian()), below=0.02)
+    cut = weights.cut(np.sqrt(weights.hat() * weights.gaussian()), below=0.02)
+    w = cut if w is None else np.asarray(w, np.float64)
     Z = choose(stack, samples, valid=valid)
-    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
-    g = np.stack([solve(Z, B, smoothness, w).g for Z in channels], axis=-1)
-    return make_monotone(straight_toe(g, w)).reshape(256, *stack.shape[3:])
+    curves = []
+    for channel in np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0):
+        curves.append(gsolve(channel, B, smoothness, w).g)
+    g = straight_toe(np.stack(curves, axis=-1), w)
+    return weights.make_monotone(g).reshape(256, *stack.shape[3:])
 
 
 def straight_toe(g: F64, w: F64) -> F64:

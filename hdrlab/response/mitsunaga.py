@@ -98,13 +98,13 @@ def ratios(channels: Sequence[Pairs], c: F64, R: F64) -> F64:
     for (a, b, q), own in zip(channels, c, strict=True):
         total += [np.bincount(q, phi[:, 0] + phi[:, 1:] @ own, len(R)) for phi in (a, b)]
     known = (total[0] > 0) & (total[0] < total[1])
-    return np.divide(*total, out=R.copy(), where=known)
+    return np.divide(total[0], total[1], out=R.copy(), where=known)
 
 
 def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[State]:
     """Yield the State after each iteration, c and then R, until f^-1 changes by less than eps [eq. 11]."""
     channels = [neighbours(own, order) for own in M]
-    levels, R, before = terms(np.linspace(0, 1, 256), order)[:, 1:], np.asarray(R, np.float64), np.inf
+    levels, R, before = terms(np.linspace(0, 1, 256), order)[:, 1:], np.asarray(R), np.full(256, np.inf)
     for _ in range(max_iterations):
         c = np.stack([coefficients(gram(*one, R)) for one in channels])
         R = ratios(channels, c, R)

@@ -9,6 +9,7 @@ M    brightness     (C, N, P), and R, c, H as in `mitsunaga`
 """
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -153,7 +154,7 @@ def calibrate(
 
 
 def find_response(
-    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None, **knobs: float
+    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None, **knobs: Any
 ) -> F64:
     """Return the response g (256,) or (256, 3), rising, g[128] = 0. Parameters as of `calibrate`."""
     g = np.stack([curve(c) for c in calibrate(images, times, valid=valid, **knobs).c], axis=-1)

@@ -1,5 +1,5 @@
 """You believe the times that were given: after each fit the ratios are to be taken anew from the curve, R
-= sum f(M_q) / sum f(M_q+1)."""
+= sum f^-1(M_q) / sum f^-1(M_q+1)."""
 
 import numpy as np
 
