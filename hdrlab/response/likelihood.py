@@ -1,7 +1,7 @@
 """How likely the levels of a bracket are, for a response, ratios and a noise: the model behind `marginal`.
 
 Z      pixel levels   (N, P), 0 ... 255: pixel i in frame q, frames from short to long
-f      polynomial     M -> exposure, f(0) = 0, f(1) = 1, coefficients c: see `polynomial`
+f_inv  f^-1           M -> exposure, a polynomial with coefficients c: see `mitsunaga`
 tau    ln exposures   (P,), of each frame over the longest, tau[-1] = 0
 sigma  noise          standard deviation of M at every brightness, before it is cut into levels
 x      nodes          (K,) brightnesses that a pixel may have in frame `at` (K,); p (K,) how often it does
@@ -18,15 +18,14 @@ they know instead of being cut.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 from scipy.special import ndtr
 
+from hdrlab.core.types import F64, Indices
 from hdrlab.response.mitsunaga import terms, value
 from hdrlab.response.polynomial import brightness, slope
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
 EDGES = np.concatenate([[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]])  # of the levels' cells, in M
 STRAY = 1e-12  # probability of a level that the noise does not explain: a pixel that moved pulls at nothing
 
@@ -34,8 +33,8 @@ STRAY = 1e-12  # probability of a level that the noise does not explain: a pixel
 class Nodes(NamedTuple):
     """Brightness x (K,) in frame `at` (K,): an exposure each, which moves with c and tau."""
 
-    x: Float
-    at: Index
+    x: F64
+    at: Indices
 
 
 class Support(NamedTuple):
@@ -45,16 +44,16 @@ class Support(NamedTuple):
     has at[q, j] of these in frame q.
     """
 
-    start: Index
-    k: Index
-    cells: tuple[Index, ...]
-    at: Index
+    start: Indices
+    k: Indices
+    cells: tuple[Indices, ...]
+    at: Indices
 
 
-def nodes(c: Float, tau: Float, count: int) -> Nodes:
+def nodes(c: F64, tau: F64, count: int) -> Nodes:
     """Return `count` nodes evenly over the brightness of the longest frame; where it clips, of the next, ...
 
-    So p and the response hardly disturb each other: a frame's own levels say much of p, and nothing of f.
+    So p and the response hardly disturb each other: a frame's own levels say much of p, and nothing of f^-1.
     """
     x = (np.arange(count) + 0.5) / count
     clipped_next = np.append(np.exp(tau[:-1] - tau[1:]), 0)  # exposure from which only this frame is left
@@ -62,10 +61,11 @@ def nodes(c: Float, tau: Float, count: int) -> Nodes:
     return Nodes(np.concatenate(own), np.repeat(np.arange(len(own)), [len(one) for one in own]))
 
 
-def predict(c: Float, tau: Float, at: Nodes) -> tuple[Float, Float]:
-    """Return m = f^-1(e_q / e_at f(x)), (P, K), and its derivatives by (c, tau[:-1]), (P, K, A - 1).
+def predict(c: F64, tau: F64, at: Nodes) -> tuple[F64, F64]:
+    """Return m = f(e_q / e_at f^-1(x)), (P, K), and its derivatives by (c, tau[:-1]), (P, K, A - 1).
 
-    f(m) = rho f(x) gives f'(m) dm = (rho b_n(x) - b_n(m)) dc_n + rho f(x) d ln rho. Clipped, m stays.
+    f^-1(m) = rho f^-1(x), differentiated: the slope at m times dm is (rho b_n(x) - b_n(m)) dc_n +
+    rho f^-1(x) d ln rho. Clipped, m stays.
     """
     order, P = len(c) + 1, len(tau)
     rho = np.exp(tau[:, None] - tau[at.at])
@@ -77,7 +77,7 @@ def predict(c: Float, tau: Float, at: Nodes) -> tuple[Float, Float]:
     return m, np.where(X < 1, 1 / slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)
 
 
-def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[Float, Float, Float]:
+def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[F64, F64, F64]:
     """Return P(z | m), and the derivatives of its logarithm by m and by ln sigma; m and z broadcast."""
     z, m = np.asarray(z, dtype=np.intp), np.asarray(m)
     low, high = (EDGES[z] - m) / sigma, (EDGES[z + 1] - m) / sigma
@@ -87,7 +87,7 @@ def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[Float, Float, Floa
     return P, (bell_low - bell_high) / (sigma * P), -tilt / P
 
 
-def table(m: Float, sigma: float) -> Float:
+def table(m: F64, sigma: float) -> F64:
     """Return P(z | m) of all levels, (P, K, 256).
 
     Examples
@@ -98,7 +98,7 @@ def table(m: Float, sigma: float) -> Float:
     return np.diff(ndtr((EDGES - m[..., None]) / sigma)) + STRAY
 
 
-def support(Z: Index, P: Float, *, least: float = 1e-7, block: int = 1000) -> Support:
+def support(Z: Indices, P: F64, *, least: float = 1e-7, block: int = 1000) -> Support:
     """Return for each pixel the nodes with at least that fraction of its best node's likelihood."""
     tables = P.swapaxes(1, 2).astype(np.float32)  # (P, 256, K): a pixel's likelihood is a product of rows
     kept = []
@@ -114,7 +114,7 @@ def support(Z: Index, P: Float, *, least: float = 1e-7, block: int = 1000) -> Su
     return Support(np.append(0, np.cumsum(counts)), k, np.unravel_index(np.flatnonzero(asked), P.shape), at)
 
 
-def posterior(P: Float, p: Float, near: Support) -> tuple[Float, Float]:
+def posterior(P: F64, p: F64, near: Support) -> tuple[F64, F64]:
     """Return ln P(Z_i) (N,) and each supporting node's share of it, p_k prod_q P(Z_iq | m_qk) / P(Z_i).
 
     P are the probabilities of the support's cells.
@@ -126,7 +126,7 @@ def posterior(P: Float, p: Float, near: Support) -> tuple[Float, Float]:
     return np.log(total), joint / np.repeat(total, np.diff(near.start))
 
 
-def scores(weights: Float, near: Support, J: Float, dm: Float, ds: Float) -> Float:
+def scores(weights: F64, near: Support, J: F64, dm: F64, ds: F64) -> F64:
     """Return the derivatives of ln P(Z_i) by (c, tau[:-1], ln sigma), (N, A), from those of the cells.
 
     Fisher's identity: the derivative for a known node, averaged over the nodes by their shares.
@@ -139,12 +139,12 @@ def scores(weights: Float, near: Support, J: Float, dm: Float, ds: Float) -> Flo
     return S
 
 
-def density(weights: Float, near: Support, count: int) -> Float:
+def density(weights: F64, near: Support, count: int) -> F64:
     """Return p_k, the mean over the pixels of node k's shares: the step of EM."""
     return np.bincount(near.k, weights, count) / (len(near.start) - 1)
 
 
-def stiffness(A: int, frames: int, trust: float) -> Float:
+def stiffness(A: int, frames: int, trust: float) -> F64:
     """Return the (A, A) matrix of a prior on theta = (c, tau[:-1], ln sigma): each ln R to within `trust`."""
     D = np.zeros((frames - 1, A))
     D[:, A - frames :] = np.eye(frames - 1, frames) - np.eye(frames - 1, frames, 1)  # tau_q - tau_q+1

@@ -1,59 +1,50 @@
 """Self-calibration by marginal maximum likelihood: the same camera as in `mitsunaga`, every pixel as it is.
 
 Z      pixel levels   (N, P), 0 ... 255: pixel i in frame q, frames from short to long
-c      coefficients   (order - 1,) of the polynomial f: see `polynomial`
+c      coefficients   (order - 1,) of the polynomial f^-1: see `mitsunaga`
 R      ratios         (P - 1,), exposure of frame q over that of frame q + 1
 sigma  noise          standard deviation of brightness, 0 ... 1
 theta  unknowns       (A,) = (c, tau[:-1], ln sigma), tau the ln exposures over the longest
 p      density        (K,), how often a pixel has which exposure: see `likelihood`
 s      scores         (N, A), derivatives of ln P(Z_i) by theta
 
-The turns of `mitsunaga` take each M for exact on both sides of eq. 5. But f(M) errs by the noise of M times
-the slope of f, and pixels chosen by their own value are chosen by their own noise; both tilt the valley of
+The scheme of `mitsunaga` takes each M for exact on both sides of eq. 5. But f^-1(M) errs by the noise of M
+times its slope, and pixels chosen by their own value are chosen by their own noise; both tilt the valley of
 the u-ambiguity, and no stop can mend that. Here the exposure of a pixel is integrated over, the noise is
-part of the model, and nothing is cut or averaged. Steps of EM for p and of Fisher scoring for theta take
-turns, from where `mitsunaga` stopped.
+part of the model, and nothing is cut or averaged. Steps of EM for p and of Fisher scoring for theta
+alternate, from where `self_calibration` stopped.
 """
 
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_stack, describe
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
-from hdrlab.response.likelihood import (
-    Nodes,
-    Support,
-    density,
-    masses,
-    nodes,
-    posterior,
-    predict,
-    scores,
-    stiffness,
-    support,
-    table,
-)
+from hdrlab.core.types import F64, Indices
+from hdrlab.response import likelihood
 from hdrlab.response.mitsunaga import curve
 from hdrlab.response.polynomial import GRID, limit_slope, slope
 from hdrlab.response.self_calibration import HIGHEST
 from hdrlab.response.self_calibration import calibrate as self_calibrate
 
-Float = NDArray[np.float64]
-Index = NDArray[np.intp]
-LEAST = 2e-3  # slope of f
-FINEST = 2e-3  # sigma, half a level: below it the nodes stand too far apart
+# slope of f^-1
+LEAST = 2e-3
+# sigma, half a level: below it the nodes stand too far apart
+FINEST = 2e-3
+# sigma to begin with, and how many nodes
+NOISE, NODES = 0.005, 400
 
 
 class State(NamedTuple):
     """After a step: c (order - 1,), R (P - 1,), sigma, log-likelihood, and the gain the step promised."""
 
-    c: Float
-    R: Float
+    c: F64
+    R: F64
     sigma: float
     likelihood: float
     promise: float
@@ -62,48 +53,48 @@ class State(NamedTuple):
 class Task(NamedTuple):
     """What stays while theta climbs: nodes, their support, and a prior on theta with its stiffness (A, A)."""
 
-    at: Nodes
-    near: Support
-    prior: Float
-    stiffness: Float
+    at: likelihood.Nodes
+    near: likelihood.Support
+    prior: F64
+    stiffness: F64
 
 
 class Point(NamedTuple):
     """Unknowns theta (A,), the log-likelihood there, the shares of the supporting nodes, scores (N, A)."""
 
-    theta: Float
+    theta: F64
     likelihood: float
-    weights: Float
-    scores: Float
+    weights: F64
+    scores: F64
 
 
-def unpack(theta: Float, frames: int) -> tuple[Float, Float, float]:
+def unpack(theta: F64, frames: int) -> tuple[F64, F64, float]:
     """Return c, tau and sigma of theta."""
     cut = len(theta) - frames
     return theta[:cut], np.append(theta[cut:-1], 0), float(np.exp(theta[-1]))
 
 
-def evaluate(theta: Float, p: Float, task: Task) -> Point:
+def evaluate(theta: F64, p: F64, task: Task) -> Point:
     """Return the Point at theta for a density p."""
     c, tau, sigma = unpack(theta, len(task.near.at))
     q, k, z = task.near.cells
-    m, J = predict(c, tau, task.at)
-    P, dm, ds = masses(m[q, k], sigma, z)
-    ln, weights = posterior(P, p, task.near)
+    m, J = likelihood.predict(c, tau, task.at)
+    P, dm, ds = likelihood.masses(m[q, k], sigma, z)
+    ln, weights = likelihood.posterior(P, p, task.near)
     penalty = ((theta - task.prior) @ task.stiffness @ (theta - task.prior)) / 2
-    return Point(theta, float(ln.sum() - penalty), weights, scores(weights, task.near, J, dm, ds))
+    return Point(theta, float(ln.sum() - penalty), weights, likelihood.scores(weights, task.near, J, dm, ds))
 
 
 def ascend(here: Point, task: Task) -> tuple[Point, float]:
     """Return the Point after a step of Fisher scoring, and the gain in log-likelihood that it promised.
 
     The step is F^-1 s, with s the sum of the scores and F = sum s_i s_i^T, the information in the pixels,
-    both with the prior's share. It is halved until f rises everywhere and the likelihood does.
+    both with the prior's share. It is halved until f^-1 rises everywhere and the likelihood does.
     """
     s = here.scores.sum(axis=0) - task.stiffness @ (here.theta - task.prior)
     F = here.scores.T @ here.scores + task.stiffness
     step = np.linalg.solve(F + 1e-9 * np.diag(np.diag(F)) + 1e-12 * np.eye(len(F)), s)
-    p = density(here.weights, task.near, len(task.at.x))
+    p = likelihood.density(here.weights, task.near, len(task.at.x))
     for half in range(12):
         theta = here.theta + step / 2**half
         theta[-1] = max(theta[-1], np.log(FINEST))
@@ -114,16 +105,16 @@ def ascend(here: Point, task: Task) -> tuple[Point, float]:
     return here, 0.0
 
 
-def begin(Z: Index, theta: Float, count: int, blur: float) -> tuple[Nodes, Support, Float]:
+def begin(Z: Indices, theta: F64, blur: float) -> tuple[likelihood.Nodes, likelihood.Support, F64]:
     """Return nodes, their support under `blur` times the noise, and p after five steps of EM."""
     c, tau, sigma = unpack(theta, Z.shape[1])
-    at = nodes(c, tau, count)
-    m = predict(c, tau, at)[0]
-    near = support(Z, table(m, blur * sigma))
+    at = likelihood.nodes(c, tau, NODES)
+    m = likelihood.predict(c, tau, at)[0]
+    near = likelihood.support(Z, likelihood.table(m, blur * sigma))
     q, k, z = near.cells
-    P, p = masses(m[q, k], sigma, z)[0], np.full(len(at.x), 1 / len(at.x))
+    P, p = likelihood.masses(m[q, k], sigma, z)[0], np.full(len(at.x), 1 / len(at.x))
     for _ in range(5):
-        p = density(posterior(P, p, near)[1], near, len(p))
+        p = likelihood.density(likelihood.posterior(P, p, near)[1], near, len(p))
     return at, near, p
 
 
@@ -134,12 +125,10 @@ def fit_steps(
     *,
     stated: ArrayLike | None = None,
     trust: float = np.inf,
-    sigma: float = 0.005,
-    count: int = 400,
-    enough: float = 0.01,
-    most: int = 30,
+    tolerance: float = 0.01,
+    max_iterations: int = 30,
 ) -> Iterator[State]:
-    """Yield the State after each step from c and R on, until a step promises less than `enough`.
+    """Yield the State after each step from c and R on, until a step promises less than `tolerance`.
 
     Twice: first with a wide support, for theta is far; then with nodes and support where it has come to.
     Each ln R is drawn to the `stated` one (R itself by default) as to a measurement with error `trust`.
@@ -149,19 +138,19 @@ def fit_steps(
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
         raise ValueError(f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}")
     theta, prior = (
-        np.r_[limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(sigma)] for r in (R, stated)
+        np.r_[limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(NOISE)] for r in (R, stated)
     )
-    stiff = stiffness(len(theta), Z.shape[1], trust)
+    stiff = likelihood.stiffness(len(theta), Z.shape[1], trust)
     for blur in (3.0, 2.0):
-        at, near, p = begin(Z, theta, count, blur)
+        at, near, p = begin(Z, theta, blur)
         task = Task(at, near, prior, stiff)
         here = evaluate(theta, p, task)
-        for _ in range(most):
+        for _ in range(max_iterations):
             here, promise = ascend(here, task)
             theta = here.theta
             own, tau, noise = unpack(theta, Z.shape[1])
             yield State(own, np.exp(tau[:-1] - tau[1:]), noise, here.likelihood, promise)
-            if promise < enough:
+            if promise < tolerance:
                 break
 
 
@@ -209,7 +198,7 @@ def recover(
     trust: float = 0.005,
     pixels: int = 1500,
     valid: ArrayLike | None = None,
-) -> Float:
+) -> F64:
     """Return the response g that makes the pixel levels likeliest, each channel by itself.
 
     Parameters
@@ -252,6 +241,6 @@ def recover(
     True
     """
     states = calibrate(
-        images, times, order=order, trust=trust, pixels=pixels, valid=valid, enough=0.5, most=10
+        images, times, order=order, trust=trust, pixels=pixels, valid=valid, tolerance=0.5, max_iterations=10
     )
     return np.stack([curve(state.c) for state in states], axis=-1).reshape(256, *np.shape(images)[3:])

@@ -70,7 +70,7 @@ def test_derivatives_of_the_prediction_are_its_differences(j):
 def test_the_scores_are_the_derivatives_of_the_likelihood():
     one = ambiguity.trial(np.random.default_rng(1), pixels=300)
     theta = np.r_[one.c * 0.99, np.log(one.R[::-1]).cumsum()[::-1], np.log(SIGMA)]
-    at, near, p = marginal.begin(one.Z, theta, 400, 3.0)
+    at, near, p = marginal.begin(one.Z, theta, 3.0)
     task = marginal.Task(at, near, theta, np.zeros((len(theta),) * 2))
     scores = marginal.evaluate(theta, p, task).scores.sum(axis=0)
     for j, h in enumerate(1e-6 * np.eye(len(theta))):
