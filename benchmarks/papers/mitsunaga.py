@@ -2,9 +2,9 @@
 
 error  mean of |f - truth| over the pixel levels, percent of the range
 
-Section 5: `ambiguity.trial` states how cameras, ratios, radiance and noise are drawn; a seed's 100 trials are
-drawn one after the other. The Canon's pictures are lost: its published ratios are the truth of such a trial,
-with a camera of seed 0. Flat patches are 200 x 200 pixels of brightness 0.5 with noise of 0.01.
+Section 5: `ambiguity.draw_trial` states how cameras, ratios, radiance and noise are drawn; a seed's 100
+trials are drawn one after the other. The Canon's pictures are lost: its published ratios are the truth of
+such a trial, with a camera of seed 0. Flat patches are 200 x 200 pixels of brightness 0.5 with noise of 0.01.
 """
 
 from collections.abc import Mapping
@@ -16,7 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_most, near, spread
 from hdrlab.core.steps import last
-from hdrlab.response import ambiguity, marginal, mitsunaga, polynomial, selection
+from hdrlab.diagnostics import ambiguity
+from hdrlab.response import marginal, mitsunaga, polynomial, selection
 from hdrlab.response.self_calibration import average
 
 Float = NDArray[np.float64]
@@ -42,7 +43,7 @@ def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trial
     Ours takes about a second a trial.
     """
     rng = np.random.default_rng(seed)
-    drawn = [ambiguity.trial(rng) for _ in range(trials)]
+    drawn = [ambiguity.draw_trial(rng) for _ in range(trials)]
     runs = [paper_states(one) for one in drawn]
     paper = [ambiguity.mean_error(states[-1].c[0], one.c) for states, one in zip(runs, drawn, strict=True)]
     better = along(marginal_error, drawn, f"seed {seed}") if ours else []
@@ -62,12 +63,12 @@ def marginal_error(one: ambiguity.Trial) -> float:
 
 def figure4(*, seed: int = SEED, sigma: float = 0.0) -> ambiguity.Valley:
     """Return the error along the ratio of two frames, truth 0.7, and what a search from 0.625 finds."""
-    return ambiguity.valley(polynomial.random(np.random.default_rng(seed)), sigma=sigma)
+    return ambiguity.scan_valley(polynomial.random(np.random.default_rng(seed)), sigma=sigma)
 
 
 def canon(*, seed: int = SEED) -> tuple[Float, Float]:
     """Return the ratios (4,) of the Canon as the paper's scheme and ours find them, from the stated ones."""
-    one = ambiguity.trial(np.random.default_rng(seed), ratios=CANON)
+    one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
     paper = last(mitsunaga.fit_steps(average(one.Z)[None], CANON_STATED, 5))
     return paper.R, marginal.fit(one.Z, paper.c[0], paper.R).R
 

@@ -6,7 +6,8 @@ import pytest
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.steps import last
-from hdrlab.response import ambiguity, likelihood, marginal, mitsunaga, polynomial
+from hdrlab.diagnostics import ambiguity
+from hdrlab.response import likelihood, marginal, mitsunaga, polynomial
 from hdrlab.response.self_calibration import average
 
 STATED = np.full(3, 0.5)
@@ -68,7 +69,7 @@ def test_derivatives_of_the_prediction_are_its_differences(j):
 
 
 def test_the_scores_are_the_derivatives_of_the_likelihood():
-    one = ambiguity.trial(np.random.default_rng(1), pixels=300)
+    one = ambiguity.draw_trial(np.random.default_rng(1), pixels=300)
     theta = np.r_[one.c * 0.99, np.log(one.R[::-1]).cumsum()[::-1], np.log(SIGMA)]
     at, near, p = marginal.begin(one.Z, theta, 3.0)
     task = marginal.Task(at, near, theta, np.zeros((len(theta),) * 2))
@@ -80,7 +81,7 @@ def test_the_scores_are_the_derivatives_of_the_likelihood():
 
 def test_the_support_holds_nearly_all_of_the_likelihood():
     c, tau, _ = model(2)
-    one = ambiguity.trial(np.random.default_rng(2), pixels=200)
+    one = ambiguity.draw_trial(np.random.default_rng(2), pixels=200)
     at = likelihood.nodes(one.c, tau, 400)
     P = likelihood.table(likelihood.predict(one.c, tau, at)[0], SIGMA)
     p = np.full(len(at.x), 1 / len(at.x))
@@ -90,7 +91,7 @@ def test_the_support_holds_nearly_all_of_the_likelihood():
 
 
 def test_every_step_raises_the_likelihood():
-    one = ambiguity.trial(np.random.default_rng(3), pixels=2000)
+    one = ambiguity.draw_trial(np.random.default_rng(3), pixels=2000)
     start = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
     states = list(marginal.fit_steps(one.Z, start.c[0], start.R))
     second = 1 + next(i for i, state in enumerate(states) if state.promise < 0.01)
@@ -100,14 +101,14 @@ def test_every_step_raises_the_likelihood():
 
 
 def test_the_noise_is_found_too():
-    one = ambiguity.trial(np.random.default_rng(4), sigma=0.008)
+    one = ambiguity.draw_trial(np.random.default_rng(4), sigma=0.008)
     assert np.isclose(estimate(one)[1].sigma, 0.008, rtol=0.03)
 
 
 def test_it_beats_the_published_scheme_on_its_own_trials():
     """The first 6 of the trials with the fixed seed; the benchmark runs all 100 and ten other seeds."""
     rng = np.random.default_rng(0)
-    trials = [ambiguity.trial(rng) for _ in range(6)]
+    trials = [ambiguity.draw_trial(rng) for _ in range(6)]
     states = [estimate(one) for one in trials]
     paper = [ambiguity.mean_error(state.c[0], one.c) for one, (state, _) in zip(trials, states, strict=True)]
     ours = [ambiguity.mean_error(state.c, one.c) for one, (_, state) in zip(trials, states, strict=True)]
@@ -120,7 +121,7 @@ def test_it_beats_the_published_scheme_on_its_own_trials():
 @pytest.mark.parametrize("seed", [1, 2])
 def test_it_climbs_to_the_same_place_from_the_truth(seed):
     """So what error is left is noise, nearly all of it along u, and no start nearer by would mend it."""
-    one = ambiguity.trial(np.random.default_rng(seed), pixels=4000)
+    one = ambiguity.draw_trial(np.random.default_rng(seed), pixels=4000)
     found = estimate(one)[1]
     from_truth = marginal.fit(one.Z, one.c, one.R, stated=STATED, trust=0.058)
     assert abs(found.likelihood - from_truth.likelihood) < 0.1
@@ -129,7 +130,7 @@ def test_it_climbs_to_the_same_place_from_the_truth(seed):
 
 
 def test_ratios_that_are_trusted_stay_and_the_curve_gains():
-    one = ambiguity.trial(np.random.default_rng(1))
+    one = ambiguity.draw_trial(np.random.default_rng(1))
     paper = last(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
     state = marginal.fit(one.Z, paper.c[0], paper.R, stated=one.R, trust=1e-5)
     assert np.allclose(state.R, one.R, atol=1e-4)
@@ -139,7 +140,7 @@ def test_ratios_that_are_trusted_stay_and_the_curve_gains():
 @pytest.mark.parametrize("seed", range(2))
 def test_the_ratios_of_the_canon_camera(seed):
     ratios = np.array([0.419, 0.292, 0.570, 0.512])
-    one = ambiguity.trial(np.random.default_rng(seed), ratios=ratios)
+    one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=ratios)
     start = last(mitsunaga.fit_steps(average(one.Z)[None], [0.5, 0.25, 0.5, 0.5], 5))
     assert np.abs(marginal.fit(one.Z, start.c[0], start.R).R - ratios).max() < 0.005
 

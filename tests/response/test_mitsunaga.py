@@ -10,9 +10,10 @@ from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.metrics import response_rmse
 from hdrlab.core.steps import last
+from hdrlab.diagnostics import ambiguity
 from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import recovery
-from hdrlab.response import ambiguity, mitsunaga, polynomial, self_calibration
+from hdrlab.response import mitsunaga, polynomial, self_calibration
 from hdrlab.response.families import invert_curves
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms
 from hdrlab.response.self_calibration import HIGHEST, average, calibrate, choose_order
@@ -32,7 +33,7 @@ def published(seed, trials):
     rng = np.random.default_rng(seed)
     said = []
     for _ in range(trials):
-        one = ambiguity.trial(rng)
+        one = ambiguity.draw_trial(rng)
         states = list(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
         said.append((ambiguity.mean_error(states[-1].c[0], one.c), len(states)))
     return np.array(said).T
@@ -89,7 +90,7 @@ def test_the_coefficients_are_the_least_squares_solution_of_equation_7():
 
 
 def test_the_matrices_of_halves_add_up_and_orders_are_nested():
-    M = average(ambiguity.trial(np.random.default_rng(2)).Z)
+    M = average(ambiguity.draw_trial(np.random.default_rng(2)).Z)
     whole, *halves = (gram(*neighbours(part, HIGHEST), STATED) for part in (M, M[::2], M[1::2]))
     assert np.allclose(whole, sum(halves))
     assert np.allclose(gram(*neighbours(M, 4), STATED), whole[:4, :4])
@@ -136,7 +137,7 @@ def test_ratios_are_shared_by_the_channels():
 def test_the_order_is_that_of_the_camera():
     rng = np.random.default_rng(5)
     for order in (1, 2, 3):
-        one = ambiguity.trial(rng, order=order, ratios=STATED) if order > 1 else None
+        one = ambiguity.draw_trial(rng, order=order, ratios=STATED) if order > 1 else None
         M = average(one.Z, 400)[None] if one else clean(np.zeros(0), STATED)
         assert choose_order([M[:, k::5] for k in range(5)], STATED) == order
 
@@ -203,7 +204,7 @@ def test_the_stop_bounds_the_worst_case_at_the_cost_of_the_typical_one():
     rng = np.random.default_rng(0)
     stopped, driven = [], []
     for k in range(32):
-        one = ambiguity.trial(rng)
+        one = ambiguity.draw_trial(rng)
         if k < 10 or k == 31:
             M = average(one.Z)[None]
             for errors, knobs in ((stopped, {}), (driven, {"eps": 0, "max_iterations": 1000})):
@@ -216,7 +217,7 @@ def test_the_stop_bounds_the_worst_case_at_the_cost_of_the_typical_one():
 
 def test_the_literal_scheme_slides_along_the_u_ambiguity():
     """The error rests, the curve leaves the truth, and stays on a power of the truth."""
-    drift = ambiguity.drift(ambiguity.trial(np.random.default_rng(1)), STATED)
+    drift = ambiguity.measure_drift(ambiguity.draw_trial(np.random.default_rng(1)), STATED)
     assert drift.error.shape == drift.u.shape == (300,)
     assert drift.error[-1] <= drift.error[10] and abs(drift.u[-1] - 1) > 4 * abs(drift.u[10] - 1)
     assert drift.off[-1] > 4 * drift.off[10] and drift.off_power[10:].max() < 0.001
@@ -224,21 +225,21 @@ def test_the_literal_scheme_slides_along_the_u_ambiguity():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_figure_4_the_line_search_finds_the_ratio(seed):
-    valley = ambiguity.valley(polynomial.random(np.random.default_rng(seed)))
+    valley = ambiguity.scan_valley(polynomial.random(np.random.default_rng(seed)))
     assert abs(valley.found - 0.7) < 0.01
     assert np.abs(valley.minima - 0.7).min() < 0.01 and len(valley.minima) > 1
 
 
 def test_figure_4_noise_moves_the_minimum():
     c = polynomial.random(np.random.default_rng(0))
-    quiet, noisy = ambiguity.valley(c), ambiguity.valley(c, sigma=0.005)
+    quiet, noisy = ambiguity.scan_valley(c), ambiguity.scan_valley(c, sigma=0.005)
     assert quiet.error.min() < 0.05 * noisy.error.min()
 
 
 @pytest.mark.parametrize("seed", range(4))
 def test_the_ratios_of_the_canon_camera_come_out_up_to_one_exponent(seed):
     """A few turns mend what the stated ones contradict; what is left is u, which `marginal` finds, too."""
-    one = ambiguity.trial(np.random.default_rng(seed), ratios=CANON)
+    one = ambiguity.draw_trial(np.random.default_rng(seed), ratios=CANON)
     states = list(mitsunaga.fit_steps(average(one.Z)[None], CANON_STATED, 5))
     R = states[-1].R
     u = np.log(R).sum() / np.log(CANON).sum()

@@ -1,54 +1,54 @@
 """Why self-calibration drifts: the u-ambiguity (Mitsunaga and Nayar, CVPR 1999, sec. 4 and 5).
 
-M  brightness     (N, P) or, of two frames, (N, 2)
-f  polynomial     M -> exposure, f(0) = 0, f(1) = 1; c its coefficients: see `polynomial`
-R  ratios         (P - 1,), exposure of a frame over that of the next longer one
-u  exponent       (f^u, R^u) answers f(M_q) = R f(M_q+1) whatever u is; u = 1 is the truth
+M      brightness  (N, P) or, of two frames, (N, 2)
+f_inv  f^-1        M -> exposure, f^-1(0) = 0, f^-1(1) = 1, a polynomial; c its coefficients: see `mitsunaga`
+R      ratios      (P - 1,), exposure of a frame over that of the next longer one
+u      exponent    (f^-u, R^u) solves f^-1(M_q) = R f^-1(M_q+1) whatever u is; u = 1 is the truth
 
 The experiments of the paper: cameras and pictures drawn at random, its scheme as one writes it down from the
-page, what becomes of that when it is not stopped, and the error along R seen as a whole.
+page, its drift when it is not stopped, and the error as a function of R.
 """
 
 from collections.abc import Iterator
+from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
+from hdrlab.core.types import F64, Indices
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, value
 from hdrlab.response.polynomial import brightness, misfit, random
 from hdrlab.response.self_calibration import average
 
-Float = NDArray[np.float64]
-
 
 class Trial(NamedTuple):
-    """A camera drawn at random and what it saw: c (order - 1,), R (P - 1,), pixel levels Z (N, P)."""
+    """A camera drawn at random and its photographs: c (order - 1,), R (P - 1,), pixel levels Z (N, P)."""
 
-    c: Float
-    R: Float
-    Z: NDArray[np.intp]
+    c: F64
+    R: F64
+    Z: Indices
 
 
 class Drift(NamedTuple):
-    """The literal scheme, turn by turn (K,): rms of eq. 7, u, means of |f - truth| and |f - truth^u|."""
+    """Of each iteration (K,): rms of eq. 7, u, means of |f_inv - truth| and of |f_inv - truth^u|."""
 
-    error: Float
-    u: Float
-    off: Float
-    off_power: Float
+    error: F64
+    u: F64
+    off: F64
+    off_power: F64
 
 
 class Valley(NamedTuple):
     """Figure 4: the error (K,) at ratios R (K,), where it has local minima, and the ratio a search finds."""
 
-    R: Float
-    error: Float
-    minima: Float
+    R: F64
+    error: F64
+    minima: F64
     found: float
 
 
-def trial(
+def draw_trial(
     rng: np.random.Generator,
     *,
     order: int = 5,
@@ -73,7 +73,7 @@ def trial(
 
 
 def mean_error(c: ArrayLike, truth: ArrayLike) -> float:
-    """Return the mean of |f - truth| over the pixel levels, in per cent of the range [Mitsunaga99 fig. 3].
+    """Return the mean of |f_inv - truth| over the pixel levels, percent of the range [Mitsunaga99 fig. 3].
 
     Examples
     --------
@@ -84,7 +84,7 @@ def mean_error(c: ArrayLike, truth: ArrayLike) -> float:
     return float(100 * np.abs(value(M, c) - value(M, truth)).mean())
 
 
-def literal_steps(M: Float, start: ArrayLike, *, order: int = 5) -> Iterator[tuple[Float, Float, float]]:
+def literal_steps(M: F64, start: ArrayLike, *, order: int = 5) -> Iterator[tuple[F64, F64, float]]:
     """Yield c (order + 1,) of the powers of M, R (P - 1,) and the root mean square of eq. 7, for ever.
 
     As it stands in [Mitsunaga99 sec. 4], for samples M (N, P) that are all good; eq. 10 gets the 1 / N
@@ -97,56 +97,59 @@ def literal_steps(M: Float, start: ArrayLike, *, order: int = 5) -> Iterator[tup
         A, last = rows[:, :-1] - rows[:, -1:], rows[:, -1]  # c_N = 1 - sum of the others [eq. 8]
         c = np.linalg.solve(A.T @ A, -A.T @ last)  # dE / dc_n = 0 [eq. 9]
         c = np.append(c, 1 - c.sum())
-        f = powers @ c
-        R = np.mean(f[:, :-1] / f[:, 1:], axis=0)  # [eq. 10]
+        f_inv = powers @ c
+        R = np.mean(f_inv[:, :-1] / f_inv[:, 1:], axis=0)  # [eq. 10]
         yield c, R, float(np.sqrt(np.mean((rows @ c) ** 2)))
 
 
-def drift(one: Trial, start: ArrayLike, *, turns: int = 300) -> Drift:
-    """Return what the literal scheme does in that many turns: the error falls or rests, and u wanders off.
+def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Drift:
+    """Return the Drift of the literal scheme in so many iterations: the error falls or rests, u drifts.
 
     Each curve is compared with the truth, and with the truth to the power u = ln R / ln (true R): the second
-    fits ever better, so what moves is u and nothing else.
+    fits ever better, so u alone drifts.
     """
     M = average(one.Z)
     M = M[np.all((M > 0.05) & (M < 0.98), axis=1)]
     z = np.linspace(0, 1, 256)
     truth, rows = value(z, one.c), []
-    for _, (c, R, error) in zip(range(turns), literal_steps(M, start, order=len(one.c) + 1), strict=False):
-        f = np.polynomial.polynomial.polyval(z, c)
+    for c, R, error in islice(literal_steps(M, start, order=len(one.c) + 1), iterations):
+        f_inv = np.polynomial.polynomial.polyval(z, c)
         u = np.mean(np.log(R)) / np.mean(np.log(one.R))
-        rows.append((error, u, np.abs(f - truth).mean(), np.abs(f - truth**u).mean()))
+        rows.append((error, u, np.abs(f_inv - truth).mean(), np.abs(f_inv - truth**u).mean()))
     return Drift(*np.array(rows).T)
 
 
-def normalised(M: Float, R: float, c: Float) -> float:
+def brightness_error(M: F64, R: F64, c: F64) -> float:
     """Return the error in brightness: the residual of eq. 5 over what a unit of noise in M does to it, rms.
 
-    E itself cannot judge R: it is small wherever f is flat, and f^u is flat over most of its range.
+    Eq. 7 itself does not measure R: it is small wherever f^-1 is flat, as f^-u is over most of its range.
     """
     return float(np.sqrt(np.mean(misfit(M, R, c) ** 2)))
 
 
-def errors_along(M: Float, R: ArrayLike, order: int) -> Float:
-    """Return the normalised error of the best c at each of the ratios R (K,), for two frames M (N, 2)."""
+def scan_ratios(M: F64, R: ArrayLike, order: int) -> F64:
+    """Return the `brightness_error` of the best c at each of the ratios R (K,), for two frames M (N, 2)."""
     samples, M = neighbours(M, order), M[in_range(M)[:, 0]]
-    return np.array([normalised(M, r, coefficients(gram(*samples, np.array([r])))) for r in np.atleast_1d(R)])
+    each = np.atleast_1d(R)[:, None]
+    return np.array([brightness_error(M, r, coefficients(gram(*samples, r))) for r in each])
 
 
-def search(M: Float, start: float, order: int, *, reach: float = 1.25, steps: int = 81) -> float:
+def search_ratio(M: F64, start: float, order: int, *, reach: float = 1.25, steps: int = 81) -> float:
     """Return the ratio of two frames M (N, 2) with the lowest error in start / reach ... start * reach.
 
     The line search of [Mitsunaga99 sec. 4]. For clean samples, which leave no error at the truth: noise lifts
-    that minimum and moves it far, and then taking turns is better.
+    that minimum and moves it far, and then alternating is better.
     """
     R = start * reach ** np.linspace(-1, 1, steps)
     R = R[R < 1]
-    k = int(np.argmin(errors_along(M, R, order)))
+    k = int(np.argmin(scan_ratios(M, R, order)))
     fine = np.linspace(R[max(k - 1, 0)], R[min(k + 1, len(R) - 1)], steps)
-    return float(fine[np.argmin(errors_along(M, fine, order))])
+    return float(fine[np.argmin(scan_ratios(M, fine, order))])
 
 
-def valley(c: Float, *, ratio: float = 0.7, start: float = 0.625, sigma: float = 0.0, rng: int = 0) -> Valley:
+def scan_valley(
+    c: F64, *, ratio: float = 0.7, start: float = 0.625, sigma: float = 0.0, rng: int = 0
+) -> Valley:
     """Return figure 4 of the paper for a camera c: two frames, the truth at `ratio`, a guess at `start`.
 
     Samples are not quantised. With sigma = 0 the error touches 0 at the truth; with noise it does not.
@@ -155,6 +158,6 @@ def valley(c: Float, *, ratio: float = 0.7, start: float = 0.625, sigma: float =
     E = 10 ** draw.uniform(-2, 0, 1000)
     M = brightness(E[:, None] * [ratio, 1], c) + sigma * draw.standard_normal((1000, 2))
     order, R = len(c) + 1, np.linspace(0.3, 0.95, 261)
-    error = errors_along(M, R, order)
+    error = scan_ratios(M, R, order)
     inner = (error[1:-1] < error[:-2]) & (error[1:-1] < error[2:])
-    return Valley(R, error, R[1:-1][inner], search(M, start, order))
+    return Valley(R, error, R[1:-1][inner], search_ratio(M, start, order))
