@@ -8,7 +8,7 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.align.shift import shift
 from hdrlab.core.arrays import Array
-from hdrlab.fast import mtb
+from hdrlab.pipeline.alignment import register
 
 RADIUS = 8
 
@@ -18,15 +18,20 @@ def case(folder: Path, one: bool) -> Case:
     images = data.photographs(folder, radius=RADIUS).images
 
     def ours() -> Array:
-        return shift(images, mtb.align(images))
+        return shift(images, offsets(images))
 
     theirs, missing = peers.present({peers.OPENCV: lambda: opencv(images, one)})
 
     def lost(who: str, result: Array) -> float:
-        offsets = mtb.align(images) if who == OURS else opencv_offsets(images, one)
-        return float(np.sum(np.abs(offsets - data.moves(RADIUS)).max(axis=1) > 1))
+        found = offsets(images) if who == OURS else opencv_offsets(images, one)
+        return float(np.sum(np.abs(found - data.moves(RADIUS)).max(axis=1) > 1))
 
     return Case({OURS: ours} | theirs, missing, lost)
+
+
+def offsets(images: Array) -> Array:
+    """Return what the pipeline finds for each photograph, (dy, dx)."""
+    return register(images, "mtb").homographies[:, 1::-1, 2].astype(int)
 
 
 def opencv(images: Array, one: bool) -> Run:

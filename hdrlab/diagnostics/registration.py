@@ -1,7 +1,7 @@
 """May I trust an alignment? A search always answers, so its answer is compared once more, at full resolution.
 
 H        homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
-p        pixels              (n, 2): those that are compared
+p        pixels              (n, 2): those that are compared, spread evenly
 d        differences         (n,): of bitmaps 0 or 1, of light relative to it; NaN where one measures none
 e        error               mean of d^2, see `align.light`
 near     differences 2 pixels further than H, in eight directions
@@ -13,13 +13,15 @@ rotation each of them moves another way), and does a texture that repeats fit el
 """
 
 from collections.abc import Callable, Sequence
+from itertools import product
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.fft import fftshift, irfft2, rfft2
 
 from hdrlab.align import light
-from hdrlab.align.cerman import correlation, peaks
+from hdrlab.align.cerman import peaks
 from hdrlab.align.mtb import exclusion
 from hdrlab.core import warp
 from hdrlab.core.types import F32, F64, Array
@@ -33,7 +35,7 @@ RIVALS = 4
 # of the way up to the error elsewhere: a rival this low fits as well
 ALIKE = 0.1
 # pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are looked for
-BITS_TILE, LIGHT_TILE = 128, 512
+BITS_TILE, LIGHT_TILE = 96, 512
 # pixels at which bitmaps are compared
 BITS = 40_000
 EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
@@ -72,40 +74,55 @@ class Validation(NamedTuple):
 
 
 class Comparison(NamedTuple):
-    """Two photographs, ready to be compared after any H: their d at the pixels p, and the middle of one."""
+    """Two photographs, ready to be compared after any H.
+
+    Attributes
+    ----------
+    moving, fixed : which two images
+    shape : of the fixed one
+    quarters : (n, 4), 1 where a pixel of p lies in a quarter of the picture
+    differences : function of H that returns d at the pixels p
+    middle : (h, w), the middle of the fixed photograph, NaN where it measures nothing
+    """
 
     moving: int
     fixed: int
     shape: tuple[int, ...]
-    p: F64
+    quarters: F32
     differences: Callable[[F64], F64]
-    middle: F32  # (h, w), of the fixed photograph, NaN where it measures nothing
+    middle: F32
 
 
 def compare_light(moving: int, fixed: int, X: F32) -> Comparison:
     """Return the Comparison of light X (2, H, W)."""
     p = light.lattice(X.shape[1:])
-    return Comparison(
-        moving, fixed, X.shape[1:], p, lambda H: light.differences(X, H, p), _middle(X[0], LIGHT_TILE)
-    )
+    middle = _middle(X[0], LIGHT_TILE)
+    return Comparison(moving, fixed, X.shape[1:], _quarters(p), lambda H: light.differences(X, H, p), middle)
 
 
 def compare_bits(moving: int, fixed: int, Y: Sequence[Array], t: Sequence[int]) -> Comparison:
-    """Return the Comparison of the bitmaps of two gray photographs, the fixed one first, by thresholds t."""
-    p, (h, w) = light.lattice(Y[0].shape, BITS), Y[0].shape
-    x, y = p.astype(int).T
-    a = Y[0][y, x]
+    """Return the Comparison of the bitmaps of two gray photographs, the fixed one first, by thresholds t.
+
+    Its H shift by whole pixels.
+    """
+    h, w = Y[0].shape
+    x = np.arange(0, w, 2 if h * w > BITS else 1)  # dense along rows, which the processor's cache holds
+    y = np.arange(0, h, max(1, round(h * len(x) / BITS)))
+    p, z = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2), np.arange(256)
+    codes = [np.where(exclusion(z, level), z > level, 2).astype(np.uint8) for level in t]
+    a = 3 * codes[0].take(Y[0][y][:, x])
+    xor = np.array([0, 1, np.nan, 1, 0, np.nan, np.nan, np.nan, np.nan], np.float32)
 
     def differences(H: F64) -> F64:
-        u, v = np.rint(warp.apply(np.linalg.inv(H), p)).astype(int).T
-        inside = (u >= 0) & (u < w) & (v >= 0) & (v < h)
-        b = Y[1][v.clip(0, h - 1), u.clip(0, w - 1)]
-        kept = inside & exclusion(a, t[0]) & exclusion(b, t[1])
-        return np.where(kept, (a > t[0]) != (b > t[1]), np.nan)
+        u, v = x - round(H[0, 2]), y - round(H[1, 2])
+        b = Y[1].take(v, axis=0, mode="clip").take(u, axis=1, mode="clip")
+        d = xor.take(a + codes[1].take(b))
+        d[(v < 0) | (v >= h)] = d[:, (u < 0) | (u >= w)] = np.nan
+        return d.ravel()
 
     tile = _middle(Y[0], BITS_TILE)
     signs = np.where(exclusion(tile, t[0]), np.where(tile > t[0], 1, -1), np.nan).astype(np.float32)
-    return Comparison(moving, fixed, (h, w), p, differences, signs)
+    return Comparison(moving, fixed, (h, w), _quarters(p), differences, signs)
 
 
 def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
@@ -114,11 +131,11 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     The identity takes the place of an H that is not clearly better.
     """
     before, d = pair.differences(np.eye(3)), pair.differences(H)
-    if np.isfinite(before).any() and not clearly_lower(d, before):
+    if np.isfinite(before).any() and not clearly_lower(gains(pair, d, before).sum(axis=1)):
         H, d = np.eye(3), before
     near, far = ([pair.differences(shift(H, n * step)) for step in EIGHT] for n in (NEAR, FAR))
     errors, elsewhere = (light.error(before), light.error(d)), [light.error(one) for one in far]
-    if np.isfinite(d).mean() <= light.LEAST or not np.any(np.nan_to_num([*near, *far])):
+    if np.isfinite(d).mean() <= light.LEAST or not _differ(near + far):
         return uninformative(pair.moving, pair.fixed, H)
     sure = confidence(errors[1], elsewhere)
     middle = (np.array(pair.shape[::-1]) - 1) / 2
@@ -144,16 +161,16 @@ def failure_reason(
     """Return the reason not to trust H, whose differences are d, or an empty string."""
     if limit is not None:
         return f"the offset lies at the end of the range, {limit} pixels"
-    if not np.any(np.nan_to_num(far)):
+    if not _differ(far):
         return f"the picture repeats itself: {FAR} pixels away the photographs fit as well"
     e, elsewhere = light.error(d), [light.error(one) for one in far]
     if (sure := confidence(e, elsewhere)) < LOST:
         return f"8 pixels away the photographs fit nearly as well (confidence {sure:.2f})"
-    if not all(clearly_lower(d, other) for other in near):
+    nearby = np.array([gains(pair, d, other) for other in near])
+    if not all(clearly_lower(one) for one in nearby.sum(axis=2)):
         return "2 pixels away the photographs fit as well"
-    halves = pair.p > np.median(pair.p, axis=0)
-    quarters = [np.all(halves == (right, low), axis=1) for right in (False, True) for low in (False, True)]
-    if away := sum(any(clearly_lower(other[one], d[one]) for other in near) for one in quarters):
+    back = nearby[:, [0, 2, 1, 3, 4]] * np.array([1, 1, 1, -1, 1])[:, None]  # the other's gain over H
+    if away := sum(any(clearly_lower(one) for one in quarter) for quarter in np.moveaxis(back, 2, 0)):
         return f"{away} of 4 quarters of the picture fit better elsewhere (rotation, depth or motion)"
     for rival in rivals(pair.middle):
         also = light.error(pair.differences(shift(H, rival)))
@@ -174,24 +191,46 @@ def confidence(e: float, elsewhere: Sequence[float]) -> float:
     return 1 - e / mean if mean > 0 else 0.0
 
 
-def clearly_lower(d: F64, other: F64) -> bool:
-    """Return whether an error is lower by a twentieth of the other and three standard errors of the mean."""
-    both = np.isfinite(d) & np.isfinite(other)
-    if both.sum() < 20:
+def gains(pair: Comparison, d: F64, other: F64) -> F64:
+    """Return (5, 4), of each quarter: the number compared, sums of d^2, other^2, the gain and its square."""
+    gain = other**2 - d**2
+    kept = np.isfinite(gain)
+    own, gain = np.where(kept, d**2, 0), np.where(kept, gain, 0)
+    return np.asarray(np.stack([kept, own, own + gain, gain, gain**2]) @ pair.quarters, np.float64)
+
+
+def clearly_lower(sums: F64) -> bool:
+    """Return whether d's error is lower by a twentieth of the other and three standard errors of the gain."""
+    if sums[0] < 20:
         return False
-    gain = other[both] ** 2 - d[both] ** 2
-    return bool(gain.mean() > np.mean(other[both] ** 2) / 20 + 3 * gain.std() / np.sqrt(len(gain)))
+    _, _, rate, gain, square = sums / sums[0]
+    return bool(gain > rate / 20 + 3 * np.sqrt(max(square - gain**2, 0) / sums[0]))
 
 
 def rivals(middle: F32) -> list[Array]:
     """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation."""
-    found = peaks(correlation(np.stack([middle, middle])), RIVALS + 1)
+    x = np.where(np.isfinite(middle), middle - light.local_mean(middle), 0)
+    h, w = x.shape
+    c = fftshift(irfft2(np.abs(rfft2(x, (2 * h, 2 * w))) ** 2, (2 * h, 2 * w)))
+    found = peaks(c[:, w:], RIVALS + 1) + [0, w // 2]  # c is symmetric
     return [shift for shift in found if np.abs(shift).max() > NEAR]
 
 
 def shift(H: F64, offset: ArrayLike) -> F64:
     """Return H, and then an offset (dy, dx) further."""
     return np.asarray(warp.as_homographies(np.reshape(offset, (1, 2)))[0] @ H)
+
+
+def _quarters(p: F64) -> F32:
+    """Return (n, 4), 1 where a pixel lies in a quarter of the picture."""
+    halves = p > p.max(axis=0) / 2
+    each = [np.all(halves == side, axis=1) for side in product((False, True), repeat=2)]
+    return np.stack(each, axis=1).astype(np.float32)
+
+
+def _differ(every: list[F64]) -> bool:
+    """Return whether there is any difference at all."""
+    return any(bool(np.any(np.abs(d) > 0)) for d in every)
 
 
 def _middle(image: Array, side: int) -> Array:

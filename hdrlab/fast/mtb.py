@@ -37,17 +37,24 @@ class Photograph:
         while len(self.Y) < bits and min(self.Y[-1].shape) >= lesson.SMALLEST:
             self.Y.append(_shrink(self.Y[-1]))
         self.h = [_histogram(Y) for Y in self.Y]
+        self._bits: dict[tuple[int, int], Words] = {}
 
     def threshold(self, q: float, level: int = 0) -> int:
         """Return the threshold of a level."""
         return int(lesson.threshold(self.h[level], q))
 
+    def bits(self, q: float, level: int) -> Words:
+        """Return the bits of a level, which is compared with the one before and the one after."""
+        key = level, self.threshold(q, level)
+        if key not in self._bits:
+            self._bits[key] = _bitmaps(self.Y[level], key[1])
+        return self._bits[key]
+
     def offset_onto(self, fixed: Self, q: float = 0.5) -> Offset:
         """Return the offset that lays this photograph on another, as `align.mtb.search` finds it."""
         y, x = 0, 0
         for level in reversed(range(len(self.Y))):
-            A, B = (_bitmaps(one.Y[level], one.threshold(q, level)) for one in (fixed, self))
-            errors = _errors(A, B, (2 * y, 2 * x))
+            errors = _errors(fixed.bits(q, level), self.bits(q, level), (2 * y, 2 * x))
             dy, dx = min(lesson.NINE, key=lambda d: errors[d[0] + 1, d[1] + 1])
             y, x = 2 * y + dy, 2 * x + dx
         return y, x
@@ -67,7 +74,9 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
 def _gray(image: Array, luma: bool) -> Array:
     Y = np.empty(image.shape[:2], np.uint8)
     for row in range(0, len(Y), BAND):
-        Y[row : row + BAND] = lesson.gray(image[row : row + BAND].copy(), luma=luma)
+        Z = image[row : row + BAND].copy()
+        green = Z.ndim == 3 and Z.itemsize == 1 and not luma
+        Y[row : row + BAND] = Z[..., 1] if green else lesson.gray(Z, luma=luma)
     return Y
 
 
