@@ -111,7 +111,7 @@ def error(name: str, bracket: Bracket, w: Array, *, order: int = 10) -> float:
 def darkest_pair(E: ArrayLike, *, scheme: str, truth: float = 4.0, rng: int = 0) -> float:
     """Return the ratio found between the two darkest photographs of a linear camera [Cerman06 sec. 5.3]."""
     taken = camera.shoot(E, [1, truth], camera.Camera(response="linear", gray_noise=1.0), rng=rng)
-    return ratios.ratio(*taken.images, scheme=scheme)
+    return ratios.estimate_ratio(*taken.images, scheme=scheme)
 
 
 def log_normal(

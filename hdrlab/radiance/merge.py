@@ -209,9 +209,11 @@ def as_tables(
     weights, curves = as_table(hat(n) if w is None else w, n), as_table(g, n).reshape(n, -1)
     if curves.shape[1] not in (1, channels):
         wanted = "(n,) for gray" if channels == 1 else "(n,) or (n, 3)"
-        raise ValueError(f"expected a response {wanted}, got shape {np.shape(g)}")
+        raise ValueError(f"expected a response {wanted}, got shape {curves.shape}")
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
-        raise ValueError(f"expected weights (n,) that are not negative and not all 0, got {np.shape(w)}")
+        raise ValueError(
+            f"expected weights (n,) that are not negative and not all 0, got shape {weights.shape}"
+        )
     if method not in METHODS:
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if not 0 < top <= 1:

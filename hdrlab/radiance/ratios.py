@@ -1,4 +1,4 @@
-"""How much longer was the next frame? Exposure ratios of a linear camera (Cerman and Hlavac 2006, sec. 5).
+"""Exposure ratios of a linear camera (Cerman and Hlavac 2006, sec. 5).
 
 h     histograms        (n,) of a darker frame A and a brighter one B
 T     transfer          (n,), the level in B of what has level m in A, and back: see `core.transfer`
@@ -21,21 +21,23 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import Array, as_stack
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
+from hdrlab.core.types import F64, Mask
 
-Float = NDArray[np.float64]
-SATURATED = 0.98  # of the top level: above, noise hides clipped pixels
-FEWEST = 8  # levels of the darker frame that the brighter one must show, too
+# of the top level: above, noise hides clipped pixels
+SATURATED = 0.98
+# levels of the darker frame that the brighter one must show, too
+FEWEST = 8
 
 
 class Scheme(NamedTuple):
     """How ranks become equations: the transfer, the lowest levels (of 256), and outliers beyond limit V."""
 
-    transfer: Callable[[ArrayLike, ArrayLike], NDArray[np.float64]]
+    transfer: Callable[[ArrayLike, ArrayLike], F64]
     dark: float
     bright: float
     limit: float
@@ -50,20 +52,20 @@ SCHEMES = {
 class Equations(NamedTuple):
     """y = k x with weights v, each (K,): first those of A's levels, then those of B's."""
 
-    x: Float
-    y: Float
-    v: Float
+    x: F64
+    y: F64
+    v: F64
 
 
 class State(NamedTuple):
     """The ratio k after a round, which equations (K,) were in use, and their mean square error V."""
 
     k: float
-    used: NDArray[np.bool_]
+    used: Mask
     V: float
 
 
-def equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") -> Equations:
+def collect_equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") -> Equations:
     """Return k m = T(m) and z = k T^-1(z), weighted by the square roots of histograms [Cerman06 eq. 4].
 
     Levels are those of 256, whatever the depth.
@@ -80,18 +82,18 @@ def equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") -> Equat
     return Equations(np.concatenate([level[a], back[b]]), np.concatenate([T[a], level[b]]), v)
 
 
-def overlap(found: Equations) -> int:
+def count_overlap(found: Equations) -> int:
     """Return how many levels (of 256) of the darker frame have a place in the brighter one."""
     return len(np.unique(np.round(found.x)))
 
 
-def solve(found: Equations, used: NDArray[np.bool_]) -> float:
+def solve_ratio(found: Equations, used: Mask) -> float:
     """Return k of least squares, sum v^2 x y / sum v^2 x^2."""
     v2 = found.v[used] ** 2
     return float(np.sum(v2 * found.x[used] * found.y[used]) / np.sum(v2 * found.x[used] ** 2))
 
 
-def square_errors(found: Equations, k: float) -> Float:
+def square_errors(found: Equations, k: float) -> F64:
     """Return (v (y - k x))^2 of all equations."""
     return (found.v * (found.y - k * found.x)) ** 2
 
@@ -101,23 +103,23 @@ def ratio_steps(
 ) -> Iterator[State]:
     """Yield the State of the first solution, of all equations, and after each round without outliers."""
     used = np.ones(len(found.x), bool)
-    k = solve(found, used)
+    k = solve_ratio(found, used)
     yield State(k, used, float(np.mean(square_errors(found, k))))
     for _ in range(rounds):
         errors = square_errors(found, k)
         used = errors <= limit * np.mean(errors[used])
-        k, before = solve(found, used), k
+        k, before = solve_ratio(found, used), k
         yield State(k, used, float(np.mean(square_errors(found, k)[used])))
         if abs(k - before) < tolerance:
             return
 
 
-def ratio(A: ArrayLike, B: ArrayLike, *, scheme: str = "mid-step") -> float:
-    """Return how much longer than A frame B was exposed; the parameters are those of `ratios`."""
-    return float(ratios(as_stack([A, B]), scheme=scheme)[0])
+def estimate_ratio(A: ArrayLike, B: ArrayLike, *, scheme: str = "mid-step") -> float:
+    """Return how much longer than A frame B was exposed; the parameters are those of `estimate_ratios`."""
+    return float(estimate_ratios(as_stack([A, B]), scheme=scheme)[0])
 
 
-def ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | None = None) -> Float:
+def estimate_ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | None = None) -> F64:
     """Return the exposure ratios of a linear camera's photographs from their histograms.
 
     Parameters
@@ -148,35 +150,31 @@ def ratios(images: ArrayLike, *, scheme: str = "mid-step", valid: ArrayLike | No
     >>> light = np.random.default_rng(0).uniform(0, 250, (200, 200))
     >>> images = np.round(light * np.array([0.25, 1])[:, None, None]).astype(np.uint8)
     >>> images[1] = images[1, ::-1]  # upside down
-    >>> bool(abs(ratios(images) - 4).max() < 0.01)
+    >>> bool(abs(estimate_ratios(images) - 4).max() < 0.01)
     True
     """
     stack = as_stack(images)
     if len(stack) < 2:
         raise ValueError(f"expected at least two photographs, got {len(stack)}")
     h = histograms(stack, valid).swapaxes(0, 1)
-    return np.array([_between(a, b, scheme) for a, b in pairwise(h)])
+    return np.array([_estimate_pair(a, b, scheme) for a, b in pairwise(h)])
 
 
-def _between(h_A: Array, h_B: Array, scheme: str) -> float:
+def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
     """Return k of two frames from their channels' histograms: all channels have the same one."""
-    if _mean(h_A) > _mean(h_B):
-        return 1 / _between(h_B, h_A, scheme)
-    parts = [equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
+    mean_A, mean_B = (np.sum(h, axis=0) @ np.arange(len(h[0])) for h in (h_A, h_B))
+    if mean_A > mean_B:
+        return 1 / _estimate_pair(h_B, h_A, scheme)
+    parts = [collect_equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
     found = Equations._make(np.concatenate(column) for column in zip(*parts, strict=True))
-    if overlap(found) < FEWEST:
+    if count_overlap(found) < FEWEST:
         raise ValueError(
             f"expected frames that overlap in brightness, by {FEWEST} levels of the darker one, "
-            f"got an overlap of {overlap(found)}"
+            f"got an overlap of {count_overlap(found)}"
         )
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k
 
 
-def _mean(h: Array) -> float:
-    """Return the mean level of a frame."""
-    return float(np.sum(h, axis=0) @ np.arange(len(h[0])))
-
-
-def times(k: ArrayLike) -> Float:
+def chain_times(k: ArrayLike) -> F64:
     """Return each frame's exposure over the first one's (P,): t_1 = 1, t_j+1 = k_j t_j [Cerman06 sec. 5]."""
     return np.cumprod(np.concatenate([[1.0], np.asarray(k, np.float64)]))

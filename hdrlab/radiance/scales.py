@@ -11,29 +11,26 @@ saw, then k I must point along M, for all pixels together.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import as_times, describe
+from hdrlab.core.types import F64
 
-Float = NDArray[np.float64]
 
-
-def scaled_exposures(times: ArrayLike) -> Float:
+def normalize_times(times: ArrayLike) -> F64:
     """Return t / mean(t), so that radiance is in the unit of a mean exposure [Mitsunaga99 sec. 6.3]."""
-    t = np.asarray(times, np.float64)
-    if t.ndim != 1 or len(t) == 0 or not np.all(np.isfinite(t) & (t > 0)):
-        raise ValueError(f"expected positive exposure times (P,), got {describe(t)}")
+    t = as_times(times, max(np.size(times), 1))
     return t / t.mean()
 
 
-def chromaticity(M: ArrayLike) -> Float:
+def chromaticity(M: ArrayLike) -> F64:
     """Return M / |M|, (..., 3)."""
     M = np.asarray(M, np.float64)
     return M / np.linalg.norm(M, axis=-1, keepdims=True)
 
 
-def channel_scales(I: ArrayLike, M: ArrayLike) -> Float:  # noqa: E741
+def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     """Return k that brings k I nearest to the direction of M, by least squares [Mitsunaga99 sec. 6.4].
 
     Parameters
@@ -56,7 +53,7 @@ def channel_scales(I: ArrayLike, M: ArrayLike) -> Float:  # noqa: E741
     Examples
     --------
     >>> M = np.random.default_rng(0).uniform(0.1, 1, (100, 3))
-    >>> channel_scales(M * [2, 5, 4], M).round(6)
+    >>> fit_channel_scales(M * [2, 5, 4], M).round(6)
     array([2.5 , 1.  , 1.25])
     """
     I, M = np.asarray(I, np.float64), np.asarray(M, np.float64)  # noqa: E741
@@ -69,7 +66,7 @@ def channel_scales(I: ArrayLike, M: ArrayLike) -> Float:  # noqa: E741
     I, target = I.reshape(-1, 3), chromaticity(M.reshape(-1, 3))  # noqa: E741
     first = np.median(np.log(target / I), axis=0)
 
-    def misses(ln_k: Float) -> Float:
+    def misses(ln_k: F64) -> F64:
         return (chromaticity(I * np.exp([ln_k[0], 0, ln_k[1]])) - target).ravel()
 
     ln_k = least_squares(misses, (first - first[1])[[0, 2]]).x

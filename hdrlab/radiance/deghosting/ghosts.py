@@ -226,7 +226,8 @@ def remove_ghosts(
         raise ValueError(f"expected the number of a frame, 0 to {len(stack) - 1}, as reference, got {fixed}")
     w = weights.hat(levels(stack)) if w is None else w
     margin = max(4, round(stack.shape[2] / 150)) if settings.margin is None else settings.margin
-    E, quality = (one.copy() for one in merged or merge(stack, times, g, w, valid=mask))
+    merged = merged or merge(stack, times, g, w, valid=mask)
+    E, quality = merged.E.copy(), merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
     deviation = measure_deviation(taken, w)
     score, moved = detect_motion(deviation, tau=settings.tau, edge=settings.edge, margin=margin)
@@ -234,7 +235,7 @@ def remove_ghosts(
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
 
-    plain = E.reshape(taken.images.shape[1:]).copy()
+    plain = merged.E.reshape(taken.images.shape[1:])
     labels, chosen = last(region_steps(taken, plain, moved, margin, choose=choose))
     alpha = regions.feather(labels, margin // 2)
     used = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
