@@ -41,8 +41,8 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> N
         click.echo(f"note: {note}", err=True)
     since = asked.since.replace(tzinfo=UTC) if asked.since else None
     everything = classroom.pieces(found.handins, course.homework, course.conditions)
-    wanted = classroom.chosen(found.handins, course.roster, asked.only, since)
-    with journal.held(out):
+    wanted = classroom.select_handins(found.handins, course.roster, asked.only, since)
+    with journal.lock_folder(out):
         done = _graded([piece for piece in everything if piece.owner in wanted], out, course, asked)
         lost = [f"{one.piece.owner}: {one.why}" for one in done if one.result is None]
         for said in lost:
@@ -61,13 +61,13 @@ def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Optio
 
     folder = out / "results"
     before, rest = ([], [*wanted]) if asked.regrade else journal.parted(folder, wanted)
-    done = [classroom.told(out, one) for one in before]
+    done = [classroom.write_feedback(out, one) for one in before]
     if before:
         click.echo(f"{len(before)} of {len(wanted)} were graded before", err=True)
     if rest:
         with _executor(course, asked) as executor:
             journal.forget(folder, rest)
-            steps = (classroom.told(out, one) for one in journal.done_steps(rest, executor, folder))
+            steps = (classroom.write_feedback(out, one) for one in journal.done_steps(rest, executor, folder))
             done += common.progress(steps, course.homework.name, len(rest))
     return done
 

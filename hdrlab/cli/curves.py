@@ -33,7 +33,7 @@ class Response(click.ParamType):
         self.fail(f"expected one of {', '.join(names)}, or a file: {SUFFIXES}; got {value!r}", param, ctx)
 
 
-def given(response: str | Path) -> str | Callable[..., Any]:
+def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
     """Return what `pipeline.assemble` takes: a method's name, or a function that returns a saved curve."""
     if isinstance(response, str):
         return response

@@ -78,7 +78,7 @@ def assemble(
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
 
-    recover = curves.given(response)
+    recover = curves.method_or_curve(response)
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
     bracket = files.read_bracket(
         photos[0] if len(photos) == 1 else photos,

@@ -73,7 +73,7 @@ def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any
     from hdrlab.pipeline import recovery
 
     if isinstance(response, Path):
-        return curves.given(response)()  # type: ignore[operator]  # of a file it is a function
+        return curves.method_or_curve(response)()  # type: ignore[operator]  # of a file it is a function
     if len(frames) < len(turn):
         raise ValueError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
     taken = bracket(np.stack(frames), turn)

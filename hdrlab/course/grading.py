@@ -75,7 +75,7 @@ def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT)
 def grade_steps(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Iterator[Result]:
     """Yield the Result as it grows: first with all checks unanswered, then after each."""
     tasks = [task.id for task in homework.tasks]
-    read = submission.tasks_of(path, tasks, handouts.given(homework.name))
+    read = submission.tasks_of(path, tasks, handouts.given_cells(homework.name))
     yield from check_steps(read, homework, conditions)
 
 

@@ -59,8 +59,8 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     RuntimeError
         Outside of a notebook; there, `hdrlab check FILE` does the same.
     """
-    homework, tasks = asked(name)
-    sources, _ = closure.closed(_history(), tasks, handouts.given(homework.name))
+    homework, tasks = find_tasks(name)
+    sources, _ = closure.closed(_history(), tasks, handouts.given_cells(homework.name))
     missing = tuple(
         f"{task} is not there yet: run the cell that defines it" for task in tasks if task not in sources
     )
@@ -81,7 +81,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     return Feedback(result, homework)
 
 
-def asked(name: str) -> tuple[Homework, list[str]]:
+def find_tasks(name: str) -> tuple[Homework, list[str]]:
     """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
     homeworks = plan.read().homeworks
     if name in homeworks:

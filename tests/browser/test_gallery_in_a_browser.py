@@ -46,7 +46,7 @@ def fresh_link(served, who):
 
 def saved(served, who):
     with closing(store.connect(served[0].folder)) as db:
-        return ballots.chosen(db, who)[1]
+        return ballots.read_ballot(db, who)[1]
 
 
 def enter(page, served, who):

@@ -61,7 +61,7 @@ def test_a_ballot_can_be_changed_and_withdrawn_until_the_end(tmp_path):
         with store.writing(room.folder) as db:
             assert ballots.cast(db, "ann", marked, now=room.clock()) == len(marked)
         with closing(store.connect(room.folder)) as db:
-            assert ballots.chosen(db, "ann")[1] == set(marked)
+            assert ballots.read_ballot(db, "ann")[1] == set(marked)
     with pytest.raises(ballots.NotAccepted, match="closed"), store.writing(room.folder) as db:
         ballots.cast(db, "ann", [eve], now=small.CLOSES.timestamp())
 
@@ -74,7 +74,7 @@ def test_a_refused_ballot_leaves_the_one_before(tmp_path):
             with pytest.raises(ballots.NotAccepted):
                 ballots.cast(db, "ann", wrong, now=room.clock())
     with closing(store.connect(room.folder)) as db:
-        assert ballots.chosen(db, "ann")[1] == {room.artifacts["eve"]}
+        assert ballots.read_ballot(db, "ann")[1] == {room.artifacts["eve"]}
 
 
 def test_a_new_title_keeps_the_votes_and_a_new_picture_does_not(tmp_path):
@@ -85,7 +85,7 @@ def test_a_new_title_keeps_the_votes_and_a_new_picture_does_not(tmp_path):
         collect.hang(db, room.folder, collect.Entry("eve", "New", "", tmp_path / "eve.png"))
         assert store.artifacts(db)[room.artifacts["eve"]].title == "New"
         collect.hang(db, room.folder, collect.Entry("fay", "New", "", small.picture(tmp_path / "f.png", 9)))
-        assert ballots.chosen(db, "ann")[1] == {room.artifacts["eve"]}
+        assert ballots.read_ballot(db, "ann")[1] == {room.artifacts["eve"]}
         assert len(store.artifacts(db)) == 4
 
 

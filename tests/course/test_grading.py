@@ -207,7 +207,7 @@ def test_a_homework_without_checks_and_a_hidden_folder_that_is_none_are_errors(g
 
 
 def test_what_a_sheet_gives_is_known_to_the_grader():
-    given = handouts.given("hw2")
+    given = handouts.given_cells("hw2")
     assert any("class Solution" in cell.text for cell in given) and all(cell.given for cell in given)
 
 

@@ -31,7 +31,7 @@ def graded(home, work=errands.grade, again=False):
     folder, wanted = home / "results", errands.pieces(home / "class")
     if again:
         journal.forget(folder, wanted)
-    with journal.held(folder):
+    with journal.lock_folder(folder):
         done, rest = journal.parted(folder, wanted)
         with processes.Processes(work, 2) as executor:
             done += journal.done_steps(rest, executor, folder)
@@ -81,11 +81,11 @@ def test_an_error_is_told_of_in_a_line(tmp_path):
 def test_two_runs_do_not_write_to_one_folder(tmp_path):
     (tmp_path / "feedback").mkdir()
     (tmp_path / "feedback" / ".hdrlab-1234.html").write_text("half of a page, by a run that was killed")
-    with journal.held(tmp_path):
-        with pytest.raises(ValueError, match="another run"), journal.held(tmp_path):
+    with journal.lock_folder(tmp_path):
+        with pytest.raises(ValueError, match="another run"), journal.lock_folder(tmp_path):
             pass
         assert not list((tmp_path / "feedback").iterdir())
-    with journal.held(tmp_path):
+    with journal.lock_folder(tmp_path):
         pass
 
 

@@ -63,7 +63,7 @@ def work(folder, team, text):
 
 def likeness(folder, **texts):
     each = list(similarity.printed_steps(work(folder, *one) for one in texts.items()))
-    return similarity.compare(each, authored.handed_out("hw2"), "\n\n".join(library().values()))
+    return similarity.compare(each, authored.handout_code("hw2"), "\n\n".join(library().values()))
 
 
 def written(folder, texts):
@@ -112,7 +112,7 @@ def test_solutions_that_were_written_apart_are_far_below_the_threshold(homework)
     assert len(works) >= 3 and all(one.texts and not one.notes for one in works)
     blocks = inline.inlined({task.id: task.function for task in asked.tasks}).values()
     text = "\n\n".join(block.text for block in blocks)
-    found = similarity.compare(list(similarity.printed_steps(works)), authored.handed_out(homework), text)
+    found = similarity.compare(list(similarity.printed_steps(works)), authored.handout_code(homework), text)
     assert found.counts[3:].sum() == 0 and not found.pairs  # the page says: less than 30 percent
     assert homework == "project" or found.counts.sum() >= 3
 
@@ -124,7 +124,7 @@ def test_team_mates_are_not_compared(tmp_path):
 
 
 def test_what_the_handout_gives_is_nobody_s_own(tmp_path):
-    blank = "\n\n".join(authored.handed_out("hw2"))
+    blank = "\n\n".join(authored.handout_code("hw2"))
     found = likeness(tmp_path, a=blank, b=blank)
     assert found.counts.sum() == 0 and not any(found.own.values())
     solved = "def gsolve(Z, B, smoothness, w):\n    return Solution(Z, B)"  # the handout's own class
@@ -141,7 +141,7 @@ def test_a_copy_of_the_library_is_told_of_apart_and_is_no_pair(tmp_path):
 
 def test_the_shares_of_all_pairs_are_those_of_copydetect(tmp_path):
     texts = [LOOPS, GAUGE, FLOAT32, renamed(LOOPS), "def hat(n=256):\n    return 1\n"]
-    given = similarity.fingerprint("\n\n".join(authored.handed_out("hw2"))).hashes
+    given = similarity.fingerprint("\n\n".join(authored.handout_code("hw2"))).hashes
     for task in ("gsolve", "recover", "update"):
         works = [work(tmp_path, f"w{n}", text).texts.get(task, "pass\n") for n, text in enumerate(texts)]
         prints = [similarity.without(similarity.fingerprint(text), given) for text in works]
@@ -235,7 +235,7 @@ def test_the_same_class_gives_the_same_bytes_whatever_seed_python_hashes_with(tm
     names = ("loops", "gauge", "float32")
     program = (
         "import sys; from pathlib import Path; from hdrlab.course import plan\n"
-        "from hdrlab.course.classroom import alike\n"
+        "from hdrlab.course.overlap import alike\n"
         "from hdrlab.course.classroom.handins import Handin\n"
         "out, *files = map(Path, sys.argv[1:]); out.mkdir()\n"
         "handins = {f'{k}{n}': Handin('', (), f, None, '') for k in 'ba' for n, f in enumerate(files)}\n"

@@ -291,22 +291,24 @@ def test_axes_that_were_changed_beyond_wiping_are_not_used_again(change):
         return ax
 
     kept = reuse.Kept()
-    reuse.drawn(draw, 2, lambda drawn: web.jpeg(render(drawn)), kept)
-    assert reuse.drawn(draw, 1, lambda drawn: web.jpeg(render(drawn)), kept) == web.jpeg(render(draw(1)))
+    reuse.draw_reusing(draw, 2, lambda drawn: web.jpeg(render(drawn)), kept)
+    assert reuse.draw_reusing(draw, 1, lambda drawn: web.jpeg(render(drawn)), kept) == web.jpeg(
+        render(draw(1))
+    )
 
 
 def test_axes_are_used_again_where_nothing_speaks_against_it():
     kept, seen = reuse.Kept(), []
     for k in (1, 2, 3):
-        reuse.drawn(lambda k: seen.append(curve(k)) or seen[-1], k, lambda drawn: b"", kept)
+        reuse.draw_reusing(lambda k: seen.append(curve(k)) or seen[-1], k, lambda drawn: b"", kept)
     assert seen[0] is seen[1] is seen[2] and curve() is not seen[0]
 
 
 def test_two_axes_of_one_picture_are_never_the_same():
     kept = reuse.Kept()
-    reuse.drawn(curve, 1, lambda drawn: b"", kept)
+    reuse.draw_reusing(curve, 1, lambda drawn: b"", kept)
     pairs = []
-    reuse.drawn(lambda k: pairs.extend([curve(k), curve(k)]) or pairs[0], 2, lambda drawn: b"", kept)
+    reuse.draw_reusing(lambda k: pairs.extend([curve(k), curve(k)]) or pairs[0], 2, lambda drawn: b"", kept)
     assert pairs[0] is not pairs[1]
 
 
@@ -532,14 +534,14 @@ def named(k):
 def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw):
     kept = reuse.Kept()
     for k in (0, 1, 1, 3, 2, 0):
-        assert np.array_equal(reuse.drawn(draw, k, render, kept), render(draw(k)))
+        assert np.array_equal(reuse.draw_reusing(draw, k, render, kept), render(draw(k)))
 
 
-def test_the_ground_is_kept_where_the_axes_stay_and_painted_anew_where_they_change():
+def test_the_background_is_kept_where_the_axes_stay_and_painted_again_where_they_change():
     for draw, stays in ((fixed, True), (mapped, True), (named, True), (running, False)):
         kept = reuse.Kept()
-        reuse.drawn(draw, 0, render, kept)
-        ((_, before),) = kept.ground.values()
-        reuse.drawn(draw, 1, render, kept)
-        ((_, after),) = kept.ground.values()
+        reuse.draw_reusing(draw, 0, render, kept)
+        ((_, before),) = kept.background.values()
+        reuse.draw_reusing(draw, 1, render, kept)
+        ((_, after),) = kept.background.values()
         assert (before is after) == stays

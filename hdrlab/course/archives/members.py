@@ -56,14 +56,16 @@ def check_names(names: Sequence[str], limits: Limits = LIMITS) -> list[PurePosix
         for part in [*list(path.parents)[:-1], path]:
             key, is_file = unicodedata.normalize("NFC", str(part)).casefold(), part == path
             if key in kinds and (is_file or kinds[key]):
-                raise Refused(f"{said(str(path))} is there twice, or differs from another by case alone")
+                raise Refused(
+                    f"{quote_name(str(path))} is there twice, or differs from another by case alone"
+                )
             kinds[key] = is_file
     return paths
 
 
 def _path(name: str, limits: Limits) -> PurePosixPath:
     """Return one name as a path of plain parts."""
-    shown, path = said(name), PurePosixPath(name)
+    shown, path = quote_name(name), PurePosixPath(name)
     if name.startswith(("/", "\\")) or name[1:2] == ":":
         raise Refused(f"{shown} is an absolute name")
     if ".." in name.replace("\\", "/").split("/"):
@@ -78,7 +80,7 @@ def _path(name: str, limits: Limits) -> PurePosixPath:
     return path
 
 
-def said(name: str) -> str:
+def quote_name(name: str) -> str:
     """Return a member's name as a message can show it."""
     return repr(plain(name.encode("utf8", "replace").decode("utf8"), 60))
 
@@ -87,7 +89,7 @@ def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:
     """Raise Refused where claimed sizes are too large, singly, together, or for the bytes of the archive."""
     for path, size in members:
         if size > limits.one:
-            raise Refused(f"{said(str(path))} claims {size} bytes, expected at most {limits.one}")
+            raise Refused(f"{quote_name(str(path))} claims {size} bytes, expected at most {limits.one}")
     total = sum(size for _, size in members)
     if total > limits.total:
         raise Refused(f"its files claim {total} bytes together, expected at most {limits.total}")
@@ -106,10 +108,10 @@ def write(source: IO[bytes], place: Path, size: int) -> None:
         while piece := source.read(min(PIECE, left + 1)):
             left -= len(piece)
             if left < 0:
-                raise Refused(f"{said(place.name)} is larger than the {size} bytes it claims")
+                raise Refused(f"{quote_name(place.name)} is larger than the {size} bytes it claims")
             file.write(piece)
     if left:
-        raise Refused(f"{said(place.name)} is shorter than the {size} bytes it claims")
+        raise Refused(f"{quote_name(place.name)} is shorter than the {size} bytes it claims")
 
 
 def check_count(count: int, limits: Limits) -> None:

@@ -19,7 +19,7 @@ from hdrlab.course.archives.members import (
     check_count,
     check_names,
     check_sizes,
-    said,
+    quote_name,
     write,
 )
 
@@ -39,7 +39,7 @@ def unpack(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
             for info in infos:
                 if not info.isreg() or info.issparse():
                     what = "link" if info.issym() or info.islnk() else "device or a sparse file"
-                    raise Refused(f"{said(info.name)} is a {what}, expected plain files")
+                    raise Refused(f"{quote_name(info.name)} is a {what}, expected plain files")
             paths = check_names([info.name for info in infos], limits)
             members = [Member(path, info.size) for path, info in zip(paths, infos, strict=True)]
             check_sizes(members, packed, limits)

@@ -25,7 +25,7 @@ from hdrlab.course.archives.members import (
     check_count,
     check_names,
     check_sizes,
-    said,
+    quote_name,
     write,
 )
 from hdrlab.course.wording import plain
@@ -99,12 +99,12 @@ def _check_entry(info: zipfile.ZipInfo) -> None:
     kind = info.external_attr >> 28  # the file type of Unix, 0 where the archive was made elsewhere
     if kind not in (0, 0o10):
         raise Refused(
-            f"{said(info.filename)} is a {'link' if kind == 0o12 else 'device'}, expected plain files"
+            f"{quote_name(info.filename)} is a {'link' if kind == 0o12 else 'device'}, expected plain files"
         )
     if info.flag_bits & 0x1:
-        raise Refused(f"{said(info.filename)} is encrypted")
+        raise Refused(f"{quote_name(info.filename)} is encrypted")
     if "\0" in info.orig_filename:
-        raise Refused(f"{said(info.orig_filename)} has a control character in its name")
+        raise Refused(f"{quote_name(info.orig_filename)} has a control character in its name")
 
 
 def _check_apart(infos: Sequence[zipfile.ZipInfo], end: int) -> None:
@@ -112,7 +112,7 @@ def _check_apart(infos: Sequence[zipfile.ZipInfo], end: int) -> None:
     starts = sorted((info.header_offset, info.compress_size + LOCAL, info.filename) for info in infos)
     for (start, size, name), after in zip(starts, [*(at for at, *_ in starts[1:]), end], strict=True):
         if start + size > after:
-            raise Refused(f"{said(name)} shares its bytes with another member")
+            raise Refused(f"{quote_name(name)} shares its bytes with another member")
 
 
 def _check_list(archive: Path, limits: Limits) -> None:

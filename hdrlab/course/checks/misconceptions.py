@@ -60,7 +60,7 @@ def closest(task: str, calls: Sequence[Call]) -> Misconception | None:
     Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.
     """
     right = plan.function(plan.read().task(task))
-    far = [difference(came, asked(right, given, named)) for given, named, came in calls]
+    far = [difference(came, call_quietly(right, given, named)) for given, named, came in calls]
     if max(far, default=0) <= ROUNDING or all(came is None for _, _, came in calls):
         return None
     scores = [(_distance(one, calls, far), one) for one in known() if one.task == task]
@@ -72,14 +72,14 @@ def _distance(one: Misconception, calls: Sequence[Call], far: Sequence[float]) -
     """Return how far the student's answers are from the wrong ones in all, None where a call disagrees."""
     total = 0.0
     for (given, named, came), right in zip(calls, far, strict=True):
-        near = difference(came, asked(one.function, given, named))
+        near = difference(came, call_quietly(one.function, given, named))
         if near > max(ROUNDING, NEARER * right):
             return None
         total += near
     return total
 
 
-def asked(function: Callable[..., Any], given: Sequence[Any], named: dict[str, Any]) -> Any:
+def call_quietly(function: Callable[..., Any], given: Sequence[Any], named: dict[str, Any]) -> Any:
     """Return what a trusted function answers, as plain arrays; None where it raises."""
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")

@@ -106,7 +106,7 @@ def write(path: Path, data: bytes) -> None:
 
 
 @contextlib.contextmanager
-def held(folder: Path) -> Iterator[None]:
+def lock_folder(folder: Path) -> Iterator[None]:
     """Make a folder and hold it for one run; what a killed one left half written in it is removed.
 
     Raises

@@ -161,7 +161,7 @@ def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Condit
     return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
 
 
-def chosen(
+def select_handins(
     handins: Mapping[str, Handin], roster: Roster, only: Collection[str] = (), since: datetime | None = None
 ) -> dict[str, Handin]:
     """Return what counts of these students or teams, all unless told, and has come since a time.
@@ -181,7 +181,7 @@ def chosen(
     }
 
 
-def told(out: Path, done: Done) -> Done:
+def write_feedback(out: Path, done: Done) -> Done:
     """Write a team's feedback, unless all of it is there and of this result; return what was `done`.
 
     It is of this result where its JSON is, which is removed first and written last.

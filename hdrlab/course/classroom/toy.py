@@ -59,7 +59,7 @@ class Handed(NamedTuple):
     about: str
 
 
-def handed(homework: Homework) -> Iterator[Handed]:
+def hand_ins(homework: Homework) -> Iterator[Handed]:
     """Yield what the toy class has handed in."""
     cells = imitation.texts(homework)
     right = imitation.notebook(homework, cells).encode()
@@ -113,7 +113,7 @@ def write(folder: Path) -> list[Path]:
         raise ValueError(f"{folder}: expected a new folder for the toy class, something is there")
     homework = plan.read().homeworks[HOMEWORK]
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
-    each = list(handed(homework))
+    each = list(hand_ins(homework))
     for one in each:
         _write(folder / "submissions" / one.name, one.data)
     roster = [(who, f"Student {who[1:]}", TEAM if who in MEMBERS else "") for who in STUDENTS]

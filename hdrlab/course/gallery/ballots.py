@@ -39,7 +39,7 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
     return len(chosen)
 
 
-def chosen(db: sqlite3.Connection, voter: str) -> tuple[float | None, frozenset[str]]:
+def read_ballot(db: sqlite3.Connection, voter: str) -> tuple[float | None, frozenset[str]]:
     """Return when a voter's ballot was cast, or None, and what it marks."""
     row = db.execute("SELECT cast_at FROM ballots WHERE voter = ?", (voter,)).fetchone()
     found = db.execute("SELECT artifact FROM votes WHERE voter = ?", (voter,))

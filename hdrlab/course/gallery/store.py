@@ -178,6 +178,6 @@ def admit(db: sqlite3.Connection, voter: Voter) -> None:
     db.execute(f"INSERT INTO voters (id, name, team) VALUES (?, ?, ?) {update}", voter)
 
 
-def said(when: datetime) -> str:
+def format_time(when: datetime) -> str:
     """Return a time as a sentence has it, with its zone."""
     return f"{when:%A} {when.day} {when:%B %Y}, {when:%H:%M} ({when.tzname()})"

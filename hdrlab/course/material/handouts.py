@@ -199,7 +199,7 @@ def _written(file: Path, text: str) -> Path:
 
 
 @cache
-def given(homework: str) -> tuple[Cell, ...]:
+def given_cells(homework: str) -> tuple[Cell, ...]:
     """Return the cells that a homework's handout gives, out of our own copy of it."""
     file = materials.folder("assignments") / f"{homework}.ipynb"
     if not file.is_file():

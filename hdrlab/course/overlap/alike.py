@@ -60,7 +60,7 @@ def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) ->
         yield one.work.team
     blocks = inline.inlined({task.id: task.function for task in homework.tasks}).values()
     library = "\n\n\n".join(block.text for block in blocks)
-    found = similarity.compare(each, authored.handed_out(homework.name), library)
+    found = similarity.compare(each, authored.handout_code(homework.name), library)
     teams = [one.work.team for one in each]
     table = [
         (teams[one], teams[other], f"{share:.3f}", f"{forth:.3f}", f"{back:.3f}")

@@ -83,7 +83,7 @@ def _sources(path: Path, homework: str, tasks: Sequence[str]) -> dict[str, str]:
     if sum(len(re.findall(r"[\n\r;]", cell.text)) for cell in cells) > LINES:
         raise ValueError(f"it has more than {LINES:,} lines of code")
     try:
-        return closed(cells, tasks, handouts.given(homework))[0]
+        return closed(cells, tasks, handouts.given_cells(homework))[0]
     except RecursionError:
         raise ValueError("what its functions need is nested too deep") from None
 
@@ -109,11 +109,11 @@ def _statements(text: str) -> Iterator[tuple[ast.stmt, str]]:
 @cache
 def _given(homework: str) -> frozenset[str]:
     """Return the statements that a homework's handout gives."""
-    return frozenset(part for cell in handouts.given(homework) for _, part in _statements(cell.text))
+    return frozenset(part for cell in handouts.given_cells(homework) for _, part in _statements(cell.text))
 
 
 @cache
-def handed_out(homework: str) -> tuple[str, ...]:
+def handout_code(homework: str) -> tuple[str, ...]:
     """Return the code of a homework's handout: what is given, and the beginnings of the tasks."""
     file = materials.folder("assignments") / f"{homework}.ipynb"
     if not file.is_file():

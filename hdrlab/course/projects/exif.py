@@ -73,7 +73,7 @@ def pointed(block: bytes, entries: list[Entry], tag: int = POINTER) -> list[Entr
     return []
 
 
-def said(block: bytes) -> set[str]:
+def list_personal_data(block: bytes) -> set[str]:
     """Return what a file tells beyond its exposure, in words."""
     entries, following = directory(block, first(block), order(block))
     settings = pointed(block, entries)

@@ -56,7 +56,7 @@ def clean(name: str | Path, data: bytes) -> Cleaned:
 def _exif(block: bytes) -> tuple[bytes, set[str]]:
     """Return EXIF cleaned, and what it told; nothing of it where it cannot be read."""
     try:
-        return exif.cleaned(block), exif.said(block)
+        return exif.cleaned(block), exif.list_personal_data(block)
     except (ValueError, struct.error):
         return b"", {"EXIF that cannot be read"}
 
@@ -153,7 +153,9 @@ def _tiff(data: bytes, *, raw: bool) -> Cleaned:
     gone = {exif.POSITION, *exif.SERIALS, *exif.OTHERS, *exif.PERSONAL} | (set() if raw else {exif.NOTES})
     at = exif.first(data)
     seen: set[int] = set()
-    removed = exif.said(data) - ({"notes of the maker", "a small picture"} if raw else {"a small picture"})
+    removed = exif.list_personal_data(data) - (
+        {"notes of the maker", "a small picture"} if raw else {"a small picture"}
+    )
     while at and at not in seen and len(seen) < 64:
         seen.add(at)
         entries, following = exif.directory(data, at, sign)

@@ -27,7 +27,7 @@ DIE_WITH_PARENT, NO_NEW_PRIVILEGES, KILL = 1, 38, 9  # of prctl
 _libc = ctypes.CDLL(None, use_errno=True)
 
 
-def asked(answer: int, what: str) -> int:
+def check_answer(answer: int, what: str) -> int:
     """Return the system's answer, or raise an OSError that says what was asked for."""
     if answer < 0:
         raise OSError(ctypes.get_errno(), f"{what} was refused")
@@ -37,12 +37,12 @@ def asked(answer: int, what: str) -> int:
 def mount(source: str, target: str, kind: str = "", flags: int = 0, options: str = "") -> None:
     """Mount, or raise an OSError that names the target."""
     words = (word.encode() for word in (source, target, kind))
-    asked(_libc.mount(*words, ctypes.c_ulong(flags), options.encode()), f"mounting {target}")
+    check_answer(_libc.mount(*words, ctypes.c_ulong(flags), options.encode()), f"mounting {target}")
 
 
 def stage(paths: list[str]) -> None:
     """Bind the paths to STAGE/0, STAGE/1 and so on, in a namespace of mounts of this process's own."""
-    asked(_libc.unshare(NEW_MOUNTS), "a namespace of mounts")
+    check_answer(_libc.unshare(NEW_MOUNTS), "a namespace of mounts")
     mount("none", "/", flags=RECURSIVE | PRIVATE)
     descriptors = [os.open(path, os.O_PATH) for path in paths]
     mount("tmpfs", STAGE, "tmpfs", options="size=64k,mode=755")
@@ -67,17 +67,17 @@ def fence(read: list[str], walk: list[str], write: list[str]) -> None:
     rights = (1 << max(count for since, count in RIGHTS if since <= known)) - 1
     nets, scopes = (3 if known >= 4 else 0), (3 if known >= 6 else 0)  # ports; signals and names of sockets
     size = 24 if known >= 6 else 16 if known >= 4 else 8
-    rules = asked(_libc.syscall(CREATE, struct.pack("=QQQ", rights, nets, scopes), size, 0), "a fence")
+    rules = check_answer(_libc.syscall(CREATE, struct.pack("=QQQ", rights, nets, scopes), size, 0), "a fence")
     wanted = [(path, READ_FILE | READ_DIR | EXECUTE) for path in read]
     wanted += [(path, READ_DIR) for path in walk] + [(path, READ_FILE | WRITE_FILE) for path in write]
     for path, right in wanted:
         place = os.open(path, os.O_PATH)
         if not stat.S_ISDIR(os.fstat(place).st_mode):
             right &= ~READ_DIR
-        asked(_libc.syscall(ADD, rules, 1, struct.pack("=Qi", right, place), 0), f"a rule for {path}")
+        check_answer(_libc.syscall(ADD, rules, 1, struct.pack("=Qi", right, place), 0), f"a rule for {path}")
         os.close(place)
-    asked(_libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0), "giving up privileges")
-    asked(_libc.syscall(RESTRICT, rules, 0), "the fence")
+    check_answer(_libc.prctl(NO_NEW_PRIVILEGES, 1, 0, 0, 0), "giving up privileges")
+    check_answer(_libc.syscall(RESTRICT, rules, 0), "the fence")
     os.close(rules)
 
 
@@ -86,7 +86,7 @@ def become(user: int) -> None:
     os.setgroups([])
     os.setresgid(user, user, user)
     os.setresuid(user, user, user)
-    asked(_libc.prctl(DIE_WITH_PARENT, KILL, 0, 0, 0), "an end with the parent")
+    check_answer(_libc.prctl(DIE_WITH_PARENT, KILL, 0, 0, 0), "an end with the parent")
 
 
 def main(text: str) -> None:

@@ -26,7 +26,7 @@ def modules() -> list[str]:
     return sorted(name for name in found if not name.startswith(NOT_LIBRARY))
 
 
-def said(name: str) -> str:
+def summary(name: str) -> str:
     """Return the first sentence of a module's docstring, read from its file."""
     spec = importlib.util.find_spec(name)
     assert spec is not None and spec.origin is not None
@@ -79,7 +79,7 @@ def _title(text: str) -> str:
 
 def _listed(names: Sequence[str]) -> str:
     rows = "".join(
-        f"   * - :doc:`{short(one)} </reference/{short(one)}>`\n     - {escaped(said(one))}\n"
+        f"   * - :doc:`{short(one)} </reference/{short(one)}>`\n     - {escaped(summary(one))}\n"
         for one in names
     )
     return f".. list-table::\n   :widths: 30 70\n   :class: modules\n\n{rows}\n"

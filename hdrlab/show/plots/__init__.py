@@ -51,7 +51,7 @@ def axes(width: float = 5.4, height: float = 3.6) -> Axes:
     ax = figure.add_axes(place)
     ax.grid(color="#D9D9D9", linewidth=0.6)
     ax.set_axisbelow(True)
-    return reuse.handed_out((width, height), ax)[0]
+    return reuse.register((width, height), ax)[0]
 
 
 def picture_axes(width: float, height: float, place: Place) -> Axes:
@@ -59,7 +59,7 @@ def picture_axes(width: float, height: float, place: Place) -> Axes:
     if spare := reuse.take((width, height, *place)):
         return spare[0]
     ax = bare(Figure(figsize=(width, height), dpi=100).add_axes(place))
-    return reuse.handed_out((width, height, *place), ax)[0]
+    return reuse.register((width, height, *place), ax)[0]
 
 
 def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place) -> list[Axes]:
@@ -71,7 +71,7 @@ def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place
     maps, scale = [bare(figure.add_axes(place)) for place in places], figure.add_axes(bar)
     scale.set_axisbelow(True)
     scale.yaxis.set_visible(False)
-    return reuse.handed_out(size, *maps, scale)
+    return reuse.register(size, *maps, scale)
 
 
 def bare(ax: Axes) -> Axes:
@@ -82,7 +82,7 @@ def bare(ax: Axes) -> Axes:
     return ax
 
 
-def fixed(
+def fix_limits(
     ax: Axes, span: tuple[float, float] | None = None, limits: tuple[float, float] | None = None
 ) -> None:
     """Fix the ends of x by `span` and those of y by `limits`, where given: a slider then moves no ticks."""

@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.metrics import RELIABLE_LEVELS
-from hdrlab.show.plots import SAMPLES, axes, fixed
+from hdrlab.show.plots import SAMPLES, axes, fix_limits
 
 Dashes = str | tuple[int, tuple[float, ...]]
 LINES: tuple[tuple[str, Dashes], ...] = (
@@ -59,7 +59,7 @@ def lines(
             raise ValueError(f"expected {label} at the {x.shape} places, got {describe(y)}")
         ax.plot(x, y, linestyle=style, color=colour, linewidth=1.8, label=label)
     ax.set(xlabel=across, ylabel=up, yscale=scale)
-    fixed(ax, span, limits)
+    fix_limits(ax, span, limits)
     if scale == "log":  # minor ticks and powers in mathematical type take longer than all the rest
         ax.minorticks_off()
         ax.yaxis.set_major_formatter(_short)
@@ -91,7 +91,7 @@ def deviations(
     for (colour, style), (name, y) in zip(LINES[1:], off.items(), strict=False):
         ax.plot(stops, y, linestyle=style, color=colour, linewidth=1.6, label=name)
     ax.set(xlabel="true exposure, stops from that of level 128", ylabel="found less true, stops")
-    fixed(ax, span, (-limit, limit))
+    fix_limits(ax, span, (-limit, limit))
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
 

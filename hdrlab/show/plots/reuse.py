@@ -1,9 +1,9 @@
-"""Axes that are drawn on again: most of a line plot's time goes into making its axes and their ticks.
+"""Reuse of Axes and blitting: most of a line plot's time goes into making its axes and their ticks.
 
-`widgets.play` and `widgets.tune` draw many plots one after the other. Inside `drawn`, `plots.axes` and its
-kin hand out the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would leave
-behind. `paint` keeps the pixels of their ground, which is the paper with ticks, numbers and grid: where these
-are the same as in the picture before, only what stands upon them is drawn.
+`widgets.play` and `widgets.tune` draw many plots one after the other. Inside `draw_reusing`, `plots.axes` and
+the like return the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would
+leave behind. `paint` keeps the pixels of their background, which is the patch with ticks, numbers and grid:
+where these are the same as in the picture before, they are blitted, and only the artists upon them are drawn.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -23,12 +23,12 @@ Size = tuple[float, ...]  # of the figure, inches, and where in it its Axes lie 
 
 
 class Kept:
-    """Axes between two pictures, by size: `spare` ones, those handed `out` since, pixels of their ground."""
+    """Axes between two pictures, by size: `spare` ones, those handed `out` since, and background pixels."""
 
     def __init__(self) -> None:
         self.spare: dict[Size, list[Axes]] = {}
         self.out: dict[Size, tuple[list[Axes], list[object]]] = {}
-        self.ground: dict[Size, tuple[object, Any]] = {}
+        self.background: dict[Size, tuple[object, Any]] = {}
 
 
 _kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
@@ -45,7 +45,7 @@ def reusing(kept: Kept) -> Iterator[None]:
         _kept.reset(token)
 
 
-def drawn(
+def draw_reusing(
     draw: Callable[[State], object], state: State, finish: Callable[[object], Picture], kept: Kept
 ) -> Picture:
     """Return finish(draw(state)), drawn on spare Axes where there are some."""
@@ -60,10 +60,10 @@ def take(size: Size) -> list[Axes]:
     """Return the spare Axes of a figure of this size, wiped, or none; a picture gets them once."""
     kept = _kept.get()
     spare = kept.spare.pop(size, []) if kept else []
-    return handed_out(size, *map(wiped, spare)) if spare else []
+    return register(size, *map(wipe, spare)) if spare else []
 
 
-def handed_out(size: Size, *axes: Axes) -> list[Axes]:
+def register(size: Size, *axes: Axes) -> list[Axes]:
     """Return the Axes of a figure, and remember how they look."""
     if kept := _kept.get():
         kept.out[size] = (list(axes), [look(ax) for ax in axes])
@@ -86,7 +86,7 @@ def alone(axes: list[Axes]) -> bool:
 
 
 def look(ax: Axes) -> object:
-    """Return what a drawing may change and `wiped` does not bring back."""
+    """Return what a drawing may change and `wipe` does not bring back."""
     axis = [
         (
             [each.get_tick_params(which) for which in ("major", "minor")],
@@ -97,11 +97,11 @@ def look(ax: Axes) -> object:
         for each in (ax.xaxis, ax.yaxis)
     ]
     frame = [(spine.get_visible(), spine.get_edgecolor()) for spine in ax.spines.values()]
-    ground = (ax.figure.get_facecolor(), ax.get_axisbelow(), ax.axison)
-    return (axis, frame, ground, ax.title.get_color(), ax.get_position().bounds, ax.margins())
+    background = (ax.figure.get_facecolor(), ax.get_axisbelow(), ax.axison)
+    return (axis, frame, background, ax.title.get_color(), ax.get_position().bounds, ax.margins())
 
 
-def wiped(ax: Axes) -> Axes:
+def wipe(ax: Axes) -> Axes:
     """Return the Axes without what was drawn on them: linear, with limits that follow what comes."""
     for group in (ax.lines, ax.collections, ax.patches, ax.texts, ax.images, ax.artists, ax.tables):
         for artist in list(group):
@@ -119,36 +119,36 @@ def wiped(ax: Axes) -> Axes:
 
 
 def paint(canvas: FigureCanvasAgg) -> None:
-    """Draw the canvas's figure; where its ground is that of the picture before, only what stands upon it."""
+    """Draw the canvas's figure; where its background is as before, only what stands upon it."""
     kept, figure = _kept.get(), canvas.figure
     mine = [(size, *out) for size, out in kept.out.items() if out[0][0].figure is figure] if kept else []
     if kept is None or not mine or not separable(*mine[0][1:]):
         canvas.draw()
         return
     size, axes, as_new = mine[0]
-    ground = [figure.patch, *(part for ax in axes for part in (ax.patch, ax.xaxis, ax.yaxis))]
+    background = [figure.patch, *(part for ax in axes for part in (ax.patch, ax.xaxis, ax.yaxis))]
     marks = as_new, [(ax.get_facecolor(), ticks(ax.xaxis), ticks(ax.yaxis)) for ax in axes]
-    before, pixels = kept.ground.get(size, (None, None))
+    before, pixels = kept.background.get(size, (None, None))
     if before == marks:
         canvas.restore_region(pixels)
     else:
-        with hidden(child for ax in axes for child in ax.get_children() if child not in ground):
+        with hidden(child for ax in axes for child in ax.get_children() if child not in background):
             canvas.draw()
-        kept.ground[size] = (marks, canvas.copy_from_bbox(figure.bbox))
-    with hidden(ground):
+        kept.background[size] = (marks, canvas.copy_from_bbox(figure.bbox))
+    with hidden(background):
         figure.draw(canvas.get_renderer())
 
 
 def separable(axes: list[Axes], as_new: list[object]) -> bool:
-    """Return whether the ground of Axes lies below all else, and is made of nothing but ticks and labels."""
+    """Return whether the background of Axes lies below all else, and is nothing but ticks and labels."""
     plain = alone(axes) and all(ax.get_aspect() == "auto" for ax in axes)
-    return plain and [look(ax) for ax in axes] == as_new and all(map(_grounded, axes))
+    return plain and [look(ax) for ax in axes] == as_new and all(map(_background_below, axes))
 
 
-def _grounded(ax: Axes) -> bool:
-    ground = max(ax.xaxis.get_zorder(), ax.yaxis.get_zorder())
+def _background_below(ax: Axes) -> bool:
+    background = max(ax.xaxis.get_zorder(), ax.yaxis.get_zorder())
     above = (child for child in ax.get_children() if child not in (ax.patch, ax.xaxis, ax.yaxis))
-    return not ax.axison or all(child.get_zorder() > ground for child in above)
+    return not ax.axison or all(child.get_zorder() > background for child in above)
 
 
 def ticks(axis: Axis) -> object:

@@ -20,7 +20,7 @@ from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
 from hdrlab.capture.ranges import ExposedLevels
 from hdrlab.core.arrays import as_picture, describe
-from hdrlab.show.plots import axes, fixed, picture_axes
+from hdrlab.show.plots import axes, fix_limits, picture_axes
 from hdrlab.show.plots.nearest import show
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
@@ -103,7 +103,7 @@ def transfer(
     line = np.array([0, S.max()])
     ax.plot(line, V[0] + line / found.gain, "-", color="#1A1A1A", label=f"slope 1 / {found.gain:.3g}")
     ax.set(xlabel="signal S, levels above black", ylabel="variance V, levels squared")
-    fixed(ax, span, limits)
+    fix_limits(ax, span, limits)
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
 

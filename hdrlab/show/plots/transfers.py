@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.show.plots import SAMPLES, axes, fixed
+from hdrlab.show.plots import SAMPLES, axes, fix_limits
 from hdrlab.show.plots.curves import LINES
 
 
@@ -129,6 +129,6 @@ def equations(
     ax.plot(ends, (k - against) * ends, color="#D55E00", linewidth=1.8, label=f"k = {k:.4f}")
     less = f" less {against:g} times that of A" if against else ""
     ax.set(xlabel="level in the darker frame A", ylabel=f"level in B{less}")
-    fixed(ax, span or (0, ends[1] * 1.02), limits)
+    fix_limits(ax, span or (0, ends[1] * 1.02), limits)
     ax.legend(loc="upper left", framealpha=0.9)
     return ax

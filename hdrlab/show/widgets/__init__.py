@@ -95,7 +95,7 @@ def play(
     """
     frames, alts, kept = [], [], reuse.Kept()
     for k, state in enumerate(islice(states, MOST + 1)):
-        frames.append(reuse.drawn(draw, state, encode, kept))
+        frames.append(reuse.draw_reusing(draw, state, encode, kept))
         alts.append(
             require_alt(alt(state) if callable(alt) else alt) + ("" if callable(alt) else f", {name} {k + 1}")
         )
@@ -206,7 +206,7 @@ def tune(
     def picture(at: list[int]) -> Image:
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
             found = f(**positions.values(grids, at))
-        return reuse.drawn(draw, found, finish, kept)
+        return reuse.draw_reusing(draw, found, finish, kept)
 
     at = positions.start(f, grids)
     few = positions.few(grids, at, stored)

@@ -41,7 +41,7 @@ class Gallery(Front):
         """Show all artifacts, in the voter's own order, with the voter's ballot."""
         voter, shown = self.voter(request)
         set_up, hung = store.settings(self.db), store.artifacts(self.db)
-        when, chosen = ballots.chosen(self.db, voter.id)
+        when, chosen = ballots.read_ballot(self.db, voter.id)
         order = tokens.shuffled(list(hung), set_up.secret, voter.id)
         may = set_up.is_open(self.clock())
         return self.page(
@@ -54,7 +54,9 @@ class Gallery(Front):
             ],
             marks=set_up.marks,
             chosen=len(chosen),
-            when=None if when is None else store.said(datetime.fromtimestamp(when, set_up.closes.tzinfo)),
+            when=None
+            if when is None
+            else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo)),
             key=tokens.form_key(shown),
         )
 
@@ -142,7 +144,7 @@ class Gallery(Front):
         set_up, hung = store.settings(self.db), store.artifacts(self.db)
         if set_up.is_open(self.clock()):
             raise Refusal(
-                403, f"The results are shown when the vote has closed: {store.said(set_up.closes)}."
+                403, f"The results are shown when the vote has closed: {store.format_time(set_up.closes)}."
             )
         cast = [one for one in ballots.every(self.db).values() if one]
         authors: dict[str, list[str]] = {}

@@ -50,7 +50,7 @@ class Front:
         known = {
             "title": set_up.title,
             "open": set_up.is_open(self.clock()),
-            "closes": store.said(set_up.closes),
+            "closes": store.format_time(set_up.closes),
         }
         return HTMLResponse(self.pages.get_template(name).render(known | words), status)
 

@@ -171,7 +171,7 @@ def prepare(modules: list[str]) -> None:
     gc.freeze()  # a fork then shares these pages
 
 
-def handed(number: str) -> socket.socket:
+def inherit_control(number: str) -> socket.socket:
     """Return the control: it has this number or, on Windows, is described on the standard input."""
     if sys.platform == "win32":
         return socket.fromshare(sys.stdin.buffer.read())
@@ -180,7 +180,7 @@ def handed(number: str) -> socket.socket:
 
 def main(number: str, *packages: str) -> None:
     """Read the first order from the control, make ready, and tend the checks, or be the only one there is."""
-    control = handed(number)
+    control = inherit_control(number)
     here = os.path.dirname(os.path.abspath(__file__))
     shelf = {name: f"{here}/{name}.py" for name in ("channel", "worker")}
     for package in packages:
