@@ -52,7 +52,7 @@ def logarithm(L: F32) -> F32:
 
 
 def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
-    """Return u mean + (1 - u) blur(mean): a base that rests on few pixels is fixed [Durand02 sec. 6.1].
+    """Return u mean + (1 - u) blur(mean): a base that rests on few pixels is fixed [Durand02].
 
     A pixel unlike all around it is its own base: without detail, and compressed like light. The certainty u
     rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1.

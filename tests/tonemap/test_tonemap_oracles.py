@@ -100,7 +100,7 @@ def room():
 
 
 def operator(name):
-    return pytest.importorskip(f"hdrlab.tonemap.{name}")
+    return pytest.importorskip(f"hdrlab.fast.{name}")
 
 
 def test_the_measure_tells_a_picture_from_a_flat_one_and_from_its_mirror():
