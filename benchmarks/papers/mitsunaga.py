@@ -50,7 +50,7 @@ def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trial
     return Trials(np.array(paper), np.array([len(states) for states in runs]), np.array(better))
 
 
-def paper_states(one: ambiguity.Trial) -> list[mitsunaga.State]:
+def paper_states(one: ambiguity.Trial) -> list[mitsunaga.Fit]:
     """Return the paper's scheme, turn by turn, from ratios of 0.5."""
     return list(mitsunaga.fit_steps(average(one.Z)[None], STATED, 5))
 

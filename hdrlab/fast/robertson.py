@@ -19,11 +19,12 @@ from numpy.typing import ArrayLike
 from scipy.linalg import solveh_banded
 
 from hdrlab.core.arrays import as_mask, as_stack, as_times
-from hdrlab.core.sampling import by_rank, require_two_exposures
+from hdrlab.core.sampling import by_rank
 from hdrlab.core.types import F64, Indices
 from hdrlab.core.weights import second_differences
+from hdrlab.fast import with_parts
 from hdrlab.response import robertson
-from hdrlab.response.robertson import Fill, State
+from hdrlab.response.robertson import State
 
 # samples at a time: their indices stay in the processor's cache
 BLOCK = 2**15
@@ -59,19 +60,7 @@ class Joint:
             return self.S @ (self.w * f_inv) / self.pixels
 
 
-def recover_steps(
-    Z: Indices, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
-) -> Iterator[State]:
-    """Yield the States of the lesson."""
-    yield from _steps(Z, times, w, tolerance, max_iterations, robertson.fill)
-
-
-def _steps(
-    Z: ArrayLike, times: ArrayLike, w: ArrayLike, tolerance: float, max_iterations: int, complete: Fill
-) -> Iterator[State]:
-    Z, t, w = np.asarray(Z), np.asarray(times, np.float64), np.asarray(w, np.float64)
-    require_two_exposures(Z, t, w)
-    yield from robertson.iterate(Joint(Z, t / t.max(), w), w, tolerance, max_iterations, complete)
+recover_steps = with_parts(__name__, robertson.recover_steps, alternate=Joint)
 
 
 class Smooth:
@@ -95,7 +84,7 @@ class Smooth:
         self.smoothness = smoothness
 
     def __call__(
-        self, Z: ArrayLike, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
+        self, Z: Indices, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
     ) -> Iterator[State]:
         """Yield the States of one channel; parameters as of `recover_steps`."""
         matrix, line = None, robertson.linear(len(w))
@@ -106,7 +95,8 @@ class Smooth:
                 matrix = _smoother(means, w, self.smoothness)
             return line * np.exp(matrix @ np.log(robertson.fill(means, w) / line))
 
-        return _steps(Z, times, w, tolerance, max_iterations, complete)
+        steps = with_parts(__name__, recover_steps, fill=complete)
+        return steps(Z, times, w, tolerance=tolerance, max_iterations=max_iterations)
 
 
 def _smoother(means: F64, w: F64, smoothness: float) -> F64:

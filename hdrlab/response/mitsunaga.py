@@ -35,7 +35,7 @@ LOW, HIGH = 0.05, 0.98
 Pairs = tuple[F64, F64, Indices]
 
 
-class State(NamedTuple):
+class Fit(NamedTuple):
     """After an iteration: c (C, N - 1), the R (P - 1,) they lead to, and by how much f^-1 changed."""
 
     c: F64
@@ -101,8 +101,8 @@ def ratios(channels: Sequence[Pairs], c: F64, R: F64) -> F64:
     return np.divide(total[0], total[1], out=R.copy(), where=known)
 
 
-def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[State]:
-    """Yield the State after each iteration, c and then R, until f^-1 changes by less than eps [eq. 11]."""
+def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[Fit]:
+    """Yield c and R after each iteration, until f^-1 changes by less than eps [eq. 11]."""
     channels = [neighbours(own, order) for own in M]
     levels, R, before = terms(np.linspace(0, 1, 256), order)[:, 1:], np.asarray(R), np.full(256, np.inf)
     for _ in range(max_iterations):
@@ -110,7 +110,7 @@ def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: 
         R = ratios(channels, c, R)
         curves = c @ levels.T
         change, before = float(np.max(np.abs(curves - before))), curves
-        yield State(c, R, change)
+        yield Fit(c, R, change)
         if change < eps:
             return
 

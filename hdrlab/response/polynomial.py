@@ -22,7 +22,7 @@ def slope(M: ArrayLike, c: ArrayLike) -> F64:
     return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)
 
 
-def misfit(M: F64, R: F64, c: F64) -> F64:
+def misfit(M: F64, R: F64 | float, c: F64) -> F64:
     """Return what eq. 5 misses for samples M (N, P), as noise of brightness, (N, P - 1).
 
     (f^-1(M_q) - R f^-1(M_q+1)) over the square root of the sum of their squared derivatives by M.

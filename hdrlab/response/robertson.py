@@ -28,8 +28,6 @@ from hdrlab.core.arrays import as_stack
 from hdrlab.core.sampling import by_rank, require_two_exposures
 from hdrlab.core.types import F64, Indices
 
-Fill = Callable[[F64, F64], F64]
-
 
 class State(NamedTuple):
     """f^-1 after an iteration, and by how much it changed at most."""
@@ -70,19 +68,9 @@ def fill(means: F64, w: F64) -> F64:
     return filled
 
 
-def iterate(
-    means: Callable[[F64], F64], w: F64, tolerance: float, max_iterations: int, complete: Fill = fill
-) -> Iterator[State]:
-    """Yield the State of the linear camera, and after each f^-1 <- complete(means(f^-1)), 1 in the middle."""
-    f_inv = linear(len(w))
-    yield State(f_inv, np.inf)
-    for _ in range(max_iterations):
-        new = complete(means(f_inv), w)
-        new = new / new[len(w) // 2]
-        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
-        yield State(f_inv, change)
-        if change < tolerance:
-            return
+def alternate(Z: Indices, t: F64, w: F64) -> Callable[[F64], F64]:
+    """Return what makes of f^-1 the next means: E from f^-1, and f^-1 from E."""
+    return lambda f_inv: update(Z, t, irradiance(Z, t, f_inv, w), len(w))
 
 
 def recover_steps(
@@ -110,9 +98,15 @@ def recover_steps(
     """
     t = np.asarray(times, np.float64) / np.max(times)
     require_two_exposures(Z, t, w)
-    yield from iterate(
-        lambda f_inv: update(Z, t, irradiance(Z, t, f_inv, w), len(w)), w, tolerance, max_iterations
-    )
+    means, f_inv = alternate(Z, t, w), linear(len(w))
+    yield State(f_inv, np.inf)
+    for _ in range(max_iterations):
+        new = fill(means(f_inv), w)
+        new = new / new[len(w) // 2]
+        f_inv, change = new, float(np.max(np.abs(new - f_inv)))
+        yield State(f_inv, change)
+        if change < tolerance:
+            return
 
 
 def recover(

@@ -19,7 +19,7 @@ from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64
-from hdrlab.response.mitsunaga import State, coefficients, curve, fit_steps, gram, in_range, neighbours
+from hdrlab.response.mitsunaga import Fit, coefficients, curve, fit_steps, gram, in_range, neighbours
 from hdrlab.response.polynomial import misfit
 
 # order that is tried
@@ -110,8 +110,8 @@ def calibrate(
     order: int | None = None,
     eps: float = 1e-3,
     valid: ArrayLike | None = None,
-) -> State:
-    """Return the last State for a bracket: the coefficients, and the ratios of each exposure to the next.
+) -> Fit:
+    """Return the coefficients, and the ratios of each exposure to the next, of a bracket.
 
     Parameters
     ----------
