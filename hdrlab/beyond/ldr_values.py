@@ -99,6 +99,5 @@ def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
     v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
     z = (Z / (n - 1)).astype(np.float32)
     full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])
-    return Values(
-        look_up_levels(v, Z), z, look_up_levels(np.gradient(v, axis=0), Z), z > CLIPPING_LEVEL, t, full
-    )
+    noise = look_up_levels(np.gradient(v, axis=0), Z)
+    return Values(look_up_levels(v, Z), z, noise, z > CLIPPING_LEVEL, t, full)

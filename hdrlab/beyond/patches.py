@@ -24,21 +24,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hdrlab.beyond import synthesis
 from hdrlab.beyond.bidirectional import Search, search, similarity, vote
 from hdrlab.beyond.ldr_values import as_values, resize_picture
 from hdrlab.beyond.patchmatch import identity_field
-from hdrlab.beyond.synthesis import (
-    Ramp,
-    Scene,
-    blend_reference,
-    boost_photographs,
-    extract_exposures,
-    guess_radiance,
-    merge_exposures,
-    resize_scene,
-    trapezoid,
-    weigh_patches,
-)
+from hdrlab.beyond.synthesis import Ramp, Scene
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, F64, Array, Indices
@@ -76,21 +66,22 @@ def improve(
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
     pictures, found, unlike = [], [], []
     for k, (T, at) in enumerate(zip(state.I, fields, strict=True)):
-        S, price = boost_photographs(k, scene)
-        w, both = weigh_patches(k, scene, price, settings.side), search(T, S, price, at, settings, rng)
+        S, price = synthesis.boost_photographs(k, scene)
+        w = synthesis.weigh_patches(k, scene, price, settings.side)
+        both = search(T, S, price, at, settings, rng)
         pictures.append(vote(S, w, both, settings.side))
         found.append((both.coherence.at, tuple(field.at for field in both.completeness)))
         unlike.append(similarity(w, both))
-    H = blend_reference(merge_exposures(np.stack(pictures), scene), scene)
-    return State(state.scale, state.round + 1, H, extract_exposures(H, scene), np.array(unlike)), found
+    H = synthesis.blend_reference(synthesis.merge_exposures(np.stack(pictures), scene), scene)
+    I_k = synthesis.extract_exposures(H, scene)
+    return State(state.scale, state.round + 1, H, I_k, np.array(unlike)), found
 
 
 def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
     """Return the sides of every scale, coarse to fine; the shorter is about `coarsest` pixels at first."""
     count = max(0, round(np.log(min(shape) / coarsest) / np.log(SCALE_RATIO)))
-    return [
-        (round(shape[0] / SCALE_RATIO**j), round(shape[1] / SCALE_RATIO**j)) for j in range(count, -1, -1)
-    ]
+    ratios = [SCALE_RATIO**j for j in range(count, -1, -1)]
+    return [(round(shape[0] / ratio), round(shape[1] / ratio)) for ratio in ratios]
 
 
 def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None) -> Scene:
@@ -102,7 +93,7 @@ def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int |
         if not 0 <= reference < len(order):
             raise ValueError(f"expected a reference from 0 to {len(order) - 1}, got {reference}")
         place = int(np.flatnonzero(order == reference)[0])
-    alpha = trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
+    alpha = synthesis.trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
     v, noise, clipped, t = each.v[order], each.noise[order], each.clipped[order], each.t[order]
     return Scene(v, noise, clipped, t, each.full, place, alpha)
 
@@ -125,10 +116,10 @@ def synthesise_steps(
         raise ValueError(f"expected an odd side from 3 to {min(sizes[0])} pixels, got {side}")
     generator, state, fields = np.random.default_rng(rng), None, None
     for scale, (shape, count) in enumerate(zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)):
-        scene = resize_scene(finest, shape)
-        H = resize_picture(guess_radiance(finest) if state is None else state.H, shape)
-        H = H if state is None else blend_reference(H, scene)
-        state = State(scale, 0, H, extract_exposures(H, scene), np.full(len(scene.t), np.nan))
+        scene = synthesis.resize_scene(finest, shape)
+        H = resize_picture(synthesis.guess_radiance(finest) if state is None else state.H, shape)
+        H = H if state is None else synthesis.blend_reference(H, scene)
+        state = State(scale, 0, H, synthesis.extract_exposures(H, scene), np.full(len(scene.t), np.nan))
         yield state
         fields = start_fields(shape, len(scene.t), side) if fields is None else fields
         settings = Search(side, 2, max(shape) if scale == 0 else 4)

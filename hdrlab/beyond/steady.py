@@ -62,9 +62,8 @@ def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> FrameStatistics:
     E = as_radiance(E)
     L = luminance(E)
     floor = max(delta * robust_maximum(L, cut=0.5), SMALLEST_LUMINANCE)
-    return FrameStatistics(
-        E, L, float(np.log(L + np.float32(floor)).mean(dtype=np.float64)), robust_maximum(L)
-    )
+    mean = float(np.log(L + np.float32(floor)).mean(dtype=np.float64))
+    return FrameStatistics(E, L, mean, robust_maximum(L))
 
 
 def adapt(window: Sequence[FrameStatistics], *, key: float) -> tuple[float, float]:

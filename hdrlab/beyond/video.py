@@ -22,15 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hdrlab.beyond import ldr_values
 from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
-from hdrlab.beyond.ldr_values import (
-    as_values,
-    boost,
-    consistent_range,
-    expose,
-    look_up_levels,
-    radiance,
-)
 from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights
@@ -89,7 +82,7 @@ class State(NamedTuple):
 def estimate_motion(a: Frame, b: Frame, flow: Flow) -> F32:
     """Return the flow from a to b, the shorter exposure boosted to the longer one [Kang03 sec. 4]."""
     longer = max(a.t, b.t)
-    return flow(*(boost(one.v, longer / one.t).mean(axis=-1) for one in (a, b)))
+    return flow(*(ldr_values.boost(one.v, longer / one.t).mean(axis=-1) for one in (a, b)))
 
 
 def warp_frame(frame: Frame, u: F32) -> Term:
@@ -105,14 +98,14 @@ def consistency(v: F32, v_: F32) -> F32:
 
 def weigh_neighbour(i: Frame, term: Term) -> Term:
     """Return a neighbour weighted by f_W f_MW alpha: as far as frame i is well exposed and agrees."""
-    return term._replace(w=term.w * consistency(i.v, expose(term.R, i.t, i.full)) * i.alpha)
+    return term._replace(w=term.w * consistency(i.v, ldr_values.expose(term.R, i.t, i.full)) * i.alpha)
 
 
 def warp_half_way(a: Frame, b: Frame, flow: Flow) -> tuple[Term, ...]:
     """Return both frames warped to the moment half-way between them, and trusted where they agree there."""
     terms = [warp_frame(*each) for each in zip((a, b), halve_flow(estimate_motion(a, b, flow)), strict=True)]
     longer = max(a.t, b.t)
-    agree = consistency(*(expose(term.R, longer, a.full) for term in terms))
+    agree = consistency(*(ldr_values.expose(term.R, longer, a.full) for term in terms))
     return tuple(term._replace(w=term.w * np.maximum(agree, 0.01)) for term in terms)
 
 
@@ -121,8 +114,8 @@ def clip_to_frame(i: Frame, R: F32) -> tuple[F32, F32]:
 
     Frame i allows at least R_i where it is clipped, and what lies within a few levels of R_i elsewhere.
     """
-    kept = np.clip(R, *consistent_range(i.v, i.noise, i.clipped, i.t, i.full))
-    return kept, consistency(expose(kept, i.t, i.full), expose(R, i.t, i.full))
+    kept = np.clip(R, *ldr_values.consistent_range(i.v, i.noise, i.clipped, i.t, i.full))
+    return kept, consistency(ldr_values.expose(kept, i.t, i.full), ldr_values.expose(R, i.t, i.full))
 
 
 def blend_terms(i: Frame, along: Iterable[Term], between: Iterable[Term]) -> F32:
@@ -215,11 +208,11 @@ def merge(
 def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None) -> Frame:
     """Return one photograph as a Frame, checked."""
     stack = np.asarray(Z)[None]
-    values = as_values(stack, [t], g)
+    values = ldr_values.as_values(stack, [t], g)
     n = levels(stack)
     table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n).reshape(n, -1)
-    f_W = look_up_levels(table.astype(np.float32), stack.reshape(values.v.shape))[0]
-    R = radiance(values.v[0], t, values.full)
+    f_W = ldr_values.look_up_levels(table.astype(np.float32), stack.reshape(values.v.shape))[0]
+    R = ldr_values.radiance(values.v[0], t, values.full)
     alpha = trapezoid(values.z[0], *EXPOSED_LEVELS)
     return Frame(values.v[0], values.noise[0], values.clipped[0], R, f_W, alpha, t, values.full)
 

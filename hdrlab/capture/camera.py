@@ -20,21 +20,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from hdrlab.capture import sensor as stages
 from hdrlab.capture.hand_motion import views
 from hdrlab.capture.responses import Curve, Response, as_response
-from hdrlab.capture.sensor import (
-    Seed,
-    Sensor,
-    develop,
-    exposure,
-    falloff,
-    grain,
-    photons,
-    quantise,
-    read,
-    readout,
-)
-from hdrlab.core import mosaic
+from hdrlab.capture.sensor import Seed, Sensor
 from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
@@ -196,17 +185,16 @@ def shoot(
 
 def photograph(E: F32, time: float, camera: Camera, stuck: Mask, rng: np.random.Generator) -> Array:
     """Return Z of one photograph, whose hot pixels are `stuck` at a full well."""
-    bright = falloff(E.shape, camera.vignetting)
-    X = exposure(E * (bright if E.ndim == 2 else bright[..., None]), time, sensitivity=camera.sensitivity)
+    X = stages.exposure(stages.vignette(E, camera.vignetting), time, sensitivity=camera.sensitivity)
     if camera.sensor is not None:
         X = np.where(stuck, 4, X)
-        if camera.bayer:
-            X = mosaic.sample(X, mosaic.tile(mosaic.BAYER, X.shape[:2]))
-        Z = read(X, camera.sensor, rng=rng)
-        X = develop(Z, camera.sensor, white=camera.white, bayer=camera.bayer)
+        X = stages.filter_bayer(X) if camera.bayer else X
+        Z = stages.read(X, camera.sensor, rng=rng)
+        X = stages.develop(Z, camera.sensor, white=camera.white, bayer=camera.bayer)
     elif camera.full_well < np.inf:
-        N = photons(X, full_well=camera.full_well, rng=rng)
-        X = readout(N, read_noise=camera.read_noise, rng=rng) / camera.full_well
+        N = stages.photons(X, full_well=camera.full_well, rng=rng)
+        X = stages.readout(N, read_noise=camera.read_noise, rng=rng) / camera.full_well
     X = np.clip(X, 0, 1)
     M = as_response(camera.response).f(X if camera.sensor is not None else np.where(stuck, 1, X))
-    return quantise(grain(M, gray_noise=camera.gray_noise, bits=camera.bits, rng=rng), bits=camera.bits)
+    M = stages.grain(M, gray_noise=camera.gray_noise, bits=camera.bits, rng=rng)
+    return stages.quantise(M, bits=camera.bits)

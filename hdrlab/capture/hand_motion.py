@@ -29,24 +29,18 @@ def views(E: Array, offsets: ArrayLike) -> list[Array]:
     With homographies, or fractions of pixels, frame j sees E at H_j (x, y, 1), and all of them the largest
     rectangle within which every one finds content. `frame_homographies` gives these in pixels of the frames.
     """
-    homographies = np.asarray(offsets)
-    if homographies.ndim == 3 or (
-        homographies.ndim == 2 and homographies.shape[1] == 2 and homographies.dtype.kind == "f"
-    ):
-        rows, columns = _shown(homographies, E.shape)
+    given = np.asarray(offsets)
+    pairs = given.ndim == 2 and given.shape[1] == 2 and len(given) > 0
+    if given.ndim == 3 or (pairs and given.dtype.kind == "f"):
+        rows, columns = _shown(given, E.shape)
         size, first = (rows.stop - rows.start, columns.stop - columns.start), _from((rows, columns))
-        return [warp.sample(E, H @ first, size) for H in warp.as_homographies(homographies)]
-    if (
-        homographies.ndim != 2
-        or homographies.shape[1] != 2
-        or len(homographies) == 0
-        or homographies.dtype.kind not in "iu"
-    ):
-        raise ValueError(f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(homographies)}")
-    corners = homographies - homographies.min(axis=0)
+        return [warp.sample(E, H @ first, size) for H in warp.as_homographies(given)]
+    if not pairs or given.dtype.kind not in "iu":
+        raise ValueError(f"expected offsets (P, 2) or homographies (P, 3, 3), got {describe(given)}")
+    corners = given - given.min(axis=0)
     h, w = E.shape[:2] - corners.max(axis=0)
     if h < 1 or w < 1:
-        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {homographies.tolist()}")
+        raise ValueError(f"expected offsets that span less than {E.shape[:2]}, got {given.tolist()}")
     return [E[y : y + h, x : x + w] for y, x in corners]
 
 

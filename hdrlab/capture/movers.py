@@ -85,11 +85,8 @@ def ball(
     y, x = np.indices(shape) - middle[:, None, None]
     mask = np.clip(radius + 0.5 - np.hypot(y, x), 0, 1)
     z = np.sqrt(np.maximum(radius**2 - y**2 - x**2, 0))
-    facing = np.maximum(
-        (SUN_DIRECTION[0] * y + SUN_DIRECTION[1] * x + SUN_DIRECTION[2] * z)
-        / (radius * np.linalg.norm(SUN_DIRECTION)),
-        0,
-    )
+    sun = SUN_DIRECTION / np.linalg.norm(SUN_DIRECTION)
+    facing = np.maximum((sun[0] * y + sun[1] * x + sun[2] * z) / radius, 0)
     bands = 0.7 + 0.3 * np.cos(np.pi * stripes * (x + y) / (2**0.5 * radius))
     shade = (mask * (0.15 + 0.85 * facing) * (bands if stripes else 1)).astype(np.float32)
     light = shade if colour.ndim == 0 else shade[..., None]
@@ -112,11 +109,9 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
 
 def shift_layer(layer: F32, at: ArrayLike) -> F32:
     """Return a layer moved by (dy, dx) whole pixels; what leaves the frame is lost, what enters is 0."""
-    out, parts = np.zeros_like(layer), []
-    for n, d in zip(layer.shape, np.asarray(at).tolist(), strict=False):
-        parts.append((slice(max(d, 0), max(n + d, 0)), slice(max(-d, 0), max(n - d, 0))))
-    here, there = zip(*parts, strict=True)
-    out[here] = layer[there]
+    (h, w), (dy, dx), out = layer.shape[:2], np.asarray(at).tolist(), np.zeros_like(layer)
+    there = layer[max(-dy, 0) : max(h - dy, 0), max(-dx, 0) : max(w - dx, 0)]
+    out[max(dy, 0) : max(h + dy, 0), max(dx, 0) : max(w + dx, 0)] = there
     return out
 
 
@@ -196,9 +191,7 @@ def as_figure(figure: Figure, E: F32) -> Figure:
     """Return the layers of a figure as float32, or raise a ValueError where they do not fit the scene."""
     light, mask = (np.asarray(layer) for layer in figure)
     if light.shape != E.shape or mask.shape != E.shape[:2]:
-        raise ValueError(
-            f"expected light {E.shape} and a mask of its size, got {light.shape} and {mask.shape}"
-        )
+        raise ValueError(f"expected light {E.shape} and a mask of it, got {light.shape} and {mask.shape}")
     if not (mask.min() >= 0 and mask.max() <= 1):
         raise ValueError(f"expected a mask from 0 to 1, got {describe(mask)}")
     return Figure(as_radiance(light), mask.astype(np.float32))

@@ -43,6 +43,17 @@ def falloff(shape: tuple[int, ...], loss: float) -> F32:
     return (1 - loss * (y[:, None] ** 2 + x**2) / 2).astype(np.float32)
 
 
+def vignette(E: F32, loss: float) -> F32:
+    """Return E times the falloff."""
+    bright = falloff(E.shape, loss)
+    return E * (bright if E.ndim == 2 else bright[..., None])
+
+
+def filter_bayer(X: F32) -> F32:
+    """Return the mosaic (H, W) of exposures (H, W, 3) behind filters R G / G B."""
+    return mosaic.sample(X, mosaic.tile(mosaic.BAYER, X.shape[:2]))
+
+
 def exposure(E: F32, time: float, *, sensitivity: float = 1.0) -> F32:
     """Return X = s E t: light, times how long it was let in, times how strongly the sensor answers."""
     with np.errstate(over="ignore"):  # an infinite exposure fills the well like any other too long one
@@ -136,11 +147,8 @@ def raw(
     if not (0 <= time < np.inf and 0 < sensitivity < np.inf and 0 <= vignetting <= 1):
         got = f"{time} s, {sensitivity} and {vignetting}"
         raise ValueError(f"expected a time, a positive sensitivity and a vignetting from 0 to 1, got {got}")
-    bright = falloff(E.shape, vignetting)
-    X = exposure(E * (bright if E.ndim == 2 else bright[..., None]), time, sensitivity=sensitivity)
-    if bayer:
-        X = mosaic.sample(X, mosaic.tile(mosaic.BAYER, X.shape[:2]))
-    return read(X, sensor, rng=np.random.default_rng(rng))
+    X = exposure(vignette(E, vignetting), time, sensitivity=sensitivity)
+    return read(filter_bayer(X) if bayer else X, sensor, rng=np.random.default_rng(rng))
 
 
 def develop(

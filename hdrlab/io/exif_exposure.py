@@ -81,19 +81,18 @@ def positive(value: Any) -> float | None:
     >>> positive("0.5"), positive(0)
     (0.5, None)
     """
-    if isinstance(value, tuple | list):
-        value = value[0] if value else None
-    try:
-        number = float(value)
-    except (TypeError, ValueError, ArithmeticError):
-        return None
+    number = _number(value[0] if isinstance(value, tuple | list) and value else value)
     return number if 1e-12 < number < 1e12 else None
 
 
 def _apex(value: Any, meaning: Callable[[float], float]) -> float | None:
     """Return what an APEX value means, or None; 0 and negative ones are as good as others."""
+    apex = _number(value)
+    return meaning(apex) if abs(apex) < 40 else None
+
+
+def _number(value: Any) -> float:
     try:
-        apex = float(value)
+        return float(value)
     except (TypeError, ValueError, ArithmeticError):
-        return None
-    return meaning(apex) if math.isfinite(apex) and abs(apex) < 40 else None
+        return math.nan

@@ -22,16 +22,8 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64
+from hdrlab.io import pfscurves
 from hdrlab.io.files import replacing
-from hdrlab.io.pfscurves import (
-    LUMINANCE,
-    from_luminance,
-    numbers,
-    read_pfstools,
-    squeeze_gray,
-    write_luminance,
-    write_pfstools,
-)
 
 # bytes: three channels of 65536 levels take 10 million
 MAX_FILE_BYTES = 32 << 20
@@ -142,9 +134,8 @@ def as_curve(g: ArrayLike) -> F64:
     if len(curve) not in (256, 65536):
         raise ValueError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
     if not np.all(np.abs(curve) <= MAX_LN_EXPOSURE):  # NaN neither
-        raise ValueError(
-            f"expected ln exposures from -{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}, got {describe(curve)}"
-        )
+        limits = f"-{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}"
+        raise ValueError(f"expected ln exposures from {limits}, got {describe(curve)}")
     return curve.astype(np.float64)
 
 
@@ -157,15 +148,15 @@ def _write_csv(path: Path, g: F64) -> None:
 
 def _read_csv(path: Path) -> F64:
     header, _, body = path.read_text(encoding="latin-1").partition("\n")
-    if header.replace(" ", "").strip() == LUMINANCE:
-        return from_luminance(body)
+    if header.replace(" ", "").strip() == pfscurves.LUMINANCE:
+        return pfscurves.from_luminance(body)
     names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
     if tuple(names[1:]) not in CHANNELS.values() or names[0] != "level" or UNIT not in header:
         raise ValueError(f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}")
-    table = numbers(body, len(names), ",")
+    table = pfscurves.numbers(body, len(names), ",")
     if not np.array_equal(table[:, 0], np.arange(len(table))):
         raise ValueError(f"expected the levels from 0 on, one a line, got {table[:4, 0].tolist()} ...")
-    return squeeze_gray(table[:, 1:])
+    return pfscurves.squeeze_gray(table[:, 1:])
 
 
 def _write_npz(path: Path, g: F64) -> None:
@@ -186,8 +177,8 @@ def _read_npz(path: Path) -> F64:
 
 
 FORMS = {
-    ".luminance.csv": Form(write_luminance, _read_csv),
+    ".luminance.csv": Form(pfscurves.write_luminance, _read_csv),
     ".csv": Form(_write_csv, _read_csv),
     ".npz": Form(_write_npz, _read_npz),
-    ".m": Form(write_pfstools, read_pfstools),
+    ".m": Form(pfscurves.write_pfstools, pfscurves.read_pfstools),
 }

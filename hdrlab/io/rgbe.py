@@ -132,9 +132,8 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
     """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
     if (stated := data[2] * 256 + data[3]) != length:
         raise ValueError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
-    check_size(
-        path, scanlines, length, scanlines * (4 + 4 * 2 * -(-length // LONGEST_RUN)), available=len(data)
-    )
+    least = scanlines * (4 + 4 * 2 * -(-length // LONGEST_RUN))
+    check_size(path, scanlines, length, least, available=len(data))
     E = np.empty((scanlines, length, 3), np.float32)
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)

@@ -16,10 +16,9 @@ from typing import Any, cast
 
 import imageio.v3 as iio
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.core.types import F32, Array
-from hdrlab.io import photos, radiance
+from hdrlab.io import photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, replacing
 
 FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
@@ -146,7 +145,7 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
     require_writable(path)
     if not 0 < rate <= 1000:
         raise ValueError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
-    pictures = require_alike((as_rgb(frame) for frame in frames), path)
+    pictures = require_alike((web.as_rgb(photos.as_picture(frame)) for frame in frames), path)
     with replacing(path) as name:
         return (_write_film if path.suffix.lower() in FILMS else _write_gif)(name, pictures, rate)
 
@@ -212,9 +211,3 @@ def require_writable(path: Path) -> None:
         raise ValueError(f"{path}: expected {' or '.join(sorted(WRITTEN))}, got {suffix or 'no suffix'}")
     if suffix in FILMS:
         require_films(path)
-
-
-def as_rgb(frame: Array) -> NDArray[np.uint8]:
-    """Return a frame as (H, W, 3) uint8, or raise a ValueError."""
-    array = photos.as_picture(frame)
-    return array if array.ndim == 3 else np.repeat(array[..., None], 3, axis=-1)

@@ -93,12 +93,12 @@ def _table(path: str | Path, lines: list[tuple[int, str]]) -> list[tuple[int, st
     for (n, line), row in zip(lines[1:], cells, strict=False):
         if len(row) != len(header):
             raise ValueError(f"{path}, line {n}: expected {len(header)} columns, got {len(row)} ({line})")
-        cells_of = dict(zip(header, (cell.strip() for cell in row), strict=True))
-        optional = (cells_of.get(key) for key in ("f_number", "iso"))
-        f_number, iso = (_number(path, n, text) if text else None for text in optional)
-        rows.append(
-            (n, cells_of["file"], Exposure(_number(path, n, cells_of["exposure_time_s"]), f_number, iso))
+        cell = dict(zip(header, map(str.strip, row), strict=True))
+        seconds = _number(path, n, cell["exposure_time_s"])
+        f_number, iso = (
+            _number(path, n, cell[key]) if cell.get(key) else None for key in ("f_number", "iso")
         )
+        rows.append((n, cell["file"], Exposure(seconds, f_number, iso)))
     return rows
 
 

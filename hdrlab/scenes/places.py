@@ -14,6 +14,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hdrlab.capture.movers import Figure, compose_moment
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F32, F64
 from hdrlab.io.layers import read_layers
@@ -156,18 +157,7 @@ def compose(place: Layers, offset: ArrayLike = (0, 0)) -> F32:
     move = np.asarray(offset)
     if move.shape != (2,) or move.dtype.kind not in "iu":
         raise ValueError(f"expected an offset (dy, dx) of whole pixels, got {describe(move)}")
-    visitor = np.dstack([place.mover, place.mask])
-    moved = np.zeros_like(visitor)
-    here, there = zip(
-        *(overlap(n, d) for n, d in zip(place.mask.shape, move.tolist(), strict=True)), strict=True
-    )
-    moved[here] = visitor[there]
-    return moved[..., :3] + (1 - moved[..., 3:]) * place.radiance
-
-
-def overlap(length: int, shift: int) -> tuple[slice, slice]:
-    """Return where along an axis a layer moved by `shift` lies in its frame, and which part of it that is."""
-    return slice(max(shift, 0), max(length + shift, 0)), slice(max(-shift, 0), max(length - shift, 0))
+    return compose_moment(place.radiance, Figure(place.mover, place.mask), move)[0]
 
 
 def resample(layer: F32, shape: Shape) -> F32:

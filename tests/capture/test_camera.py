@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from hdrlab.capture import camera, responses
+from hdrlab.capture import camera, responses, sensor
 from hdrlab.capture.camera import Camera, shoot
 
 CURVES = sorted(responses.RESPONSES)
@@ -77,31 +77,31 @@ def test_what_is_no_response_is_refused(bad):
 
 
 def test_exposure_is_radiance_times_time_times_sensitivity():
-    assert np.array_equal(camera.exposure(np.float32([1, 2]), 0.5, sensitivity=4), np.float32([2, 4]))
+    assert np.array_equal(sensor.exposure(np.float32([1, 2]), 0.5, sensitivity=4), np.float32([2, 4]))
 
 
 def test_the_variance_of_the_photons_is_their_mean():
     for X in (0.001, 0.1, 0.5):
-        N = camera.photons(np.full(200_000, X, np.float32), full_well=10_000, rng=np.random.default_rng(1))
+        N = sensor.photons(np.full(200_000, X, np.float32), full_well=10_000, rng=np.random.default_rng(1))
         assert np.isclose(N.mean(), 10_000 * X, rtol=0.01)
         assert np.isclose(N.var(), 10_000 * X, rtol=0.02)
 
 
 def test_a_full_well_spills():
-    N = camera.photons(np.float32([2, 100, np.inf]), full_well=1000, rng=np.random.default_rng(1))
+    N = sensor.photons(np.float32([2, 100, np.inf]), full_well=1000, rng=np.random.default_rng(1))
     assert np.array_equal(N, [1000, 1000, 1000])
 
 
 def test_read_noise_has_its_deviation_in_the_dark_and_in_the_light():
     for N in (0, 5000):
-        noisy = camera.readout(np.full(100_000, N, np.float32), read_noise=7, rng=np.random.default_rng(2))
+        noisy = sensor.readout(np.full(100_000, N, np.float32), read_noise=7, rng=np.random.default_rng(2))
         assert np.isclose(noisy.mean(), N, atol=0.1) and np.isclose(noisy.std(), 7, rtol=0.02)
 
 
 @pytest.mark.parametrize(("bits", "dtype"), [(8, np.uint8), (16, np.uint16)])
 def test_quantising_rounds_to_the_nearest_level_and_clamps(bits, dtype):
     top = 2**bits - 1
-    Z = camera.quantise(np.array([-0.1, 0, 0.49 / top, 0.51 / top, 1, 7]), bits=bits)
+    Z = sensor.quantise(np.array([-0.1, 0, 0.49 / top, 0.51 / top, 1, 7]), bits=bits)
     assert Z.dtype == dtype and Z.tolist() == [0, 0, 0, 1, top, top]
 
 
