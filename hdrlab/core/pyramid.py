@@ -9,7 +9,7 @@ Pixel i of a level lies over pixel 2 i of the next finer one. Beyond its ends a 
 reflection about its first and last pixels; only where `expand` needs one after the last, that is repeated.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from itertools import pairwise
 
 import numpy as np
@@ -56,7 +56,7 @@ def interpolate(image: F32, shape: Sequence[int]) -> F32:
     return map_coordinates(image, np.indices(shape) / 2, order=1, mode="nearest")
 
 
-def gaussian(image: F32, levels: int, *, reduce: Callable[[F32], F32] = reduce) -> list[F32]:
+def gaussian(image: F32, levels: int) -> list[F32]:
     """Return g_0, g_1, ...: `levels` of them, each the one before it reduced."""
     pyramid = [np.asarray(image, np.float32)]
     while len(pyramid) < levels:

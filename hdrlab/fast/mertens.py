@@ -4,7 +4,6 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from hdrlab.core.arrays import levels
 from hdrlab.core.types import F32, Array
 from hdrlab.enhance import mertens
 from hdrlab.fast import pyramid, with_parts
@@ -13,21 +12,11 @@ from hdrlab.fast._bands import banded
 _BAND = 16  # rows
 
 
-def split_planes(Z: Array) -> F32:
-    """Return F = Z / top level, the channels as planes."""
-    channels = np.moveaxis(np.atleast_3d(Z), -1, 0)
-    F = np.empty(channels.shape, np.float32)
-    for plane, channel in zip(F, channels, strict=True):
-        plane[:] = channel  # each in one piece, which is quicker than all together
-    F /= np.float32(levels(Z) - 1)
-    return F
-
-
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
     """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07]."""
 
     def measure(Z: Array) -> F32:
-        return mertens.weight(split_planes(np.moveaxis(Z, 0, -1)), powers)
+        return mertens.weight(mertens.split_planes(np.moveaxis(Z, 0, -1)), powers)
 
     each = [banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
     total = np.zeros(images.shape[1:3], np.float32)
@@ -47,6 +36,6 @@ def add_term(blended: F32, W: F32, detail: F32) -> F32:
     return total
 
 
-_parts = {"split_planes": split_planes, "weights": weights, "add_term": add_term, "pyramid": pyramid}
+_parts = {"weights": weights, "add_term": add_term, "pyramid": pyramid}
 fuse_steps = with_parts(__name__, mertens.fuse_steps, **_parts)
 fuse = with_parts(__name__, mertens.fuse, fuse_steps=fuse_steps, pyramid=pyramid)

@@ -3,15 +3,16 @@
 K  band matrix, the rows of which hold the weights: a tile of rows is K times the rows it is made of
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import pairwise
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core import pyramid
-from hdrlab.core.pyramid import half_shape
+from hdrlab.core.pyramid import depth, half_shape
 from hdrlab.core.types import F32, Indices
+from hdrlab.fast import with_parts
 
 _Band = tuple[slice, F32]  # rows of a picture, and their values
 
@@ -20,10 +21,11 @@ _SLAB = 16  # tiles of rows at a time, which stay in the processor's cache
 _BURT = (1, 6, 1)  # eighths: an even fine pixel from the coarse ones before, over and after it
 _LINEAR = (0, 8, 0)  # eighths: an even fine pixel is the coarse one over it
 
+__all__ = ["collapse", "depth", "gaussian", "interpolate", "laplacian", "reduce"]
+
 
 def reduce(image: F32) -> F32:
     """Return g_(k+1)(i) = sum_m w(m) g_k(2 i + m), m = -2 ... 2, along both axes [Burt83 eq. 1]."""
-    image = _as_image(image)
     K = np.zeros((_TILE, 2 * _TILE + 3), np.float32)
     for i in range(_TILE):
         K[i, 2 * i : 2 * i + 5] = pyramid.KERNEL
@@ -36,18 +38,13 @@ def reduce(image: F32) -> F32:
 
 def interpolate(image: F32, shape: Sequence[int]) -> F32:
     """Return `image` (H, W) at the next finer level, of this shape, by linear interpolation."""
-    image = _as_image(image)
-    if image.shape != half_shape(shape):
-        raise ValueError(f"expected sides {half_shape(shape)}, half of {shape}, got {image.shape}")
     fine = np.empty(shape, np.float32)
     for band, values in _finer(image, shape, _LINEAR):
         fine[band] = values
     return fine
 
 
-def gaussian(image: F32, levels: int, *, reduce: Callable[[F32], F32] = reduce) -> list[F32]:
-    """Return g_0, g_1, ...: `levels` of them, each the one before it reduced."""
-    return pyramid.gaussian(image, levels, reduce=reduce)
+gaussian = with_parts(__name__, pyramid.gaussian, reduce=reduce)
 
 
 def laplacian(image: F32, levels: int) -> list[F32]:
@@ -114,10 +111,3 @@ def _extend(planes: F32, columns: Indices) -> F32:
     for ends in (slice(before), slice(before + W, None)):
         whole[:, :, ends] = planes[:, :, columns[ends]]
     return whole
-
-
-def _as_image(image: F32) -> F32:
-    image = np.asarray(image, np.float32)
-    if image.ndim < 2 or 0 in image.shape:
-        raise ValueError(f"expected an image (..., H, W), got shape {image.shape}")
-    return image

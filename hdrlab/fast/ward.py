@@ -1,36 +1,26 @@
 """Ward's histogram adjustment with its curve read from a table, in bands of rows."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_luminance
-from hdrlab.core.types import F32
-from hdrlab.fast import _lookup
+from hdrlab.core.types import F32, F64
+from hdrlab.fast import _lookup, with_parts
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap import ward
 
 _KNOTS = 1 << 14  # of the curve, in all: a line from knot to knot is the exponential
 
 
-def tonemap(
-    L: ArrayLike,
-    *,
-    black: float = 1.0,
-    white: float = 100.0,
-    bins: int = 100,
-    field: float = 60.0,
-    tolerance: float = 0.025,
-) -> F32:
-    """Return display luminance by equalising the histogram of brightness, no contrast above the scene's."""
-    L = as_luminance(L)
-    b, lnLd = ward.curve(L, black=black, white=white, bins=bins, field=field, tolerance=tolerance)
-    at = np.linspace(0, bins, bins * max(1, _KNOTS // bins) + 1)
-    Ld = np.exp(np.interp(at, np.arange(bins + 1), lnLd))
-    table = _lookup.tabulate(np.clip((Ld - black) / (white - black), 0, 1))
-    scale = np.float32((len(table) - 1) / (b[-1] - b[0]))
+def display(L: F32, lnL: F64, lnLd: F64, *, black: float, white: float) -> F32:
+    """Return (Ld - Ldmin) / (Ldmax - Ldmin) of each pixel, read from the curve."""
+    bins = len(lnL) - 1
+    at = np.exp(np.linspace(lnL[0], lnL[-1], bins * max(1, _KNOTS // bins) + 1))
+    table = _lookup.tabulate(ward.display(at, lnL, lnLd, black=black, white=white))
+    scale, first = np.float32((len(table) - 1) / (lnL[-1] - lnL[0])), np.float32(lnL[0])
 
-    def display(L: F32) -> F32:
-        b_L = np.log(np.maximum(L, np.float32(ward.TINY)))
-        return _lookup.interpolate(table, (b_L - np.float32(b[0])) * scale)
+    def read(L: F32) -> F32:
+        return _lookup.interpolate(table, (np.log(np.maximum(L, ward.TINY)) - first) * scale)
 
-    return banded(display, L)
+    return banded(read, L)
+
+
+tonemap = with_parts(__name__, ward.tonemap, display=display)

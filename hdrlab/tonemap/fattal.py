@@ -97,7 +97,7 @@ def attenuation_steps(
     It is enlarged by linear interpolation. The knobs are those of `attenuation`.
     """
     levels = pyramid.gaussian(lL, pyramid.depth(lL.shape, SMALLEST))
-    Phi = np.ones((1, 1), np.float32)
+    Phi = np.ones_like(levels[-1][::2, ::2])
     for k, lL in reversed(list(enumerate(levels))):
         steepness = slope(lL, k)
         phi = attenuation(steepness, float(steepness.mean()), alpha=alpha, beta=beta, noise=noise)
@@ -183,5 +183,5 @@ def tonemap(
     if L.max() == 0:
         return np.zeros_like(L)
     lL = log_luminance(L)
-    *_, level = attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise)
-    return display(poisson.solve(divergence(lL, level.Phi)), black=black, white=white)
+    *_, Phi = (level.Phi for level in attenuation_steps(lL, alpha=alpha, beta=beta, noise=noise))
+    return display(poisson.solve(divergence(lL, Phi)), black=black, white=white)

@@ -136,10 +136,8 @@ def curve(
     Where the trims leave nothing it is the linear map, Ld = L Ldmax / Lmax, if that fits; else `fill_gaps`.
     """
     if not (0 < black < white < np.inf and bins >= 1 and field > 0 and 0 < tolerance < 1):
-        raise ValueError(
-            f"expected 0 < black < white, at least 1 bin, field > 0 and a tolerance in (0, 1), "
-            f"got {black=}, {white=}, {bins=}, {field=}, {tolerance=}"
-        )
+        got = f"{black=}, {white=}, {bins=}, {field=}, {tolerance=}"
+        raise ValueError(f"expected 0 < black < white, bins >= 1, field > 0, 0 < tolerance < 1, got {got}")
     Lf = foveal_image(L, field=field)
     low, high = robust_minimum(Lf), robust_maximum(Lf)
     if not low < high:
@@ -152,6 +150,12 @@ def curve(
     else:
         P = fill_gaps(state, db, D) if empty else cumulative(state)
     return np.linspace(np.log(low), np.log(high), bins + 1), equalise(P, black=black, white=white)
+
+
+def display(L: F32, lnL: F64, lnLd: F64, *, black: float, white: float) -> F32:
+    """Return (Ld - Ldmin) / (Ldmax - Ldmin) of each pixel, read from the curve."""
+    Ld = np.exp(np.interp(np.log(np.maximum(L, TINY)), lnL, lnLd))
+    return np.clip((Ld - black) / (white - black), 0, 1).astype(np.float32)
 
 
 def tonemap(
@@ -194,5 +198,4 @@ def tonemap(
     """
     L = as_luminance(L)
     lnL, lnLd = curve(L, black=black, white=white, bins=bins, field=field, tolerance=tolerance)
-    Ld = np.exp(np.interp(np.log(np.maximum(L, TINY)), lnL, lnLd))
-    return np.clip((Ld - black) / (white - black), 0, 1).astype(np.float32)
+    return display(L, lnL, lnLd, black=black, white=white)

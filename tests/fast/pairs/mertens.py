@@ -5,10 +5,6 @@ import numpy as np
 from pairs import photographs
 
 
-def split(kind, rng):
-    return (photographs(kind, rng)[1],), {}
-
-
 def weighed(kind, rng):
     return (photographs(kind, rng),), {"powers": (0.5, 2, 1)} if kind == "colour" else {}
 
@@ -25,7 +21,6 @@ def added(kind, rng):
 
 PAIRS = {
     "add_term": (added, 1e-6),
-    "split_planes": (split, 1e-6),
     "weights": (weighed, 1e-5),
     "fuse_steps": (fused, 1e-5),
     "fuse": (fused, 1e-5),

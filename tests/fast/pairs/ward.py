@@ -1,5 +1,6 @@
 """Ward's histogram adjustment: lines between many knots are the exponential of the curve to 1e-5."""
 
+from hdrlab.tonemap import ward
 from pairs import luminance
 
 
@@ -9,4 +10,11 @@ def tonemap(kind, rng):
     return (luminance(kind, rng),), {"bins": 7, "white": 1e4} if kind == "gray" else {}
 
 
-PAIRS = {"tonemap": (tonemap, 2e-5)}
+def display(kind, rng):
+    if kind == "colour":
+        return None  # operators see luminance alone
+    L = luminance(kind, rng)
+    return (L, *ward.curve(L)), {"black": 1.0, "white": 100.0}
+
+
+PAIRS = {"display": (display, 2e-5), "tonemap": (tonemap, 2e-5)}
