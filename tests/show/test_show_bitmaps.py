@@ -1,11 +1,11 @@
-"""show.plots.bitmaps: what differs is orange, what is not compared blue, and the best of nine is framed."""
+"""lectures.bitmaps: what differs is orange, what is not compared blue, and the best of nine is framed."""
 
 import numpy as np
 import pytest
 
 from hdrlab.align import mtb
 from hdrlab.pipeline.alignment import register
-from hdrlab.show.plots import bitmaps as drawn
+from hdrlab.show.plots.lectures import bitmaps as drawn
 from hdrlab.show.widgets import pictures
 
 RNG = np.random.default_rng(0)

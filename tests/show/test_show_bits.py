@@ -1,4 +1,4 @@
-"""show.plots.bits: the bits drawn are those of the file, and what stands beside them is what they mean."""
+"""lectures.bits: the bits drawn are those of the file, and what stands beside them is what it means."""
 
 import numpy as np
 import pytest
@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.io import rgbe
-from hdrlab.show.plots import bits
+from hdrlab.show.plots.lectures import bits
 from hdrlab.show.widgets import pictures
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.calibration.blends import Blend, InverseResponse
-from hdrlab.show.plots import geometry, mixtures
+from hdrlab.show.plots.lectures import geometry, mixtures
 from hdrlab.show.widgets import pictures
 
 ALPHA = np.linspace(0, 1, 6)

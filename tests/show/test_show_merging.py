@@ -1,10 +1,10 @@
-"""show.plots.merging: answers lie where g and the times put them, bounds where they must, and no NaN."""
+"""lectures.merging: answers lie where g and the times put them, bounds where they must, and no NaN."""
 
 import numpy as np
 import pytest
 
 from hdrlab.core import weights
-from hdrlab.show.plots import merging
+from hdrlab.show.plots.lectures import merging
 from hdrlab.show.widgets import pictures
 
 G = np.log(np.maximum(np.arange(256), 0.5) / 128)  # a linear camera

@@ -1,10 +1,10 @@
-"""hdrlab.show.plots.skins: the plane of chrominance and the skin locus, drawn."""
+"""hdrlab.show.plots.lectures.skins: the plane of chrominance and the skin locus, drawn."""
 
 import numpy as np
 import pytest
 
 from hdrlab.enhance import skin
-from hdrlab.show.plots import skins
+from hdrlab.show.plots.lectures import skins
 
 TRAINING = skin.synthetic(3000)
 

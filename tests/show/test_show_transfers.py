@@ -6,7 +6,7 @@ from matplotlib.legend import Legend
 
 from hdrlab.core import transfer
 from hdrlab.response.grossberg import comparagram
-from hdrlab.show.plots import transfers
+from hdrlab.show.plots.lectures import transfers
 from hdrlab.show.widgets import pictures
 
 LEVELS = np.arange(256)

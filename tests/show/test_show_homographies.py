@@ -1,11 +1,11 @@
-"""show.plots.moves: what differs is coloured, what is not compared gray, and the error stands above it."""
+"""lectures.homographies: what differs is coloured, what is not compared gray, the error above it."""
 
 import numpy as np
 import pytest
 
 from hdrlab.align import cerman
 from hdrlab.core import warp
-from hdrlab.show.plots import moves as drawn
+from hdrlab.show.plots.lectures import homographies as drawn
 from hdrlab.show.widgets import pictures
 
 RNG = np.random.default_rng(0)

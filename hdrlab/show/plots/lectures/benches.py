@@ -25,8 +25,9 @@ from hdrlab.capture.sensor import Sensor
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.fast import debevec
-from hdrlab.show.plots import curves, sensors
+from hdrlab.show.plots import curves
 from hdrlab.show.plots.figures import fit
+from hdrlab.show.plots.lectures import sensors
 
 Mask = NDArray[np.bool_]
 
