@@ -8,8 +8,8 @@
 # honest question: what do we say of a pixel that no photograph has measured?
 #
 # Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
-# differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab itself is not there when your
-# work is graded.
+# differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab cannot be imported when
+# your work is graded.
 
 # %%
 import numpy as np

@@ -91,8 +91,8 @@ def estimate_times(
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.capture.room import scenes
-    >>> room = scenes.room((280, 420))
+    >>> from hdrlab.capture.room import view
+    >>> room = view.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> estimate_times(taken.images, taken.times * [1, 1, 1.1, 1, 1]).accepted
     True

@@ -31,9 +31,9 @@ def validated(response: Method) -> Recover:
     A function is taken as it is, and so is "linear", which does not ask the images.
     """
     found = method(response)
-    return found if callable(response) or response == "linear" else partial(recover, found)
+    return found if callable(response) or response == "linear" else partial(_recover, found)
 
 
-def recover(method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
+def _recover(method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
     """Return the response that a method finds, or raise a ValueError: see `validate_response`."""
     return validate_response(method(images, times, valid=valid), images, times, valid=valid)

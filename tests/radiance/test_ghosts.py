@@ -101,7 +101,7 @@ def test_a_seam_is_even_in_stops_and_ends_in_either_map():
 def test_the_best_exposure_of_a_region_is_the_longest_that_measures_it():
     images = np.array([10, 60, 200, 255], np.uint8)[:, None, None] * np.ones((1, 40, 40), np.uint8)
     taken = frames.calibrate_frames(images, [1, 4, 12, 64], LINEAR, np.full((40, 40), 0.1))
-    assert ghosts.best_exposures(taken, np.ones((40, 40), np.int32)).tolist() == [2]
+    assert frames.best_exposures(taken, np.ones((40, 40), np.int32)).tolist() == [2]
 
 
 def test_a_time_that_is_a_little_off_is_no_motion(moving, wall):

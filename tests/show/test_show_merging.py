@@ -14,7 +14,7 @@ W = weights.hat()
 
 
 def drawn(Z=Z, **knobs):
-    return merging.answers(Z, B, G, W, np.log(0.5), **knobs)
+    return merging.draw_measurements(Z, B, G, W, np.log(0.5), **knobs)
 
 
 def lines(ax):
@@ -22,7 +22,7 @@ def lines(ax):
 
 
 def test_an_answer_is_g_less_ln_t_in_stops():
-    (dots,) = (c for c in drawn().collections if c.get_label() == "an answer")
+    (dots,) = (c for c in drawn().collections if c.get_label() == "measured")
     assert dots.get_offsets().tolist() == [[1.0, pytest.approx(-1.0)]]
 
 
@@ -45,7 +45,7 @@ def test_the_bar_of_an_answer_spans_the_light_that_is_rounded_to_its_level():
 
 
 def test_an_answer_is_the_larger_the_more_it_weighs():
-    dots = next(c for c in drawn(np.array([10, 64, 127])).collections if c.get_label() == "an answer")
+    dots = next(c for c in drawn(np.array([10, 64, 127])).collections if c.get_label() == "measured")
     assert np.all(np.diff(dots.get_sizes()) > 0)
 
 
@@ -67,4 +67,4 @@ def test_pixels_of_one_kind_are_drawn_too(levels):
 
 def test_levels_without_a_time_each_are_refused():
     with pytest.raises(ValueError, match=r"expected Z and B \(P,\)"):
-        merging.answers(Z[:2], B, G, W, 0.0)
+        merging.draw_measurements(Z[:2], B, G, W, 0.0)

@@ -16,9 +16,10 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy import ndimage
 
 from hdrlab.core.arrays import as_mask, as_radiance
-from hdrlab.core.types import F64, Array, Mask
+from hdrlab.core.types import F64, Array, Indices, Labels, Mask
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of the levels; each has a bias and a spread
@@ -122,3 +123,25 @@ def fit_bias(Z: Array, rho: F64, s: F64) -> tuple[F64, F64]:
         return np.zeros(n), np.ones(n)
     delta, kappa = (np.interp(np.arange(n), at[known], one[known]) for one in (deltas, kappas))
     return delta, np.clip(kappa, LEAST, MOST)
+
+
+def mean_losses(taken: Calibrated, labels: Labels) -> F64:
+    """Return the mean loss of each frame in each region, (P, R).
+
+    A level costs the variance of its ln E, and 1, the most, where it measures nothing.
+    """
+    cost, boxes = np.minimum(taken.s2, 1.0).astype(np.float32), ndimage.find_objects(labels)
+    cost[..., 0] = cost[..., taken.top :] = 1
+    out = np.ones((len(taken.images), len(boxes)))
+    for j, r in np.ndindex(*out.shape):
+        inside = labels[boxes[r]] == r + 1
+        Z = taken.images[j][boxes[r]][inside]
+        loss = np.mean([cost[j, c][Z[:, c]] for c in range(Z.shape[1])], axis=0)
+        shown = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
+        out[j, r] = np.where(shown, loss, 1).mean()
+    return out
+
+
+def best_exposures(taken: Calibrated, labels: Labels) -> Indices:
+    """Return the best exposure of each region (R,): the frame of least loss."""
+    return mean_losses(taken, labels).argmin(axis=0)

@@ -26,10 +26,10 @@ from scipy import ndimage
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_mask, as_stack, levels
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64, Flags, Indices, Labels, Mask
+from hdrlab.core.types import F32, Flags, Indices, Labels, Mask
 from hdrlab.radiance.deghosting import reference, regions
 from hdrlab.radiance.deghosting.deviation import Deviation, measure_deviation, score_contradiction
-from hdrlab.radiance.deghosting.frames import Calibrated, calibrate_frames
+from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
 
 # margins that a region grows at once
@@ -109,28 +109,6 @@ def detect_motion(found: Deviation, *, tau: float, edge: float, margin: int) -> 
         return score, seed
     weak = score_contradiction(found, tau=tau / 2, edge=edge / 5) > 1
     return score, regions.dilate(regions.grow(seed, weak, REACH * margin), margin)
-
-
-def mean_losses(taken: Calibrated, labels: Labels) -> F64:
-    """Return the mean loss of each frame in each region, (P, R).
-
-    A level costs the variance of its ln E, and 1, the most, where it measures nothing.
-    """
-    cost, boxes = np.minimum(taken.s2, 1.0).astype(np.float32), ndimage.find_objects(labels)
-    cost[..., 0] = cost[..., taken.top :] = 1
-    out = np.ones((len(taken.images), len(boxes)))
-    for j, r in np.ndindex(*out.shape):
-        inside = labels[boxes[r]] == r + 1
-        Z = taken.images[j][boxes[r]][inside]
-        loss = np.mean([cost[j, c][Z[:, c]] for c in range(Z.shape[1])], axis=0)
-        shown = True if taken.valid is None else taken.valid[j][boxes[r]][inside]
-        out[j, r] = np.where(shown, loss, 1).mean()
-    return out
-
-
-def best_exposures(taken: Calibrated, labels: Labels) -> Indices:
-    """Return the best exposure of each region (R,): the frame of least loss."""
-    return mean_losses(taken, labels).argmin(axis=0)
 
 
 def find_contradictions(taken: Calibrated, box: regions.Box, j: int, E: F32) -> Mask:

@@ -1,10 +1,10 @@
-"""What the photographs say of one pixel -> matplotlib Axes.
+"""Radiance of one pixel by each photograph -> matplotlib Axes.
 
 Z    levels of a pixel      (P,), one of each photograph
 B    ln exposure times      (P,)
 g    response               (n,), ln exposure of each level
 w    weights                (n,)
-lE   ln E, the answer of a photograph: g(Z) - B
+lE   ln E of a photograph: g(Z) - B
 """
 
 import numpy as np
@@ -16,11 +16,12 @@ from hdrlab.show.plots import axes, seconds
 from hdrlab.show.plots.curves import NARROW
 
 STOP = np.log(2)
-REACH = 12  # stops: how far an answer may lie from the middle, and still be shown
+# stops: how far a measurement may lie from the middle, and still be shown
+REACH = 12
 MEASURED, BOUND, MEAN, TRUE = "#0072B2", "#E69F00", "#D55E00", "#1A1A1A"
 
 
-def answers(
+def draw_measurements(
     Z: ArrayLike,
     B: ArrayLike,
     g: ArrayLike,
@@ -31,10 +32,10 @@ def answers(
     middle: float = 0.0,
     truth: float | None = None,
 ) -> Axes:
-    """Draw what each photograph says of a pixel: an answer with the width of its level, or a bound.
+    """Draw the radiance of a pixel by each photograph: a measurement with the width of its level, or a bound.
 
-    A dot's area is its weight. Level 0 says "at most" and a level of `top` or more "at least", drawn as
-    arrows. `lE` is what the merge made of them, `truth` what it should have; `middle` is ln E at 0 stops.
+    A dot's area is its weight. Level 0 means "at most" and a level of `top` or more "at least", drawn as
+    arrows. `lE` is the merged value, `truth` the true one; `middle` is ln E at 0 stops.
     """
     Z, B = np.asarray(Z), np.asarray(B, np.float64)
     g, w = np.asarray(g, np.float64), np.asarray(w, np.float64)
@@ -47,7 +48,7 @@ def answers(
     dark, clipped = Z == 0, Z >= top
     whole = ~(dark | clipped)
     ax.vlines(x[whole], low[whole], high[whole], color=MEASURED, linewidth=6, alpha=0.35)
-    ax.scatter(x[whole], here[whole], s=12 + 110 * w[Z[whole]] / w.max(), color=MEASURED, label="an answer")
+    ax.scatter(x[whole], here[whole], s=12 + 110 * w[Z[whole]] / w.max(), color=MEASURED, label="measured")
     for at, level, way, mark, name in ((clipped, top, 1, "^", "at least"), (dark, 1, -1, "v", "at most")):
         bound = (g[level] - B[at] - middle) / STOP
         ax.vlines(x[at], bound, bound + way * 1.6, color=BOUND, linewidth=1.6)
