@@ -1,4 +1,4 @@
-"""lectures.bits: the bits drawn are those of the file, and what stands beside them is what it means."""
+"""lectures.bits: the bits drawn are those of the file, and the words beside them say what they mean."""
 
 import numpy as np
 import pytest
