@@ -20,8 +20,6 @@ from hdrlab.core.types import Array, Indices, Mask
 
 # an even choice of about so many ranks a frame as well as all of it
 PIXELS = 1_000_000
-# samples of which one that connects levels is looked for at a time
-BLOCK = 2**15
 
 
 def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
@@ -36,9 +34,10 @@ def by_rank(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     step = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     pixels = to_256(stack[:, ::step, ::step])
     shown = np.s_[:] if valid is None else _shown_in_all(valid, stack)[::step, ::step].ravel()
-    pixels = pixels.reshape(len(stack), -1, *stack.shape[3:])[:, shown]
-    rank = ((np.arange(count) + 0.5) / count * pixels.shape[1]).astype(int)
-    return np.sort(pixels, axis=1, kind="stable")[:, rank].swapaxes(0, 1).astype(np.intp)
+    pixels = np.moveaxis(pixels.reshape(len(stack), -1, *stack.shape[3:])[:, shown], 1, -1)
+    rank = ((np.arange(count) + 0.5) / count * pixels.shape[-1]).astype(int)
+    ranked = np.sort(np.ascontiguousarray(pixels), kind="stable")
+    return np.moveaxis(ranked[..., rank], -1, 0).astype(np.intp)
 
 
 def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:
@@ -66,7 +65,7 @@ def require_two_exposures(Z: ArrayLike, times: ArrayLike, w: ArrayLike) -> None:
     Z, times, has_weight = np.asarray(Z), np.asarray(times), np.asarray(w) > 0
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or times.shape != Z.shape[1:]:
         raise ValueError(f"expected levels Z (N, P) and times (P,), got shapes {Z.shape} and {times.shape}")
-    for z in np.split(Z, range(BLOCK, len(Z), BLOCK)):
+    for z in (Z[:50], Z):  # the first few connect levels, as a rule
         values = [np.where(has_weight[z], one, np.nan) for one in (times, z)]
         if np.any(np.all([np.fmax.reduce(v, axis=1) > np.fmin.reduce(v, axis=1) for v in values], axis=0)):
             return
