@@ -55,8 +55,7 @@ def read_map(source: Path, clean: bool) -> Any:
 
     if not clean:
         return radiance.read_radiance(source)
-    mended = radiance.read_sanitized(source)
-    E, *counts = mended
+    E, *counts = radiance.read_sanitized(source)
     what = ("unknown pixels", "infinite values", "pixels with a negative channel", "pixels below black")
     said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)
     click.echo(f"{source}: cleaned {said or 'nothing, all is radiance'}")

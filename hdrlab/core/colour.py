@@ -12,31 +12,29 @@ ratio    `recolour` clips the channel: the luminance drops and the hue turns, a 
          flame from orange to yellow, but what is bright stays colourful
 chroma   `recolour_chroma` gives up saturation instead: luminance and hue stay, what is bright becomes pale
 
-Colours that no light has, with a channel below 0, become gray as far as they must: `core.gamut`.
+Out-of-gamut colours, with a channel below 0, become gray as far as they must: `core.gamut`.
 """
 
 from collections.abc import Callable
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance, as_radiance, describe
-
-Float = NDArray[np.float32]
+from hdrlab.core.types import F32, Array
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
 DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray
 ROWS = 8  # a band of rows that stays in the processor's cache
 
 
-def luminance(E: ArrayLike) -> Float:
+def luminance(E: ArrayLike) -> F32:
     """Return L = 0.2126 R + 0.7152 G + 0.0722 B [BT.709], or E itself where it has one channel."""
     E = as_radiance(E)
     return E if E.ndim == 2 else E @ LUMINANCE
 
 
-def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> Float:
+def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> F32:
     """Return C = (E / L)^s Ld for each channel C, clipped to [0, 1] [Tumblin99].
 
     Parameters
@@ -67,11 +65,11 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
     >>> recolour(E, L, L / 10).round(3)
     array([[[0.8, 0.4, 0.2]]], dtype=float32)
     """
-    E, L, Ld = _fitting(E, L, Ld, saturation)
+    E, L, Ld = _as_fitting(E, L, Ld, saturation)
     return np.clip(Ld if E.ndim == 2 else _ratio(E, L, Ld, saturation), 0, 1)
 
 
-def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> Float:
+def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> F32:
     """Return C = (1 + s (E / L - 1)) Ld, with s lowered where a channel would leave [0, 1] [Mantiuk09].
 
     The chroma E / L - 1 is a direction away from gray and only its length changes, so hue and luminance stay:
@@ -100,17 +98,17 @@ def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: fl
     >>> recolour_chroma(E, luminance(E), np.array([[0.5]])) @ LUMINANCE
     array([[0.5]], dtype=float32)
     """
-    E, L, Ld = _fitting(E, L, Ld, saturation)
+    E, L, Ld = _as_fitting(E, L, Ld, saturation)
     return np.clip(Ld if E.ndim == 2 else _chroma(E, L, Ld, saturation), 0, 1)  # takes off rounding alone
 
 
-def encode_srgb(linear: ArrayLike) -> NDArray[Any]:
+def encode_srgb(linear: ArrayLike) -> Array:
     """Return 12.92 c up to c = 0.0031308 and 1.055 c^(1/2.4) - 0.055 above it [IEC 61966-2-1]."""
     c = np.asarray(linear)
     return np.where(c <= 0.0031308, 12.92 * c, 1.055 * np.maximum(c, 0.0031308) ** (1 / 2.4) - 0.055)
 
 
-def decode_srgb(encoded: ArrayLike) -> NDArray[Any]:
+def decode_srgb(encoded: ArrayLike) -> Array:
     """Return v / 12.92 up to v = 0.04045 and ((v + 0.055) / 1.055)^2.4 above it [IEC 61966-2-1]."""
     v = np.asarray(encoded)
     return np.where(v <= 0.04045, v / 12.92, ((np.maximum(v, 0.04045) + 0.055) / 1.055) ** 2.4)
@@ -120,14 +118,14 @@ def decode_srgb(encoded: ArrayLike) -> NDArray[Any]:
 CODES = np.floor(255 * encode_srgb(np.arange(65536) / 65535) + 0.5).astype(np.uint8)
 
 
-def to_8bit(display: ArrayLike) -> NDArray[np.uint8]:
+def to_8bit(display: ArrayLike) -> Array:
     """Return floor(255 encode_srgb(display) + 0.5), and 255 above 1, by table: within 0.53 of a code."""
     return _codes(as_radiance(display))
 
 
 def render(
     E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0, way: str = "ratio"
-) -> NDArray[np.uint8]:
+) -> Array:
     """Return to_8bit(recolour(E, L, Ld)), band by band, so that the picture in floats never stands in memory.
 
     Parameters, errors : as for `recolour`; way : "chroma" takes `recolour_chroma` instead
@@ -144,7 +142,7 @@ def render(
     """
     if way not in WAYS:
         raise ValueError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")
-    E, L, Ld = _fitting(E, L, Ld, saturation)
+    E, L, Ld = _as_fitting(E, L, Ld, saturation)
     picture = np.empty(E.shape, np.uint8)
     for top in range(0, len(E), ROWS):
         band = slice(top, top + ROWS)
@@ -152,7 +150,7 @@ def render(
     return picture
 
 
-def _ratio(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
+def _ratio(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
     dark = L < DARK
     L = np.maximum(L, DARK)
     if saturation == 1:
@@ -164,7 +162,7 @@ def _ratio(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
     return C
 
 
-def _chroma(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
+def _chroma(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
     Ld = np.minimum(Ld, 1)
     chroma = np.where((L < DARK)[..., None], 0, E / np.maximum(L, DARK)[..., None] - 1)
     up, down = np.maximum(chroma.max(axis=-1), DARK), np.maximum(-chroma.min(axis=-1), DARK)
@@ -174,15 +172,15 @@ def _chroma(E: Float, L: Float, Ld: Float, saturation: float) -> Float:
     return np.maximum((1 + s * chroma) * Ld[..., None], 0)
 
 
-WAYS: dict[str, Callable[[Float, Float, Float, float], Float]] = {"ratio": _ratio, "chroma": _chroma}
+WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "chroma": _chroma}
 
 
-def _codes(display: Float) -> NDArray[np.uint8]:
+def _codes(display: F32) -> Array:
     index = (np.minimum(display, 1) * 65535 + 0.5).astype(np.uint16)
     return CODES.take(index, mode="clip")  # which is faster than to look for an index out of range
 
 
-def _fitting(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float) -> tuple[Float, Float, Float]:
+def _as_fitting(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float) -> tuple[F32, F32, F32]:
     E, L, Ld = as_radiance(E), as_luminance(L), as_luminance(Ld)
     if not E.shape[:2] == L.shape == Ld.shape:
         raise ValueError(

@@ -1,4 +1,4 @@
-"""Colours that are none: negative channels, other primaries, and values that say nothing.
+"""Out-of-gamut colours: negative channels, other primaries, and values that are not finite.
 
 E          radiance            (H, W, 3), linear, primaries of sRGB; or (H, W), gray
 L          luminance of E      (H, W), same unit; at least half of that of its channels above 0
@@ -9,9 +9,9 @@ primaries  x and y of red, green, blue and white    8 numbers, CIE 1931
 A channel below 0 is a colour more saturated than the primaries can mix, or noise around black. To cut it off
 would raise the luminance and leave the pixel as saturated as can be: dark places would teem with magenta and
 green. So such a pixel moves toward the gray of its own luminance. With t = L / (L + n) it stops where no
-channel is below 0: right for a colour that other primaries did mix (`desaturated`). For noise that is not
-enough, for the channel that becomes 0 was a random one; t is squared (`mend`), and the deeper n is under a
-small L, the less remains of a colour that nobody knows. Luminance stays, but where channels below 0 take
+channel is below 0: right for a colour that other primaries did mix (`desaturate`). For noise that is not
+enough, for the channel that becomes 0 was a random one; t is squared (`sanitize`), and the deeper n is under
+a small L, the less remains of a colour that nobody knows. Luminance stays, but where channels below 0 take
 more than half of the light that the others show: there the half stands, and shadows keep their detail.
 """
 
@@ -19,21 +19,19 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 from scipy.ndimage import uniform_filter
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.colour import LUMINANCE
-
-Float = NDArray[np.float32]
-Matrix = NDArray[np.float64]
+from hdrlab.core.types import F32, F64, Mask
 
 SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)  # ITU-R BT.709, white D65
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 
 
-class Mended(NamedTuple):
-    """Radiance that every operator takes, and what had to be mended for it.
+class Sanitized(NamedTuple):
+    """Radiance that every operator takes, and counts of what was repaired.
 
     Attributes
     ----------
@@ -44,24 +42,24 @@ class Mended(NamedTuple):
     black : pixels with a channel below 0 and none above, which became black
     """
 
-    E: Float
+    E: F32
     unknown: int
     infinite: int
     negative: int
     black: int
 
 
-def mend(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Mended:
-    """Return radiance out of any floats: what is unknown filled, what no light can be moved toward gray.
+def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
+    """Return radiance out of any floats: what is unknown filled, what is out of gamut moved toward gray.
 
     Parameters
     ----------
     E : (H, W) or (H, W, 3), any values
-    weights : of the channels in L; those of sRGB unless told
+    weights : of the channels in L; those of sRGB by default
 
     Returns
     -------
-    Mended
+    Sanitized
         The radiance, and counts. An infinite value becomes the largest finite one of the map. A pixel with a
         NaN or -inf is not known in any channel; it becomes the mean of those of its eight neighbours that are
         known, and black where none is. Then channels below 0 make their pixel less colourful, or black.
@@ -73,7 +71,7 @@ def mend(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Mended:
 
     Examples
     --------
-    >>> found = mend([[[0.2, 0.4, -0.1], [np.nan, 1.0, 1.0], [0.2, 0.4, np.inf]]])
+    >>> found = sanitize([[[0.2, 0.4, -0.1], [np.nan, 1.0, 1.0], [0.2, 0.4, np.inf]]])
     >>> found.E[0, 0].round(3)  # its luminance is still 0.321
     array([0.251, 0.367, 0.076], dtype=float32)
     >>> found[1:]
@@ -88,24 +86,24 @@ def mend(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Mended:
     planes = values.reshape(*values.shape[:2], -1)
     infinite = planes == np.inf
     planes[infinite] = max(0.0, planes[np.isfinite(planes)].max(initial=0))
-    known: NDArray[np.bool_] = np.asarray(np.isfinite(planes).all(axis=-1))
+    known: Mask = np.asarray(np.isfinite(planes).all(axis=-1))
     if not known.all():
-        planes[~known] = around(planes, known)[~known]
+        planes[~known] = mean_known(planes, known)[~known]
     below = planes.min(axis=-1) < 0
     dark = below & (planes.max(axis=-1) <= 0)
-    E = desaturated(values, power=2, weights=weights) if below.any() else values
+    E = desaturate(values, power=2, weights=weights) if below.any() else values
     counts = (int(np.count_nonzero(one)) for one in (~known, infinite, below & ~dark, dark))
-    return Mended(E, *counts)
+    return Sanitized(E, *counts)
 
 
-def around(planes: Float, known: NDArray[np.bool_]) -> Float:
+def mean_known(planes: F32, known: Mask) -> F32:
     """Return the mean of the known pixels of each 3 x 3, (H, W, C); 0 where there is none."""
     share = uniform_filter(known.astype(np.float32), 3, mode="constant")
     total = uniform_filter(np.where(known[..., None], planes, 0), (3, 3, 1), mode="constant")
     return np.where(share[..., None] > 0.05, total / np.maximum(share, 0.05)[..., None], 0)
 
 
-def desaturated(E: Float, *, power: int = 1, weights: ArrayLike = LUMINANCE) -> Float:
+def desaturate(E: F32, *, power: int = 1, weights: ArrayLike = LUMINANCE) -> F32:
     """Return (1 - t) L + t E, t = (L / (L + n))^power, where a channel is n below 0; E itself elsewhere.
 
     Hue, the direction away from gray, stays, and luminance as far as it is to be trusted. Without a channel
@@ -113,28 +111,28 @@ def desaturated(E: Float, *, power: int = 1, weights: ArrayLike = LUMINANCE) -> 
     """
     planes = E.reshape(*E.shape[:2], -1)
     below = planes.min(axis=-1) < 0
-    lost, mended = planes[below], planes.copy()
+    lost, repaired = planes[below], planes.copy()
     w = np.asarray(weights, np.float32) if planes.shape[2] == 3 else np.ones(1, np.float32)
     L = np.maximum(lost @ w, np.maximum(lost, 0) @ np.maximum(w, 0) / 2)
     t = (L / (L - lost.min(axis=-1))) ** power
-    mended[below] = np.maximum(L[:, None] + t[:, None] * (lost - L[:, None]), 0)
-    return mended.reshape(E.shape)
+    repaired[below] = np.maximum(L[:, None] + t[:, None] * (lost - L[:, None]), 0)
+    return repaired.reshape(E.shape)
 
 
-def to_xyz(primaries: Sequence[float]) -> Matrix:
+def xyz_matrix(primaries: Sequence[float]) -> F64:
     """Return the matrix from linear RGB of these primaries to CIE XYZ, white to Y = 1 [SMPTE RP 177]."""
     x, y = np.array(primaries, np.float64).reshape(4, 2).T
     XYZ = np.stack([x / y, np.ones(4), (1 - x - y) / y])
     return XYZ[:, :3] * np.linalg.solve(XYZ[:, :3], XYZ[:, 3])
 
 
-def between(primaries: Sequence[float], target: Sequence[float] = SRGB) -> Matrix:
+def conversion_matrix(primaries: Sequence[float], target: Sequence[float] = SRGB) -> F64:
     """Return the matrix from linear RGB of these primaries to that of others, white to white (Bradford)."""
-    source, sink = to_xyz(primaries), to_xyz(target)
+    source, sink = xyz_matrix(primaries), xyz_matrix(target)
     scale = (BRADFORD @ sink.sum(axis=1)) / (BRADFORD @ source.sum(axis=1))
     return np.linalg.inv(sink) @ np.linalg.inv(BRADFORD) @ np.diag(scale) @ BRADFORD @ source
 
 
-def to_srgb(E: Float, primaries: Sequence[float]) -> Float:
-    """Return radiance (H, W, 3) of these primaries in those of sRGB, `desaturated` where that lacks it."""
-    return desaturated(E @ between(primaries).T.astype(np.float32))
+def to_srgb(E: F32, primaries: Sequence[float]) -> F32:
+    """Return radiance (H, W, 3) of these primaries in those of sRGB, `desaturate` where that lacks it."""
+    return desaturate(E @ conversion_matrix(primaries).T.astype(np.float32))

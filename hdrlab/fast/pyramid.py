@@ -10,7 +10,8 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core import pyramid
-from hdrlab.core.pyramid import depth, half_shape
+from hdrlab.core.pyramid import depth as depth
+from hdrlab.core.pyramid import half_shape
 from hdrlab.core.types import F32, Indices
 from hdrlab.fast import with_parts
 
@@ -20,8 +21,6 @@ _TILE = 8  # coarse rows and columns of a product: twice as many would double it
 _SLAB = 16  # tiles of rows at a time, which stay in the processor's cache
 _BURT = (1, 6, 1)  # eighths: an even fine pixel from the coarse ones before, over and after it
 _LINEAR = (0, 8, 0)  # eighths: an even fine pixel is the coarse one over it
-
-__all__ = ["collapse", "depth", "gaussian", "interpolate", "laplacian", "reduce"]
 
 
 def reduce(image: F32) -> F32:

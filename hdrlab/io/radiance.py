@@ -20,7 +20,7 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
     Parameters
     ----------
     path : a .hdr, .pic, .rad, .pfm or .exr file
-    clean : True to mend values that are no radiance, see `core.gamut.mend`: NaN takes the mean of its
+    clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the mean of its
         neighbours, infinity the largest finite value, and a negative channel makes its pixel less colourful
 
     Returns
@@ -44,13 +44,13 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
     return read_sanitized(path).E if clean else read_valid(path)
 
 
-def read_sanitized(path: str | Path) -> gamut.Mended:
-    """Return the radiance map as `read_radiance` cleans it, and counts of what it mended."""
+def read_sanitized(path: str | Path) -> gamut.Sanitized:
+    """Return the radiance map as `read_radiance` cleans it, and counts of what it repaired."""
     E, primaries = format_of(path).read(path), primaries_of(path)
     if primaries is None:
-        return gamut.mend(E)
-    mended = gamut.mend(E, weights=gamut.to_xyz(primaries)[1])
-    return mended._replace(E=gamut.to_srgb(mended.E, primaries))
+        return gamut.sanitize(E)
+    found = gamut.sanitize(E, weights=gamut.xyz_matrix(primaries)[1])
+    return found._replace(E=gamut.to_srgb(found.E, primaries))
 
 
 def read_valid(path: str | Path) -> F32:

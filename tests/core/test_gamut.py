@@ -1,4 +1,4 @@
-"""hdrlab.core.gamut: colours that are none, other primaries, values that say nothing."""
+"""hdrlab.core.gamut: out-of-gamut colours, other primaries, values that say nothing."""
 
 import numpy as np
 import OpenEXR
@@ -25,7 +25,7 @@ def saturation(E):
 def test_radiance_is_left_as_it_is():
     E = np.random.default_rng(0).random((5, 6, 3), np.float32)
     for one in (E, E[..., 0], np.zeros((2, 3))):
-        found = gamut.mend(one)
+        found = gamut.sanitize(one)
         assert np.array_equal(found.E, one) and found[1:] == (0, 0, 0, 0)
         assert not np.shares_memory(found.E, one)
 
@@ -33,21 +33,21 @@ def test_radiance_is_left_as_it_is():
 @given(st.tuples(values, values, values))
 def test_a_negative_channel_leaves_no_channel_below_0_and_keeps_the_luminance_it_can(rgb):
     E = np.array([[rgb]], np.float32)
-    found = gamut.mend(E).E
+    found = gamut.sanitize(E).E
     assert np.all(found >= 0) and np.all(np.isfinite(found))
     true, shown = float(E[0, 0] @ LUMINANCE), float(np.maximum(E[0, 0], 0) @ LUMINANCE)
-    mended = float(luminance(found)[0, 0])
+    repaired = float(luminance(found)[0, 0])
     if E.min() >= 0 or true > 0.51 * shown:
-        assert mended == pytest.approx(true, rel=1e-4)
+        assert repaired == pytest.approx(true, rel=1e-4)
     else:
-        assert mended <= 0.5 * shown * (1 + 1e-5) + 1e-30, "never as bright as cutting the channel off"
+        assert repaired <= 0.5 * shown * (1 + 1e-5) + 1e-30, "never as bright as cutting the channel off"
 
 
 @given(st.tuples(values, values, values))
 def test_hue_the_direction_away_from_gray_stays(rgb):
     E = np.array([[rgb]], np.float32)
     for power in (1, 2):
-        found = gamut.desaturated(E, power=power)[0, 0].astype(float)
+        found = gamut.desaturate(E, power=power)[0, 0].astype(float)
         before, after = (one - one.mean() for one in (E[0, 0].astype(float), found))
         parallel = before @ after
         assert parallel >= 0 or np.abs(after).max() < 1e-4 * np.abs(E).max()
@@ -58,7 +58,7 @@ def test_hue_the_direction_away_from_gray_stays(rgb):
 def test_a_colour_of_other_primaries_stops_where_its_least_channel_is_0():
     E = np.float32([[[1.0, 0.5, -0.02]]])
     L = luminance_of(E)
-    found = gamut.desaturated(E)
+    found = gamut.desaturate(E)
     t = L / (L + 0.02)
     assert np.allclose(found, L + t * (E - L), atol=1e-6) and found.min() == pytest.approx(0, abs=1e-7)
 
@@ -69,22 +69,25 @@ def luminance_of(E):
 
 def test_a_little_below_0_costs_a_little_colour_and_a_lot_nearly_all():
     slightly, deeply = np.float32([[[1.0, 0.5, -0.001]]]), np.float32([[[0.3, -0.1, 0.2]]])
-    assert saturation(gamut.mend(slightly).E)[0, 0] > 0.99 and saturation(gamut.mend(deeply).E)[0, 0] < 0.6
+    assert (
+        saturation(gamut.sanitize(slightly).E)[0, 0] > 0.99
+        and saturation(gamut.sanitize(deeply).E)[0, 0] < 0.6
+    )
     assert saturation(np.maximum(deeply, 0))[0, 0] == 1
 
 
 def test_noise_around_black_does_not_teem_with_colours():
     noise = 1e-3 * np.random.default_rng(2).standard_normal((60, 80, 3)).astype(np.float32) + 1e-4
     below = noise.min(axis=-1) < 0
-    found = gamut.mend(noise)
+    found = gamut.sanitize(noise)
     assert found.negative + found.black == np.count_nonzero(below) > 3000
     kept, cut = (np.median(saturation(E)[below & (noise.max(axis=-1) > 0)]) for E in (found.E, noise.clip(0)))
     assert cut == 1 and kept < 0.6
 
 
 def test_without_a_channel_above_0_a_pixel_is_black_and_a_gray_one_has_no_colour_to_lose():
-    assert gamut.mend(np.float32([[[-1, -2, 0]]])).E.tolist() == [[[0, 0, 0]]]
-    found = gamut.mend(np.float32([[-1, 0, 2]]))
+    assert gamut.sanitize(np.float32([[[-1, -2, 0]]])).E.tolist() == [[[0, 0, 0]]]
+    found = gamut.sanitize(np.float32([[-1, 0, 2]]))
     assert found.E.tolist() == [[0, 0, 2]] and found.black == 1
 
 
@@ -92,7 +95,7 @@ def test_an_unknown_pixel_is_the_mean_of_its_known_neighbours_in_all_channels():
     E = np.random.default_rng(1).random((6, 7, 3)).astype(np.float32)
     spoiled = E.copy()
     spoiled[2, 3, 1], spoiled[2, 4, 0], spoiled[0, 0, 2] = np.nan, -np.inf, np.nan
-    found = gamut.mend(spoiled)
+    found = gamut.sanitize(spoiled)
     assert found.unknown == 3 and found[2:] == (0, 0, 0)
     around = [E[y, x] for y in (1, 2, 3) for x in (2, 3, 4) if (y, x) not in ((2, 3), (2, 4))]
     assert np.allclose(found.E[2, 3], np.mean(around, axis=0), atol=1e-6)
@@ -104,31 +107,31 @@ def test_an_unknown_pixel_is_the_mean_of_its_known_neighbours_in_all_channels():
 def test_where_nothing_is_known_it_is_black_and_infinity_is_the_largest_value():
     E = np.full((7, 7), np.nan, np.float32)
     E[0, 0] = 5
-    found = gamut.mend(E)
+    found = gamut.sanitize(E)
     assert found.E[1, 1] == pytest.approx(5) and found.E[6, 6] == 0 and found.unknown == 48
-    bright = gamut.mend(np.float32([[1, np.inf, 9, np.inf]]))
+    bright = gamut.sanitize(np.float32([[1, np.inf, 9, np.inf]]))
     assert bright.E.tolist() == [[1, 9, 9, 9]] and bright.infinite == 2
-    assert not gamut.mend(np.full((3, 4, 3), np.inf)).E.any(), "nothing finite to be taken for it"
+    assert not gamut.sanitize(np.full((3, 4, 3), np.inf)).E.any(), "nothing finite to be taken for it"
 
 
 @pytest.mark.filterwarnings("error")
 @given(st.lists(st.floats(width=32, allow_nan=True, allow_infinity=True), min_size=12, max_size=12))
 def test_anything_becomes_radiance(numbers):
     for shape in ((2, 2, 3), (3, 4)):
-        E = gamut.mend(np.array(numbers, np.float32).reshape(shape)).E
+        E = gamut.sanitize(np.array(numbers, np.float32).reshape(shape)).E
         assert np.all(np.isfinite(E)) and np.all(E >= 0) and E.shape == shape
 
 
 @pytest.mark.parametrize("E", [np.zeros(3), np.zeros((2, 3, 4)), np.zeros((0, 2)), np.full((2, 2), "x")])
 def test_what_is_no_picture_is_refused(E):
     with pytest.raises(ValueError, match="expected radiance"):
-        gamut.mend(E)
+        gamut.sanitize(E)
 
 
 def test_the_luminance_of_srgb_and_the_matrix_to_xyz_are_the_standards():
-    assert np.allclose(gamut.to_xyz(gamut.SRGB)[1], LUMINANCE, atol=1e-4)
+    assert np.allclose(gamut.xyz_matrix(gamut.SRGB)[1], LUMINANCE, atol=1e-4)
     standard = [[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]]  # IEC 61966-2-1
-    assert np.allclose(gamut.to_xyz(gamut.SRGB), standard, atol=2e-4)
+    assert np.allclose(gamut.xyz_matrix(gamut.SRGB), standard, atol=2e-4)
 
 
 def test_the_matrix_between_two_primaries_of_one_white_is_the_published_one():
@@ -137,13 +140,13 @@ def test_the_matrix_between_two_primaries_of_one_white_is_the_published_one():
         [-0.1246, 1.1329, -0.0083],
         [-0.0182, -0.1006, 1.1187],
     ]
-    assert np.allclose(gamut.between(REC2020), published, atol=2e-4)
-    assert np.allclose(gamut.between(gamut.SRGB), np.eye(3), atol=1e-12)
+    assert np.allclose(gamut.conversion_matrix(REC2020), published, atol=2e-4)
+    assert np.allclose(gamut.conversion_matrix(gamut.SRGB), np.eye(3), atol=1e-12)
 
 
 @pytest.mark.parametrize("primaries", [REC2020, ACES])
 def test_white_stays_white_and_the_way_back_undoes_the_way_there(primaries):
-    there, back = gamut.between(primaries), gamut.between(gamut.SRGB, primaries)
+    there, back = gamut.conversion_matrix(primaries), gamut.conversion_matrix(gamut.SRGB, primaries)
     assert np.allclose(there.sum(axis=1), 1, atol=1e-9) and np.allclose(there @ back, np.eye(3), atol=1e-9)
 
 
@@ -157,7 +160,7 @@ def write_exr(path, E, primaries=None):
 
 def test_a_file_in_other_primaries_reads_as_the_colours_that_were_meant(tmp_path):
     E = np.random.default_rng(3).uniform(0.2, 1, (4, 5, 3)).astype(np.float32)
-    wide = E @ gamut.between(gamut.SRGB, REC2020).T.astype(np.float32)
+    wide = E @ gamut.conversion_matrix(gamut.SRGB, REC2020).T.astype(np.float32)
     for name, pixels, primaries in (("a", E, None), ("b", E, gamut.SRGB), ("c", wide, REC2020)):
         write_exr(tmp_path / f"{name}.exr", pixels, primaries)
         for clean in (False, True):
@@ -169,7 +172,7 @@ def test_a_green_that_srgb_lacks_is_shown_less_colourful_and_as_bright(tmp_path)
     write_exr(tmp_path / "green.exr", green, REC2020)
     E = read_radiance(tmp_path / "green.exr")
     assert E.min() == pytest.approx(0, abs=1e-6) and E[0, 0, 1] == E.max()
-    assert luminance(E)[0, 0] == pytest.approx(gamut.to_xyz(REC2020)[1, 1], rel=1e-3)
+    assert luminance(E)[0, 0] == pytest.approx(gamut.xyz_matrix(REC2020)[1, 1], rel=1e-3)
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def defined_S(x, y):
 
 def test_structural_fidelity_is_its_definition():
     L = scene((177, 179))
-    x, y = quality.spread(L), quality.gray(shown(L))
+    x, y = quality.scale_luminance(L), quality.gray(shown(L))
     assert quality.structural_fidelity(x, y) == pytest.approx(defined_S(x, y), rel=1e-6)
 
 
@@ -114,7 +114,7 @@ def test_the_unit_and_the_black_level_of_the_scene_cancel():
 )
 def test_damage_lowers_the_fidelity_the_more_the_worse(worse):
     L = scene()
-    x, y = quality.spread(L), quality.gray(shown(L))
+    x, y = quality.scale_luminance(L), quality.gray(shown(L))
     S = [quality.structural_fidelity(x, y)]
     S += [quality.structural_fidelity(x, worse(y, k)) for k in (1, 2, 3)]
     assert np.all(np.diff(S) < 0) and S[3] < 0.9 * S[0], S
@@ -145,7 +145,7 @@ def test_the_usual_mean_and_contrast_are_natural_and_a_step_off_costs_what_the_d
 )
 def test_a_small_picture_has_fewer_scales_and_they_share_the_weight(shape, scales):
     L = scene(shape)
-    x, y = quality.spread(L), quality.gray(shown(L))
+    x, y = quality.scale_luminance(L), quality.gray(shown(L))
     found, weights = quality.scale_fidelities(x, y), quality.WEIGHTS[:scales]
     assert len(found) == scales
     log_S = np.dot(np.log(found), weights) / sum(weights)
@@ -165,7 +165,7 @@ def test_rounding_in_a_bright_even_place_is_no_structure():
     L = np.full((40, 60), 0.7, np.float32)
     L[:, :5] = 0
     L[:, 5:10] = 1
-    sigma = quality.deviations(quality.spread(L), quality.spread(L))[0]
+    sigma = quality.deviations(quality.scale_luminance(L), quality.scale_luminance(L))[0]
     assert np.all(sigma[:, 15:] == 0) and np.all(sigma[:, :10] > 1e6)
 
 
