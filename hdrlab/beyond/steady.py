@@ -15,7 +15,7 @@ at once. Any operator with the knobs `key` and `white` of `tonemap.reinhard` ser
 """
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -74,22 +74,16 @@ def adapt(window: Sequence[FrameStatistics], *, key: float) -> tuple[float, floa
 
 
 def tonemap_steps(
-    frames: Iterable[ArrayLike],
-    operator: Callable[..., F32],
-    *,
-    key: float = 0.18,
-    span: int = 1,
-    **knobs: Any,
+    frames: Iterable[ArrayLike], operator: Callable[..., F32], *, key: float = 0.18, span: int = 1
 ) -> Iterator[State]:
     """Yield the State of each frame as soon as `span` more are there.
 
     Parameters
     ----------
     frames : radiance (H, W) or (H, W, 3), all in one unit
-    operator : of `tonemap.reinhard`'s kind: operator(L, key=, white=, **knobs) -> Ld
+    operator : of `tonemap.reinhard`'s kind: operator(L, key=, white=) -> Ld
     key : what the log average becomes
     span : how many frames before and after count; 0 is each frame by itself
-    **knobs : more of the operator's
 
     Raises
     ------
@@ -115,7 +109,7 @@ def tonemap_steps(
         frame = window[place]
         average, white = adapt(window, key=key)
         own = float(np.exp(frame.log))
-        Ld = operator(frame.L, key=key * own / average, white=white, **knobs)
+        Ld = operator(frame.L, key=key * own / average, white=white)
         yield State(frame.E, Ld, own, average, white)
 
 
