@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from skimage.transform import resize
 
-from hdrlab.core.arrays import as_stack, as_table, as_times, levels
+from hdrlab.core.arrays import as_response, as_stack, as_times, levels
 from hdrlab.core.types import F32, F64, Array, Mask
 
 GAMMA = 2.2
@@ -84,18 +84,16 @@ def resize_picture(picture: Array, shape: tuple[int, int]) -> F32:
 
 
 def look_up_levels(table: F32, Z: Array) -> F32:
-    """Return table[Z] (P, H, W, C), each channel by its own column where there are several."""
-    return np.stack([table[Z[..., c], c % table.shape[1]] for c in range(Z.shape[-1])], axis=-1)
+    """Return table[Z] (P, H, W, C), each channel by its own column."""
+    return np.stack([table[Z[..., c], c] for c in range(Z.shape[-1])], axis=-1)
 
 
 def as_values(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Values:
     """Return photographs as Values, checked, in their order."""
     stack = as_stack(images)
     t, n = as_times(times, len(stack)), levels(stack)
-    table = as_table(g, n).reshape(n, -1)
     Z = stack.reshape(*stack.shape[:3], -1)
-    if table.shape[1] not in (1, Z.shape[-1]):
-        raise ValueError(f"expected a response of one channel or {Z.shape[-1]}, got {table.shape[1]}")
+    table = as_response(g, n, Z.shape[-1])
     v = np.exp((table - table[-1]) / GAMMA).astype(np.float32)
     z = (Z / (n - 1)).astype(np.float32)
     full = np.broadcast_to(np.exp(table[-1]).astype(np.float32), Z.shape[-1:])

@@ -109,7 +109,7 @@ def find_ramps(
     Raises
     ------
     ValueError
-        For an image that is none, or a range that is none.
+        For an array that is no image, or a range that is empty.
 
     Examples
     --------
@@ -171,7 +171,7 @@ def compare_edges(
     limit : float
         The largest RMSE between the two that passes, 0.01 of the range as in the paper. With 60 noisy lines,
         linear motion stays below 0.004 and a speed that grows by 15 % above 0.0105, for the response that
-        tells them apart worst.
+        distinguishes them worst.
 
     Returns
     -------

@@ -34,7 +34,7 @@ from hdrlab.calibration.blends import (
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64
 
-# Places at which the slope is held positive.
+# Places at which the slope must be positive.
 GRID = np.linspace(0, 1, 257)
 SIMPLEX = {"xatol": 1e-6, "fatol": 1e-12, "maxfev": 4000, "adaptive": True}
 

@@ -118,7 +118,8 @@ def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
     """Return a response as a table (n, channels); one curve serves all channels."""
     table = as_table(g, n).reshape(n, -1)
     if table.shape[1] not in (1, channels):
-        raise ValueError(f"expected a response of {channels} channels, or one for all, got {table.shape[1]}")
+        wanted = "(n,) for gray" if channels == 1 else "(n,) or (n, 3)"
+        raise ValueError(f"expected a response {wanted}, got shape {table.shape}")
     return np.broadcast_to(table, (n, channels))
 
 

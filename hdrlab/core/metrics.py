@@ -6,7 +6,7 @@ offsets  (P, 2) int, (dy, dx) pixels
 well     (H, W) bool, pixels that at least one frame exposed well
 
 Photographs fix neither the unit of exposure nor where the camera stood at first. So one factor, or one common
-shift, is taken off before anything is compared; each function says which.
+shift, is taken off before anything is compared; each function documents which.
 """
 
 from typing import NamedTuple
@@ -23,7 +23,7 @@ RELIABLE_LEVELS = slice(LOW_LEVEL, HIGH_LEVEL + 1)
 
 
 class Truth(NamedTuple):
-    """What a simulated camera knows, and a calibration should find.
+    """The truth of a simulated camera, which a calibration should find.
 
     Attributes
     ----------

@@ -6,7 +6,7 @@ T       tiles        (rows, columns): each frame is cut into so many, all frames
 G       responses    (rounds, 256[, 3]), one per round
 
 A round draws rows x columns tiles from the photographs, with replacement, lays them side by side and recovers
-the response of that picture. Tiles and not pixels, for neighbours see the same light, and single ones would
+the response of that picture. Tiles and not pixels, for neighbours measure the same light: single ones would
 make the band too narrow. A tile is drawn with all its exposures, so that the frames stay connected.
 
 The band measures the choice of the scene and the noise. It does not measure what all tiles share: wrong

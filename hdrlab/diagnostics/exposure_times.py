@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_stack, as_table
+from hdrlab.core.arrays import as_response, as_stack
 from hdrlab.core.types import F64
 from hdrlab.diagnostics import flat_patches, response_steps
 
@@ -102,7 +102,7 @@ def estimate_times(
     B, nothing = np.log(times), np.zeros((len(times), 0))
     Q = response_steps.free_directions(B, known=g is not None)
     if g is not None:
-        g = np.broadcast_to(as_table(g, 256).reshape(256, -1).T, (stack[0, 0, 0].size, 256))
+        g = as_response(g, 256, stack[0, 0, 0].size).T
     kept = Estimate(times, np.zeros(len(times)), False, "")
     if Q.shape[1] == 0:
         return kept._replace(reason="two photographs do not determine both their times and their response")

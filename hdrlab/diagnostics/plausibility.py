@@ -18,7 +18,7 @@ that there is no such thing.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times
+from hdrlab.core.arrays import Array, as_mask, as_response, as_stack, as_times
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
@@ -101,10 +101,10 @@ def validate_response(
     ValueError: expected times consistent with the images: between 1 s and 200 s the response ...
     """
     stack = as_stack(images)
-    t, curve = as_times(times, len(stack)), as_table(g, 256).reshape(256, -1)
+    t, curve = as_times(times, len(stack)), as_response(g, 256, stack[0, 0, 0].size)
     order = short_to_long(stack, t)
     Z, t = ranks(stack, as_mask(valid, stack))[:, order], t[order]
-    error, darker_share = neighbour_errors(Z, t, np.broadcast_to(curve, (256, Z.shape[-1])))
+    error, darker_share = neighbour_errors(Z, t, curve)
     expected = "expected times consistent with the images: "
     if np.any(darker_share > 0.5):
         raise ValueError(f"{expected}{_pair(t, darker_share)} the longer exposure is the darker photograph")

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, as_times, levels
+from hdrlab.core.arrays import Array, as_mask, as_response, as_stack, as_table, as_times, levels
 from hdrlab.core.types import F32, F64, Flags, Mask
 from hdrlab.core.weights import hat
 from hdrlab.radiance.stuck import repair_stuck
@@ -206,10 +206,7 @@ def as_tables(
     """Return the stack, its times, w (n,), g (n, C) and the first clipped level, or raise a ValueError."""
     stack = as_stack(images)
     n, channels = levels(stack), stack[0, 0, 0].size
-    weights, curves = as_table(hat(n) if w is None else w, n), as_table(g, n).reshape(n, -1)
-    if curves.shape[1] not in (1, channels):
-        wanted = "(n,) for gray" if channels == 1 else "(n,) or (n, 3)"
-        raise ValueError(f"expected a response {wanted}, got shape {curves.shape}")
+    weights, curves = as_table(hat(n) if w is None else w, n), as_response(g, n, channels)
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
         raise ValueError(
             f"expected weights (n,) that are not negative and not all 0, got shape {weights.shape}"
@@ -219,4 +216,4 @@ def as_tables(
     if not 0 < top <= 1:
         raise ValueError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
     first = min(int(top * (n - 1)) + 1, n - 1)
-    return stack, as_times(times, len(stack)), weights, np.broadcast_to(curves, (n, channels)), first
+    return stack, as_times(times, len(stack)), weights, curves, first

@@ -189,7 +189,7 @@ def recover(
     ------
     ValueError
         For fewer than two photographs or two times, a basis that is not of 256 levels, or photographs that
-        hold no level seen in two exposures.
+        hold no level measured well in two exposures.
 
     References
     ----------

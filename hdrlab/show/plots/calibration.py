@@ -47,7 +47,7 @@ def doublings(g: ArrayLike) -> dict[int, float]:
     16.0
     """
     curve = np.maximum.accumulate(np.asarray(g, np.float64)) / np.log(2)
-    last = int(np.argmax(curve == curve[-1]))  # a curve that was levelled at its end says nothing there
+    last = int(np.argmax(curve == curve[-1]))  # a flat end of a curve is not determined
     whole = range(int(np.ceil(curve[LOW_LEVEL * len(curve) // 256])), int(np.floor(curve[last])) + 1)
     return {k: float(np.interp(k, curve[: last + 1], np.arange(last + 1))) for k in whole}
 
@@ -59,7 +59,7 @@ def reach(g: ArrayLike) -> float:
 
 
 def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | None = None) -> list[str]:
-    """Return the lines that say what a response is and how far it is to be trusted."""
+    """Return the lines that describe a response and its uncertainty."""
     channels = plots.CHANNELS if g.ndim == 2 else (("gray", "", ""),)
     found = [doublings(one) for one in np.atleast_2d(g.T)]
     stops = sorted(set().union(*found))
@@ -71,7 +71,7 @@ def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | No
     worst = int(np.argmax(np.abs(off)))
     lines += [
         f"range      {reach(g):.2f} stops between the levels {LOW_LEVEL} and {HIGH_LEVEL}",
-        f"spread     {spread:.3f} stops between what the frames say of the same light",
+        f"spread     {spread:.3f} stops between the frames' measurements of the same light",
         f"residuals  {rms(r):.3f} stops rms; furthest off is {names[worst]}, by {signed(off[worst], 2)}",
     ]
     if band is not None:
@@ -116,7 +116,7 @@ def _channels(g: F64) -> F64:
 
 
 def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> dict[tuple[str, str], float]:
-    """Return by how many stops each two maps differ: the median over the pixels that are seen well."""
+    """Return by how many stops each two maps differ: the median over the well exposed pixels."""
 
     def between(E: NDArray[np.float32], other: NDArray[np.float32]) -> float:
         ratio = 1 + radiance_errors(E, other, well)[well]
@@ -126,7 +126,7 @@ def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> d
 
 
 def calibration(g: F64, r: F64, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
-    """Draw a response, beside it the band in which it is to be trusted, and the residuals of each frame."""
+    """Draw a response, next to it its confidence band, and the residuals of each frame."""
     count = 2 if band is None else 3
     figure = Figure(figsize=(5.2 * count, 4.2), dpi=100, layout="constrained")
     left, *middle, right = figure.subplots(1, count)
@@ -167,7 +167,7 @@ def draw_band(band: Band, g: F64, *, ax: Axes | None = None) -> Axes:
 
 
 def _shade(ax: Axes) -> None:
-    """Shade the levels below 10 and above 250, where no method is held to anything."""
+    """Shade the levels below 10 and above 250, where no method is evaluated."""
     for low, high in ((0, LOW_LEVEL), (HIGH_LEVEL, 255)):
         ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
 

@@ -67,9 +67,9 @@ def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike, *, ax: Axes | No
     for (colour, style), H, name in zip(LINES[1:], (H_A, H_B), ("frame A", "frame B"), strict=False):
         ax.plot(level, 100 * H, linestyle=style, color=colour, drawstyle="steps-mid", label=name)
     z = float(np.asarray(T)[m])
-    told = f"level {m} of A is level {z:.1f} of B" if np.isfinite(z) else f"level {m} of A is clipped in B"
+    label = f"level {m} of A is level {z:.1f} of B" if np.isfinite(z) else f"level {m} of A is clipped in B"
     way = ([m, m, z, z], np.array([0, rank, rank, 0]) * 100) if np.isfinite(z) else ([m, m], [0, 100 * rank])
-    ax.plot(*way, color="#1A1A1A", linewidth=1.2, marker="o", markersize=4, label=told)
+    ax.plot(*way, color="#1A1A1A", linewidth=1.2, marker="o", markersize=4, label=label)
     ax.set(xlabel="pixel level", ylabel="pixels at this level or below, %", xlim=(0, 255), ylim=(0, 102))
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
