@@ -185,8 +185,8 @@ def percentile(*histograms: Array, near: float = 0.5) -> float | None:
     of a scene along one line of equal light.
     """
     q = np.linspace(0, 1, 1001)
-    serves = np.all([divides(h)[threshold(h, q)] for h in histograms], axis=0)
-    return float(min(q[serves], key=lambda one: abs(one - near))) if serves.any() else None
+    q = q[np.all([divides(h)[threshold(h, q)] for h in histograms], axis=0)]
+    return float(q[np.argmin(np.abs(q - near))]) if len(q) else None
 
 
 def divides(h: Array) -> Mask:

@@ -7,17 +7,16 @@ crop     two slices          the rectangle, in the coordinates of an image that 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_stack, describe
+from hdrlab.core.types import Array
 
 
-def as_offsets(offsets: ArrayLike, images: int | None = None) -> NDArray[np.int64]:
+def as_offsets(offsets: ArrayLike, count: int | None = None) -> NDArray[np.int64]:
     """Return `offsets` as int64 (P, 2), one for each image, or raise a ValueError that says what came."""
-    given = np.asarray(offsets)
-    if given.ndim != 2 or given.shape[1] != 2 or len(given) == 0 or given.dtype.kind not in "iu":
-        raise ValueError(f"expected offsets (P, 2) of whole pixels, got {describe(given)}")
-    if images is not None and len(given) != images:
-        raise ValueError(f"expected {images} offsets, one per image, got {len(given)}")
-    return given.astype(np.int64)
+    array = np.asarray(offsets)
+    if array.shape[1:] != (2,) or len(array) != (count or len(array)) or array.dtype.kind not in "iu":
+        wanted = f"expected offsets ({count or 'P'}, 2) of whole pixels, one per image"
+        raise ValueError(f"{wanted}, got {array.dtype} {array.shape}")
+    return array.astype(np.int64)
 
 
 def crop(offsets: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
@@ -65,7 +64,7 @@ def shift(images: ArrayLike, offsets: ArrayLike) -> Array:
     >>> shift(images, [[0, 0], [1, -1]]).tolist()
     [[[4, 5, 6], [8, 9, 10]], [[13, 14, 15], [17, 18, 19]]]
     """
-    images = as_stack(images)
+    images = np.asarray(images)
     moved = as_offsets(offsets, len(images))
     if not moved.any():
         return images

@@ -13,7 +13,6 @@ rotation each of them moves another way), and does a texture that repeats fit el
 """
 
 from collections.abc import Callable, Sequence
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -37,7 +36,7 @@ ALIKE = 0.1
 # pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are looked for
 BITS_TILE, LIGHT_TILE = 96, 512
 # pixels at which bitmaps are compared
-BITS = 40_000
+BITS = 20_000
 EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
 
@@ -200,11 +199,11 @@ def gains(pair: Comparison, d: F64, other: F64) -> F64:
 
 
 def clearly_lower(sums: F64) -> bool:
-    """Return whether d's error is lower by a twentieth of the other and three standard errors of the gain."""
+    """Return whether d's error is lower by a twentieth of the other and two standard errors of the gain."""
     if sums[0] < 20:
         return False
     _, _, rate, gain, square = sums / sums[0]
-    return bool(gain > rate / 20 + 3 * np.sqrt(max(square - gain**2, 0) / sums[0]))
+    return bool(gain > rate / 20 + 2 * np.sqrt(max(square - gain**2, 0) / sums[0]))
 
 
 def rivals(middle: F32) -> list[Array]:
@@ -223,9 +222,8 @@ def shift(H: F64, offset: ArrayLike) -> F64:
 
 def _quarters(p: F64) -> F32:
     """Return (n, 4), 1 where a pixel lies in a quarter of the picture."""
-    halves = p > p.max(axis=0) / 2
-    each = [np.all(halves == side, axis=1) for side in product((False, True), repeat=2)]
-    return np.stack(each, axis=1).astype(np.float32)
+    right, low = (p > p.max(axis=0) / 2).T
+    return np.eye(4, dtype=np.float32)[right + 2 * low]
 
 
 def _differ(every: list[F64]) -> bool:
