@@ -54,7 +54,7 @@ def photographs(exposure: Float, brightness: Float, *, off: float, k: int) -> Br
 
 def named(name: str, bracket: Bracket) -> Float:
     """Return g by a method of the catalogue, as it is offered."""
-    return np.asarray(recovery.validated(name)(bracket.images, bracket.times))
+    return np.asarray(recovery.find_validated_method(name)(bracket.images, bracket.times))
 
 
 def by_ratios(bracket: Bracket) -> Float:

@@ -152,7 +152,9 @@ def self_calibrated(cameras: Sequence[Curve], *, off: float, seed: int = 0) -> E
         rng = np.random.default_rng([seed, k])
         E, R = 10 ** rng.uniform(-2, 0, (100, 100)), 0.5 * (1 + off * rng.uniform(-1, 1, FRAMES - 1))
         exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
-        g = recovery.validated("mitsunaga")(np.stack([photograph(f, E * e, rng) for e in exposures]), stated)
+        g = recovery.find_validated_method("mitsunaga")(
+            np.stack([photograph(f, E * e, rng) for e in exposures]), stated
+        )
         at = np.linspace(MIN_BRIGHTNESS, MAX_BRIGHTNESS, TABLE_SIZE)
         found.append(normalize(at, np.interp(at, np.arange(256) / 255, np.exp(g)), np.ones(1), np.zeros(1)))
     return errors(cameras, found)

@@ -27,7 +27,9 @@ def accurate(folder: Path, one: bool) -> Case:
         return data.curve_error(read_curve(saved) if who == peers.PFS else g)
 
     return Case(
-        {OURS: lambda: recovery.method("robertson")(bracket.images, bracket.times)} | theirs, missing, error
+        {OURS: lambda: recovery.find_method("robertson")(bracket.images, bracket.times)} | theirs,
+        missing,
+        error,
     )
 
 

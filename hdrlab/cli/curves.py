@@ -125,7 +125,7 @@ def _one(
         click.echo(f"warning: {doubt}", err=True)
     band = None
     if rounds:
-        method = recovery.validated(name)
+        method = recovery.find_validated_method(name)
         steps = bootstrap.bootstrap_steps(method, images, times, rounds=rounds, rng=seed, valid=valid)
         band = bootstrap.percentile_band(common.progress(steps, "bootstrap", rounds))
     r = residuals.residuals(images, times, g, valid=valid)

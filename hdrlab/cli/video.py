@@ -77,7 +77,9 @@ def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any
     if len(frames) < len(turn):
         raise ValueError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
     taken = bracket(np.stack(frames), turn)
-    return recovery.validated("space" if response == "auto" else response)(taken.images, taken.times)
+    return recovery.find_validated_method("space" if response == "auto" else response)(
+        taken.images, taken.times
+    )
 
 
 def pictures(maps: Iterator[Any], *, key: float, span: int) -> Iterator[Any]:

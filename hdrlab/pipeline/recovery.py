@@ -20,17 +20,17 @@ EXTENDED: dict[Method, Recover] = {
 }
 
 
-def method(response: Method) -> Recover:
+def find_method(response: Method) -> Recover:
     """Return a method by its name, EXTENDED where it is; a function is taken as it is."""
     return EXTENDED.get(response) or catalogue.method("response", response)
 
 
-def validated(response: Method) -> Recover:
+def find_validated_method(response: Method) -> Recover:
     """Return `recover(images, times, *, valid) -> g`, which refuses a response that the images contradict.
 
     A function is taken as it is, and so is "linear", which does not ask the images.
     """
-    found = method(response)
+    found = find_method(response)
     return found if callable(response) or response == "linear" else partial(_recover, found)
 
 

@@ -10,7 +10,7 @@ from hdrlab.core.types import F64, Array
 from hdrlab.diagnostics.registration import LOST, Validation
 from hdrlab.pipeline import alignment
 from hdrlab.pipeline.assembly import Assembly, Method
-from hdrlab.pipeline.recovery import validated
+from hdrlab.pipeline.recovery import find_validated_method
 
 # these compare light, so they need times and a response
 BY_LIGHT = ("auto", *alignment.SEARCHES)
@@ -64,7 +64,7 @@ def provisional(bracket: Bracket, response: Method) -> F64 | None:
     """
     if not callable(response):
         response = "linear" if response == "linear" or (response == "auto" and bracket.linear) else "debevec"
-    recover = validated(response)
+    recover = find_validated_method(response)
     try:
         return np.asarray(recover(bracket.images, bracket.times, valid=bracket.valid), np.float64)
     except ValueError:  # nothing that two photographs see well: alignment can do without

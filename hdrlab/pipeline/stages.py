@@ -122,7 +122,7 @@ def assemble_steps(
     if times == "estimate":
         yield (state := refine_times(state, response, w, merge))
     images, seconds, _, valid, _ = state.bracket
-    g = recovery.validated(response)(images, seconds, valid=valid)
+    g = recovery.find_validated_method(response)(images, seconds, valid=valid)
     yield (state := state._replace(stage="response", g=g))
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
@@ -171,7 +171,7 @@ def refine_times(
 ) -> Assembly:
     """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
     images, stated, names, valid, _ = state.bracket
-    recover = recovery.validated(response)
+    recover = recovery.find_validated_method(response)
 
     def spread(times: NDArray[np.float64]) -> float:
         g = recover(images, times, valid=valid)

@@ -164,11 +164,11 @@ def recover(
     curves = []
     for channel in np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0):
         curves.append(gsolve(channel, B, smoothness, w).g)
-    g = straight_toe(np.stack(curves, axis=-1), w)
+    g = straighten_toe(np.stack(curves, axis=-1), w)
     return weights.make_monotone(g).reshape(256, *stack.shape[3:])
 
 
-def straight_toe(g: F64, w: F64) -> F64:
+def straighten_toe(g: F64, w: F64) -> F64:
     """Return g with f^-1 in proportion to z + 1/2 below the first level that has a weight."""
     first = int(np.argmax(w > 0))
     toe = g[first] + np.log((np.arange(first) + 0.5) / (first + 0.5))[:, None]

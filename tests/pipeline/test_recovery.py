@@ -19,7 +19,7 @@ CASES = [(name, one) for name in METHODS for one in CAMERAS.get(name, sorted(RES
 @pytest.mark.parametrize("law", laws.CONSISTENCY, ids=lambda law: law.__name__)
 @pytest.mark.parametrize(("name", "response"), CASES)
 def test_every_recovery_by_name_is_validated(name, response, law):
-    law(recovery.validated(name), response)
+    law(recovery.find_validated_method(name), response)
 
 
 def test_assemble_refuses_times_that_the_photographs_contradict(decades):
@@ -30,11 +30,11 @@ def test_assemble_refuses_times_that_the_photographs_contradict(decades):
 
 
 def test_linear_and_a_function_are_taken_as_they_are():
-    assert recovery.validated("linear") is linear.recover
-    assert recovery.validated(debevec.recover) is debevec.recover
+    assert recovery.find_validated_method("linear") is linear.recover
+    assert recovery.find_validated_method(debevec.recover) is debevec.recover
 
 
 def test_a_validated_response_is_the_method_s_own(decades):
     taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64])
-    g = recovery.validated("debevec")(taken.images, taken.times)
+    g = recovery.find_validated_method("debevec")(taken.images, taken.times)
     assert np.array_equal(g, debevec.recover(taken.images, taken.times))

@@ -318,4 +318,4 @@ def test_the_papers_scheme_asks_for_samples_that_two_frames_see_well():
 
 
 def test_by_its_name_the_pipeline_averages_samples_and_chooses_the_order():
-    assert recovery.method("mitsunaga") is self_calibration.find_response
+    assert recovery.find_method("mitsunaga") is self_calibration.find_response

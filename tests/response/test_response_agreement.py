@@ -15,11 +15,11 @@ from hdrlab.response import grossberg, mann, marginal, space
 
 FREE = {
     "debevec": debevec.recover,
-    "robertson": recovery.method("robertson"),
+    "robertson": recovery.find_method("robertson"),
     "histograms": grossberg.recover,
 }
 FORMULAS = {
-    "polynomial": recovery.method("mitsunaga"),  # of the order that it chooses
+    "polynomial": recovery.find_method("mitsunaga"),  # of the order that it chooses
     "likelihood": marginal.recover,
     "space": space.recover,
     "power law": mann.recover,

@@ -17,10 +17,10 @@ CASES = [(name, one) for name in catalogue.names("response") for one in CAMERAS.
 @pytest.mark.parametrize("law", laws.RECOVERY, ids=lambda law: law.__name__)
 @pytest.mark.parametrize(("name", "response"), CASES)
 def test_every_recovery(name, response, law):
-    law(recovery.method(name), response)
+    law(recovery.find_method(name), response)
 
 
 @pytest.mark.parametrize("law", laws.CALIBRATION, ids=lambda law: law.__name__)
 @pytest.mark.parametrize(("name", "response"), [case for case in CASES if case[0] != "linear"])
 def test_every_recovery_that_asks_the_photographs(name, response, law):
-    law(recovery.method(name), response)
+    law(recovery.find_method(name), response)
