@@ -18,34 +18,35 @@ L = np.geomspace(0.01, 10, 500)
 
 
 def test_the_spot_on_the_face_exposes_it_and_loses_the_sky():
-    on, off = (benches.metered(BACKLIGHT, "spot", at) for at in ((0.45, 0.5), (0.1, 0.1)))
+    on, off = (benches.meter_scene(BACKLIGHT, "spot", at) for at in ((0.45, 0.5), (0.1, 0.1)))
     assert abs(on.off) < 1.5 and on.full.mean() > 0.3
     assert off.off < -3 and off.full.mean() < 0.01
     assert off.EV > on.EV + 3
 
 
 def test_what_the_bench_says_of_the_subject_is_what_its_picture_shows():
-    shot = benches.metered(BACKLIGHT, "spot", (0.45, 0.5))
+    shot = benches.meter_scene(BACKLIGHT, "spot", (0.45, 0.5))
     B = luminance(shot.picture[BACKLIGHT.mask].astype(float)[None] ** 2.2 / 255**2.2).mean()
     assert np.log2(B / BACKLIGHT.rho) == pytest.approx(shot.off, abs=0.25)
 
 
 def test_a_poor_sensor_loses_the_shadows_of_the_same_shot():
     good, poor = (
-        benches.metered(BACKLIGHT, "average", sensor=sensor.Sensor(read_noise=noise)) for noise in (5, 300)
+        benches.meter_scene(BACKLIGHT, "average", sensor=sensor.Sensor(read_noise=noise))
+        for noise in (5, 300)
     )
     assert good.EV == poor.EV and poor.noise.mean() > good.noise.mean() + 0.1
 
 
 @pytest.mark.parametrize("mode", metering.MODES)
 def test_every_mode_shows_whom_it_asks_and_the_spot_is_small(mode):
-    asked = benches.metered(BACKLIGHT, mode).asked
+    asked = benches.meter_scene(BACKLIGHT, mode).asked
     assert asked.shape == BACKLIGHT.mask.shape and asked.any()
     assert (asked.mean() < 0.06) == (mode == "spot")
 
 
 def test_a_shot_is_drawn_with_what_it_lost_marked():
-    shot = benches.metered(BACKLIGHT, "spot", (0.45, 0.5))
+    shot = benches.meter_scene(BACKLIGHT, "spot", (0.45, 0.5))
     drawn = pictures.render(benches.draw_shot(shot))
     share = np.all(drawn == sensors.ORANGE, axis=-1).mean()
     assert 0.2 < share < shot.full.mean()  # the text above takes its part
@@ -53,7 +54,7 @@ def test_a_shot_is_drawn_with_what_it_lost_marked():
 
 def test_each_step_of_automatic_exposure_is_drawn():
     steps = list(autoexposure.expose_steps(BACKLIGHT.E, "centre"))
-    frames = [pictures.render(benches.looked(state)) for state in steps]
+    frames = [pictures.render(benches.draw_reading(state)) for state in steps]
     assert len({frame.shape for frame in frames}) == 1 and np.any(frames[0] != frames[-1])
 
 
@@ -62,7 +63,7 @@ def test_each_step_of_automatic_exposure_is_drawn():
 
 def test_a_still_hand_needs_no_alignment_and_a_shaking_one_bends_the_curve_without_it():
     E = scenes.workshop((112, 168))
-    still, shaking = (benches.calibrated(E, radius=radius) for radius in (0, 8))
+    still, shaking = (benches.calibrate_shaken(E, radius=radius) for radius in (0, 8))
     levels = slice(10, 251)
     off = {
         name: np.abs((g - one.truth)[levels]).max()
@@ -75,7 +76,7 @@ def test_a_still_hand_needs_no_alignment_and_a_shaking_one_bends_the_curve_witho
 
 
 def test_a_calibration_is_drawn_with_the_number_that_found_their_place():
-    ax = benches.draw_calibrated(benches.calibrated(scenes.workshop((80, 120)), count=3))
+    ax = benches.draw_calibrated(benches.calibrate_shaken(scenes.workshop((80, 120)), count=3))
     assert ax.get_title() == "3 of 3 photographs aligned to the pixel"
     assert [line.get_label() for line in ax.lines if line.get_label()[0] != "_"] == ["as shot", "aligned"]
 
@@ -87,7 +88,7 @@ def test_full_pixels_are_orange_lost_ones_blue_and_the_rest_as_it_was():
     gray = np.full((2, 3), 90, np.uint8)
     full, noise = np.zeros((2, 3), bool), np.zeros((2, 3), bool)
     full[0, 0], noise[1, 1] = True, True
-    shown = sensors.marked(gray, full, noise)
+    shown = sensors.mark_lost(gray, full, noise)
     assert np.array_equal(shown[0, 0], sensors.ORANGE) and np.array_equal(shown[1, 1], sensors.BLUE)
     assert np.all(shown[0, 1:] == 90) and np.all(gray == 90)
 
@@ -127,18 +128,18 @@ def test_bars_say_their_numbers():
 
 
 def test_a_titled_picture_keeps_its_proportions():
-    drawn = pictures.render(sensors.titled(np.zeros((100, 200), np.uint8), "two\nlines"))
+    drawn = pictures.render(sensors.draw_titled(np.zeros((100, 200), np.uint8), "two\nlines"))
     assert drawn.shape[1] == 540 and drawn.shape[0] == pytest.approx(270 + 60, abs=3)
 
 
 def test_what_does_not_fit_together_is_refused():
     held = ranges.expose_levels(L, 1.0, sensor.Sensor())
     for call in (
-        lambda: sensors.marked(np.zeros((2, 3), np.uint8), np.zeros((3, 2)), np.zeros((2, 3))),
+        lambda: sensors.mark_lost(np.zeros((2, 3), np.uint8), np.zeros((3, 2)), np.zeros((2, 3))),
         lambda: sensors.window(L[1:], held),
         lambda: sensors.window(0 * L, held),
         lambda: sensors.staircase(L[1:], held),
-        lambda: sensors.titled(np.zeros((2, 3)), "text"),
+        lambda: sensors.draw_titled(np.zeros((2, 3)), "text"),
     ):
         with pytest.raises(ValueError, match="expected"):
             call()

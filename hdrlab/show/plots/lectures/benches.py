@@ -1,8 +1,8 @@
 """Two benches, for `widgets.tune`: pure functions that take a photograph, and what they draw.
 
-metered     place the spot on a scene, see the exposure that the mode chooses, shoot, see what was lost
-calibrated  shoot a bracket with an unsteady hand, align it, calibrate it, compare with the truth
-looked      one step of automatic exposure
+meter_scene       place the spot on a scene, see the exposure that the mode chooses, shoot, see what was lost
+calibrate_shaken  shoot a bracket with an unsteady hand, align it, calibrate it, compare with the truth
+draw_reading      one step of automatic exposure
 
 E    radiance  (H, W, 3), cd/m^2
 at   (down, right), parts of the picture, 0 to 1
@@ -48,7 +48,7 @@ class Shot(NamedTuple):
     off: float  # stops, the subject against where it belongs
 
 
-def metered(
+def meter_scene(
     scene: Subject, mode: str = "spot", at: At = (0.5, 0.5), *, sensor: Sensor = SENSOR, rng: int = 0
 ) -> Shot:
     """Return the photograph that automatic exposure takes of a scene, in a mode, the spot at a place."""
@@ -83,16 +83,18 @@ def draw_shot(shot: Shot) -> Axes:
     lost = f"full {shot.full.mean():.1%} (orange), lost in noise {shot.noise.mean():.1%} (blue)"
     aside = "too bright" if shot.off > 0 else "too dark"
     text = f"{chosen}; subject {abs(shot.off):.1f} stops {aside}\n{lost}"
-    return sensors.titled(sensors.marked(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
+    return sensors.draw_titled(sensors.mark_lost(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
 
 
-def looked(state: State) -> Axes:
+def draw_reading(state: State) -> Axes:
     """Draw one shot of automatic exposure, its reading, and what it asks for next; the ring as above."""
     Z = np.round(255 * encode_srgb(state.B)).astype(np.uint8)
     full = f"{np.mean(state.B >= 1):.0%} of the pixels full"
     text = f"EV {state.EV:.2f}: reading {state.B_pre:.3f}, {full}\n"
     ring = state.w >= state.w.max() / 2
-    return sensors.titled(Z, text + f"wanted {metering.MIDDLE_GRAY}: next EV {state.EV_opt:.2f}", ring=ring)
+    return sensors.draw_titled(
+        Z, text + f"wanted {metering.MIDDLE_GRAY}: next EV {state.EV_opt:.2f}", ring=ring
+    )
 
 
 class Calibrated(NamedTuple):
@@ -105,7 +107,7 @@ class Calibrated(NamedTuple):
     truth: NDArray[np.float64]  # (256,) the camera's own
 
 
-def calibrated(
+def calibrate_shaken(
     E: ArrayLike,
     *,
     radius: int = 6,

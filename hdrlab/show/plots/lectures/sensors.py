@@ -29,7 +29,7 @@ KINDS = (("lost in noise", NOISE, "///"), ("held", KEPT, ""), ("full", FULL, "..
 BINS = 60
 
 
-def marked(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[np.uint8]:
+def mark_lost(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[np.uint8]:
     """Return a picture (H, W[, 3]) uint8 in which full pixels are orange and those lost in noise blue."""
     shown = as_picture(picture)
     shown = np.repeat(shown[..., None], 3, axis=-1) if shown.ndim == 2 else shown.copy()
@@ -135,7 +135,7 @@ def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None)
     return ax
 
 
-def titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Axes:
+def draw_titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Axes:
     """Draw a picture (H, W[, 3]) uint8 under lines of text, with the edge of a region if one is given."""
     shown = as_picture(picture)
     high = width * shown.shape[0] / shown.shape[1]
