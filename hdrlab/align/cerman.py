@@ -67,7 +67,7 @@ def peaks(c: F64, count: int) -> Indices:
 def rigid(shape: tuple[int, ...], unknowns: ArrayLike) -> F64:
     """Return H of (dy, dx, r phi)."""
     dy, dx, arc = np.asarray(unknowns, float)
-    return warp.turn(shape, np.rad2deg(2 * arc / np.hypot(*shape)), (dy, dx))
+    return warp.turn(shape, np.rad2deg(2 * arc / np.hypot(shape[0], shape[1])), (dy, dx))
 
 
 def descend(X: F32, start: ArrayLike, reach: float, close: float = 0.01) -> tuple[F64, F64]:

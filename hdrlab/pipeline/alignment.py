@@ -7,9 +7,9 @@ Of all methods "auto" takes the simplest whose error is within a twentieth of th
 the choice is never worse than leaving the photographs where they are: that is the simplest of all.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from itertools import pairwise
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -27,7 +27,10 @@ from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue
 
 METHODS = ("auto", *catalogue.names("align"))
-SEARCHES = {"cerman": cerman.search, "homography": homography.search}
+SEARCHES: dict[str, Callable[[list[F32]], Iterator[Any]]] = {
+    "cerman": cerman.search,
+    "homography": homography.search,
+}
 # the simplest first
 CHOICES = ("none", "mtb", "cerman", "homography")
 # of the least error
@@ -79,16 +82,16 @@ def register(
     >>> found.method, found.homographies[0, :2, 2].tolist()  # dx, dy
     ('mtb', [-4.0, 3.0])
     """
-    images = as_stack(images)
+    images, errors = as_stack(images), dict[str, float]()
     if method not in METHODS:
         raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
     if method == "mtb":
-        pairs, errors = tuple(register_by_bits(images)), {}
+        pairs = tuple(register_by_bits(images))
     elif method == "auto":
         method, pairs, errors = choose(images, times, g)
     else:
         each = light_pairs(images, times, g)
-        pairs, errors = tuple(_validated(*one, method) for one in each), {}
+        pairs = tuple(_validated(*one, method) for one in each)
     steps = [one.H if one.informative else None for one in pairs]
     return Registration(warp.chain_homographies(mtb.by_brightness(images), steps), pairs, method, errors)
 
