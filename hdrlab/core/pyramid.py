@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import correlate1d, map_coordinates
 
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, Array
 
 KERNEL = np.array([1, 4, 6, 4, 1]) / 16
 
@@ -42,7 +42,7 @@ def expand(image: F32, shape: Sequence[int]) -> F32:
     return _expand_rows(rows.swapaxes(-2, -1), shape[-1]).swapaxes(-2, -1)
 
 
-def _expand_rows(g: F32, n: int) -> F32:
+def _expand_rows(g: F32, n: int) -> Array:
     """Return n rows: an even one is (1 6 1) / 8 of three coarse ones, an odd one the mean of two."""
     before, after = g[..., :2, :][..., -1:, :], g[..., -1:, :]
     g = np.concatenate([before, g, after], axis=-2)

@@ -49,7 +49,7 @@ class State(NamedTuple):
     blended: list[F32]
 
 
-def split_planes(Z: Array) -> F32:
+def split_planes(Z: Array) -> Array:
     """Return F = Z / top level, the channels as planes."""
     return np.moveaxis(np.atleast_3d(Z), -1, 0) / np.float32(levels(Z) - 1)
 

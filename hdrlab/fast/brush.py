@@ -1,5 +1,6 @@
 """The Detail Brush over a whole picture, counted and read in bands of rows."""
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
@@ -17,6 +18,6 @@ def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> F32:
     low, high = brush.find_range(L)
     t = banded(lambda L: brush.bin_position(L, low, high, bins), L)
     parts = [t[top : top + BAND] for top in range(0, len(t), BAND)]
-    h = sum(brush.histogram(part, bins) * (part.size / t.size) for part in parts)
+    h = sum((brush.histogram(part, bins) * (part.size / t.size) for part in parts), np.zeros(bins))
     table = _lookup.tabulate(decode_srgb(brush.cumulative(brush.clip_histogram(h, limit=limit))))
     return banded(lambda t: _lookup.interpolate(table, t), t)

@@ -1,6 +1,7 @@
 """Fattal's operator with pyramids by matrix products, and equations of neighbours in bands of rows."""
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -16,7 +17,7 @@ def _slope(lL: F32, k: int) -> F32:
     return banded(partial(fattal.slope, k=k), lL, margin=1)
 
 
-def _attenuation(slope: F32, mean: float, **knobs: float) -> F32:
+def _attenuation(slope: F32, mean: float, **knobs: Any) -> F32:
     return banded(partial(fattal.attenuation, mean=mean, **knobs), slope)
 
 

@@ -10,8 +10,7 @@ import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core import pyramid
-from hdrlab.core.pyramid import depth as depth
-from hdrlab.core.pyramid import half_shape
+from hdrlab.core.pyramid import depth, half_shape  # noqa: F401
 from hdrlab.core.types import F32, Indices
 from hdrlab.fast import with_parts
 

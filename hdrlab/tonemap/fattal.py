@@ -66,7 +66,7 @@ def log_luminance(L: F32) -> F32:
     Pixels above it are cut, as the display would cut them; so are the darkest, and with them the zeros.
     """
     black, white = find_range(L[L > 0])
-    floor = max(min(black / white, DARK), np.finfo(np.float32).tiny)
+    floor = max(min(black / white, DARK), float(np.finfo(np.float32).tiny))
     return np.log(np.maximum(np.minimum(L, white) / white, floor))
 
 
