@@ -126,7 +126,7 @@ def found_in_stillness(place: str) -> tuple[int, int, float]:
     brackets = [still(place), still(place, (512, 768)), *(one for s in SEEDS for _, one in shaken(place, s))]
     found = [(rid(one, "regions"), plain(one)) for one in brackets]
     change = max(float(np.abs(one.E / merged.E - 1).max()) for one, merged in found)
-    return sum(len(one.frames) > 0 for one, _ in found), len(found), change
+    return sum(len(one.references) > 0 for one, _ in found), len(found), change
 
 
 def stillness(_: Path) -> Mapping[str, ArrayLike]:
