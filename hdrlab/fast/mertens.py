@@ -18,7 +18,7 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
     def measure(Z: Array) -> F32:
         return mertens.weight(mertens.split_planes(np.moveaxis(Z, 0, -1)), powers)
 
-    each = [banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
+    each: list[F32] = [banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
     total: F32 = np.zeros(images.shape[1:3], np.float32)
     for W in each:
         total += W
