@@ -1,9 +1,10 @@
 """May I trust an alignment? A search always answers, so its answer is compared once more, at full resolution.
 
 H        homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
-p        pixels              (n, 2): those that are compared, spread evenly
-d        differences         (n,): of bitmaps 0 or 1, of light relative to it; NaN where one measures none
-e        error               mean of d^2, see `align.light`
+p        pixels              (n, 2): those at which light is compared, spread evenly
+d        differences         of light (n,): relative to it, NaN where one measures none; of bitmaps (4, 2):
+                             in each quarter of the picture the bits that differ, and those compared
+e        error               mean of d^2, see `align.light`; bits that differ / bits compared
 near     differences 2 pixels further than H, in eight directions
 far      differences 8 pixels further
 
@@ -23,10 +24,12 @@ from hdrlab.align import light
 from hdrlab.align.cerman import peaks
 from hdrlab.align.mtb import exclusion
 from hdrlab.core import warp
-from hdrlab.core.types import F32, F64, Array
+from hdrlab.core.types import F32, F64, Array, Mask
 
 # pixels: the distances at which other answers are compared
 NEAR, FAR = 2, 8
+# standard errors by which an error is clearly lower
+SURE = 3
 # confidence below which an answer is lost; wrong ones stay below 0.1, and right ones come to 0.6 and more
 LOST = 0.3
 # shifts at which a texture resembles itself most
@@ -35,8 +38,8 @@ RIVALS = 4
 ALIKE = 0.1
 # pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are looked for
 BITS_TILE, LIGHT_TILE = 96, 512
-# pixels at which bitmaps are compared
-BITS = 20_000
+# of the rows of a bitmap, this fraction is compared near and far
+ROWS = 4
 EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
 
@@ -79,49 +82,66 @@ class Comparison(NamedTuple):
     ----------
     moving, fixed : which two images
     shape : of the fixed one
-    quarters : (n, 4), 1 where a pixel of p lies in a quarter of the picture
-    differences : function of H that returns d at the pixels p
+    differences : function of H, and of n: every n-th row of bits will do; returns d
+    error : function of d that returns e, and `light.NONE` where the two share too little
+    lower : function of two d that returns (5,), whether the first is clearly lower in a quarter, in the whole
     middle : (h, w), the middle of the fixed photograph, NaN where it measures nothing
     """
 
     moving: int
     fixed: int
     shape: tuple[int, ...]
-    quarters: F32
-    differences: Callable[[F64], F64]
+    differences: Callable[..., F64]
+    error: Callable[[F64], float]
+    lower: Callable[[F64, F64], Mask]
     middle: F32
 
 
 def compare_light(moving: int, fixed: int, X: F32) -> Comparison:
-    """Return the Comparison of light X (2, H, W)."""
+    """Return the Comparison of light X (2, H, W): the gain of one H over another is taken pixel by pixel."""
     p = light.lattice(X.shape[1:])
-    middle = _middle(X[0], LIGHT_TILE)
-    return Comparison(moving, fixed, X.shape[1:], _quarters(p), lambda H: light.differences(X, H, p), middle)
+    right, low = (p > p.max(axis=0) / 2).T
+    quarters = np.eye(4, dtype=np.float32)[right + 2 * low]
+
+    def differences(H: F64, every: int = 1) -> F64:
+        return light.differences(X, H, p)
+
+    def lower(d: F64, other: F64) -> Mask:
+        gain = other**2 - d**2
+        kept = np.isfinite(gain)
+        gain = np.where(kept, gain, 0)
+        sums = np.stack([kept, np.where(kept, other**2, 0), gain, gain**2]) @ quarters
+        n, rate, gained, square = np.column_stack([sums, sums.sum(axis=1)])
+        rate, gained, square = np.array([rate, gained, square]) / np.maximum(n, 1)
+        error = np.sqrt(np.maximum(square - gained**2, 0) / np.maximum(n, 1))
+        return np.asarray((n >= 20) & (gained > rate / 20 + SURE * error))
+
+    return Comparison(moving, fixed, X.shape[1:], differences, light.error, lower, _middle(X[0], LIGHT_TILE))
 
 
-def compare_bits(moving: int, fixed: int, Y: Sequence[Array], t: Sequence[int]) -> Comparison:
-    """Return the Comparison of the bitmaps of two gray photographs, the fixed one first, by thresholds t.
+def compare_bits(
+    moving: int, fixed: int, Y: Array, t: int, count: Callable[[tuple[int, int], int], Array]
+) -> Comparison:
+    """Return the Comparison of the bitmaps of two gray photographs; its H shift by whole pixels.
 
-    Its H shift by whole pixels.
+    Y and t are the fixed one and its threshold; count(offset, n) returns d of every n-th row.
     """
-    h, w = Y[0].shape
-    x = np.arange(0, w, 2 if h * w > BITS else 1)  # dense along rows, which the processor's cache holds
-    y = np.arange(0, h, max(1, round(h * len(x) / BITS)))
-    p, z = np.stack(np.meshgrid(x, y), axis=-1).reshape(-1, 2), np.arange(256)
-    codes = [np.where(exclusion(z, level), z > level, 2).astype(np.uint8) for level in t]
-    a = 3 * codes[0].take(Y[0][y][:, x])
-    xor = np.array([0, 1, np.nan, 1, 0, np.nan, np.nan, np.nan, np.nan], np.float32)
+    tile = _middle(Y, BITS_TILE)
+    signs = np.where(exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
 
-    def differences(H: F64) -> F64:
-        u, v = x - round(H[0, 2]), y - round(H[1, 2])
-        b = Y[1].take(v, axis=0, mode="clip").take(u, axis=1, mode="clip")
-        d = xor.take(a + codes[1].take(b))
-        d[(v < 0) | (v >= h)] = d[:, (u < 0) | (u >= w)] = np.nan
-        return d.ravel()
+    def differences(H: F64, every: int = 1) -> F64:
+        return np.asarray(count((round(H[1, 2]), round(H[0, 2])), every), np.float64)
 
-    tile = _middle(Y[0], BITS_TILE)
-    signs = np.where(exclusion(tile, t[0]), np.where(tile > t[0], 1, -1), np.nan).astype(np.float32)
-    return Comparison(moving, fixed, (h, w), _quarters(p), differences, signs)
+    def error(d: F64) -> float:
+        differ, compared = d.sum(axis=0)
+        return float(differ / compared) if compared else light.NONE
+
+    def lower(d: F64, other: F64) -> Mask:
+        d, other = (np.vstack([one, one.sum(axis=0)]) for one in (d, other))
+        own, rate = (one[:, 0] / np.maximum(one[:, 1], 1) for one in (d, other))
+        return np.asarray(rate - own > rate / 20 + SURE * np.sqrt(rate / np.maximum(other[:, 1], 1)))
+
+    return Comparison(moving, fixed, Y.shape, differences, error, lower, signs)
 
 
 def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
@@ -130,13 +150,14 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
     The identity takes the place of an H that is not clearly better.
     """
     before, d = pair.differences(np.eye(3)), pair.differences(H)
-    if np.isfinite(before).any() and not clearly_lower(gains(pair, d, before).sum(axis=1)):
+    if pair.error(before) < light.NONE and not pair.lower(d, before)[-1]:
         H, d = np.eye(3), before
-    near, far = ([pair.differences(shift(H, n * step)) for step in EIGHT] for n in (NEAR, FAR))
-    errors, elsewhere = (light.error(before), light.error(d)), [light.error(one) for one in far]
-    if np.isfinite(d).mean() <= light.LEAST or not _differ(near + far):
+    near, far = ([pair.differences(shift(H, n * step), ROWS) for step in EIGHT] for n in (NEAR, FAR))
+    errors, elsewhere = (pair.error(before), pair.error(d)), [pair.error(one) for one in far]
+    if errors[1] == light.NONE or not any(pair.error(one) > 0 for one in near + far):
         return uninformative(pair.moving, pair.fixed, H)
-    sure = confidence(errors[1], elsewhere)
+    d = pair.differences(H, ROWS)
+    sure = confidence(pair.error(d), elsewhere)
     middle = (np.array(pair.shape[::-1]) - 1) / 2
     dx, dy = warp.apply(H, [middle])[0] - middle
     reason = failure_reason(pair, H, d, near, far, limit if max(abs(dx), abs(dy)) >= limit else None)
@@ -160,19 +181,17 @@ def failure_reason(
     """Return the reason not to trust H, whose differences are d, or an empty string."""
     if limit is not None:
         return f"the offset lies at the end of the range, {limit} pixels"
-    if not _differ(far):
+    e, elsewhere = pair.error(d), [pair.error(one) for one in far]
+    if not any(elsewhere):
         return f"the picture repeats itself: {FAR} pixels away the photographs fit as well"
-    e, elsewhere = light.error(d), [light.error(one) for one in far]
     if (sure := confidence(e, elsewhere)) < LOST:
         return f"8 pixels away the photographs fit nearly as well (confidence {sure:.2f})"
-    nearby = np.array([gains(pair, d, other) for other in near])
-    if not all(clearly_lower(one) for one in nearby.sum(axis=2)):
+    if not all(pair.lower(d, one)[-1] for one in near):
         return "2 pixels away the photographs fit as well"
-    back = nearby[:, [0, 2, 1, 3, 4]] * np.array([1, 1, 1, -1, 1])[:, None]  # the other's gain over H
-    if away := sum(any(clearly_lower(one) for one in quarter) for quarter in np.moveaxis(back, 2, 0)):
+    if away := np.any([pair.lower(one, d)[:-1] for one in near], axis=0).sum():
         return f"{away} of 4 quarters of the picture fit better elsewhere (rotation, depth or motion)"
     for rival in rivals(pair.middle):
-        also = light.error(pair.differences(shift(H, rival)))
+        also = pair.error(pair.differences(shift(H, rival), ROWS))
         if confidence(e, [also]) < LOST or also - e < ALIKE * (np.mean(elsewhere) - e):
             return f"the picture repeats itself: moved on by {tuple(rival.tolist())} it fits nearly as well"
     return ""
@@ -190,22 +209,6 @@ def confidence(e: float, elsewhere: Sequence[float]) -> float:
     return 1 - e / mean if mean > 0 else 0.0
 
 
-def gains(pair: Comparison, d: F64, other: F64) -> F64:
-    """Return (5, 4), of each quarter: the number compared, sums of d^2, other^2, the gain and its square."""
-    gain = other**2 - d**2
-    kept = np.isfinite(gain)
-    own, gain = np.where(kept, d**2, 0), np.where(kept, gain, 0)
-    return np.asarray(np.stack([kept, own, own + gain, gain, gain**2]) @ pair.quarters, np.float64)
-
-
-def clearly_lower(sums: F64) -> bool:
-    """Return whether d's error is lower by a twentieth of the other and two standard errors of the gain."""
-    if sums[0] < 20:
-        return False
-    _, _, rate, gain, square = sums / sums[0]
-    return bool(gain > rate / 20 + 2 * np.sqrt(max(square - gain**2, 0) / sums[0]))
-
-
 def rivals(middle: F32) -> list[Array]:
     """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation."""
     x = np.where(np.isfinite(middle), middle - light.local_mean(middle), 0)
@@ -218,17 +221,6 @@ def rivals(middle: F32) -> list[Array]:
 def shift(H: F64, offset: ArrayLike) -> F64:
     """Return H, and then an offset (dy, dx) further."""
     return np.asarray(warp.as_homographies(np.reshape(offset, (1, 2)))[0] @ H)
-
-
-def _quarters(p: F64) -> F32:
-    """Return (n, 4), 1 where a pixel lies in a quarter of the picture."""
-    right, low = (p > p.max(axis=0) / 2).T
-    return np.eye(4, dtype=np.float32)[right + 2 * low]
-
-
-def _differ(every: list[F64]) -> bool:
-    """Return whether there is any difference at all."""
-    return any(bool(np.any(np.abs(d) > 0)) for d in every)
 
 
 def _middle(image: Array, side: int) -> Array:

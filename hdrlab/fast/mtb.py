@@ -59,6 +59,24 @@ class Photograph:
             y, x = 2 * y + dy, 2 * x + dx
         return y, x
 
+    def count_differences(
+        self, fixed: Self, offset: Offset, every: int = 1, q: float = 0.5
+    ) -> NDArray[np.int64]:
+        """Return (4, 2), of the quarters of the picture: bits that differ after an offset, bits compared.
+
+        Of every n-th row; the quarters are cut at a whole word.
+        """
+        dy, H = offset[0], len(self.Y[0])
+        rows = np.arange(-(-max(dy, 0) // every) * every, max(H + min(dy, 0), 0), every)
+        A, B = fixed.bits(q, 0)[:, rows], _slide(self.bits(q, 0)[:, rows - dy], offset[1])
+        kept = A[1] & B[1]
+        counts = np.bitwise_count(np.stack([(A[0] ^ B[0]) & kept, kept]))
+        n, half = np.searchsorted(rows, H // 2), kept.shape[1] // 2
+        quarters = [
+            rest for part in (counts[:, :n], counts[:, n:]) for rest in np.split(part, [half], axis=2)
+        ]
+        return np.array([one.sum(axis=(1, 2), dtype=np.int64) for one in quarters])
+
 
 def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np.int64]:
     """Return the offsets (P, 2) that lay every image on the one in the middle of their brightness."""

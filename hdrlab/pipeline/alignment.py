@@ -114,7 +114,11 @@ def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Va
         q = mtb.percentile(A.h[0], B.h[0], near=near)
         if q is None:
             return judgement.uninformative(moving, fixed)
-        both = judgement.compare_bits(moving, fixed, (A.Y[0], B.Y[0]), (A.threshold(q), B.threshold(q)))
+
+        def count(offset: tuple[int, int], every: int) -> Array:
+            return B.count_differences(A, offset, every, q)
+
+        both = judgement.compare_bits(moving, fixed, A.Y[0], A.threshold(q), count)
         H = warp.as_homographies([B.offset_onto(A, q)])[0]
         return judgement.validate(both, H, limit=2 ** len(A.Y) - 1)
 
