@@ -28,8 +28,7 @@ from hdrlab import scenes
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling
 from hdrlab.course.notebook import check
-from hdrlab.show import plots
-from hdrlab.show.widgets import pictures
+from hdrlab.show import pictures, plots
 
 # %% [markdown]
 # ## The photographs

@@ -17,8 +17,7 @@ import numpy as np
 from hdrlab import scenes
 from hdrlab.capture import camera, responses
 from hdrlab.course.notebook import check
-from hdrlab.show import plots
-from hdrlab.show.widgets import pictures
+from hdrlab.show import pictures, plots
 
 # %% [markdown]
 # ## The photographs

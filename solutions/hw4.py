@@ -23,7 +23,7 @@ import numpy as np
 from hdrlab import scenes
 from hdrlab.core import colour
 from hdrlab.course.notebook import check
-from hdrlab.show.widgets import pictures
+from hdrlab.show import pictures
 
 # %% [markdown]
 # ## The scene

@@ -24,8 +24,7 @@ from hdrlab.capture import camera
 from hdrlab.core import colour
 from hdrlab.course.notebook import check
 from hdrlab.io import photos
-from hdrlab.show import plots
-from hdrlab.show.widgets import pictures
+from hdrlab.show import pictures, plots
 
 # %% [markdown] about="tonemap"
 # ## 1 · The operator ({points})

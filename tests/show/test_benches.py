@@ -7,8 +7,8 @@ from hdrlab import scenes
 from hdrlab.capture import autoexposure, metering, photon_transfer, planning, ranges, sensor
 from hdrlab.capture.room import subjects
 from hdrlab.core.colour import luminance
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import benches, sensors
-from hdrlab.show.widgets import pictures
 
 BACKLIGHT = subjects.backlight((96, 144))
 L = np.geomspace(0.01, 10, 500)

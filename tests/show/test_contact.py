@@ -14,7 +14,7 @@ from hdrlab.core.picture import Statistics, statistics
 from hdrlab.pipeline import catalogue
 from hdrlab.show.pages import contact
 from hdrlab.show.pages.sheet import GAP, Entry, draw, write_sheet
-from hdrlab.show.widgets.pictures import render
+from hdrlab.show.pictures import render
 from hdrlab.tonemap import quality
 
 SCENE = np.stack([laws.scene((60, 80), seed) for seed in range(3)], axis=-1)

@@ -10,8 +10,7 @@ import pytest
 from skimage.color import rgb2lab
 
 from hdrlab.core.bracket import bracket
-from hdrlab.show import plots
-from hdrlab.show.widgets import pictures
+from hdrlab.show import pictures, plots
 
 LINEAR = np.log(np.arange(1, 257) / 129)
 

@@ -5,8 +5,8 @@ import pytest
 
 from hdrlab.align import mtb
 from hdrlab.pipeline.alignment import register
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import bitmaps as drawn
-from hdrlab.show.widgets import pictures
 
 RNG = np.random.default_rng(0)
 COARSE = RNG.integers(0, 256, (14, 18)).astype(np.uint8)

@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.io import rgbe
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import bits
-from hdrlab.show.widgets import pictures
 
 
 def texts(ax):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
 
+from hdrlab.show import pictures
 from hdrlab.show.plots import curves
-from hdrlab.show.widgets import pictures
 
 LINEAR = np.log(np.arange(1, 257) / 129)
 PLACES = np.arange(10.0)

@@ -5,8 +5,8 @@ import pytest
 
 from hdrlab.align import cerman
 from hdrlab.core import warp
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import homographies as drawn
-from hdrlab.show.widgets import pictures
 
 RNG = np.random.default_rng(0)
 WALL = np.kron(RNG.uniform(0.5, 2, (14, 18)), np.ones((8, 8))).astype(np.float32)

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hdrlab.calibration.blends import Blend, InverseResponse
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import geometry, mixtures
-from hdrlab.show.widgets import pictures
 
 ALPHA = np.linspace(0, 1, 6)
 TWO = [Blend(ALPHA, ALPHA**0.5), Blend(ALPHA, (0.2 * ALPHA) ** 0.5)]

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hdrlab.core import weights
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import merging
-from hdrlab.show.widgets import pictures
 
 G = np.log(np.maximum(np.arange(256), 0.5) / 128)  # a linear camera
 B = np.log([0.25, 1.0, 4.0])

@@ -11,8 +11,8 @@ import pytest
 from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
+from hdrlab.show.pictures import render
 from hdrlab.show.plots.nearest import show
-from hdrlab.show.widgets.pictures import render
 
 
 def ours(ax, picture, **knobs):

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from hdrlab.core.colour import encode_srgb
+from hdrlab.show import pictures
 from hdrlab.show.plots import tones
-from hdrlab.show.widgets import pictures
 from hdrlab.tonemap import curves
 
 RAMP = np.linspace(-1, 3, 24 * 36).reshape(24, 36)

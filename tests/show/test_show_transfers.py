@@ -6,8 +6,8 @@ from matplotlib.legend import Legend
 
 from hdrlab.core import transfer
 from hdrlab.response.grossberg import comparagram
+from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import transfers
-from hdrlab.show.widgets import pictures
 
 LEVELS = np.arange(256)
 

@@ -11,8 +11,8 @@ from matplotlib.figure import Figure
 
 from hdrlab.io import web
 from hdrlab.show import plots, widgets
+from hdrlab.show.pictures import render
 from hdrlab.show.plots import reuse, tones
-from hdrlab.show.widgets.pictures import render
 
 
 def square(level=100, side=16):

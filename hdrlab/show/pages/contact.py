@@ -82,7 +82,7 @@ def contact_sheet(
 
     Examples
     --------
-    >>> from hdrlab.capture import scenes
+    >>> from hdrlab import scenes
     >>> sheet = contact_sheet(scenes.room((48, 72)), ["reinhard"], title="the room")
     >>> sheet.get_label()[:68]
     'Contact sheet of the room: one scene through 1 tone-mapping operator'

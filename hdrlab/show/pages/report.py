@@ -53,8 +53,8 @@ def write_report(
     Examples
     --------
     >>> import tempfile
-    >>> from hdrlab import pipeline
-    >>> from hdrlab.capture import camera, scenes
+    >>> from hdrlab import pipeline, scenes
+    >>> from hdrlab.capture import camera
     >>> assembly = pipeline.assemble(camera.shoot(scenes.room((48, 72)), [0.01, 0.04, 0.16], rng=1))
     >>> picture = pipeline.develop(assembly.E)
     >>> write_report(tempfile.mkdtemp(), assembly, picture, recipe={"tonemap": "reinhard"}).name

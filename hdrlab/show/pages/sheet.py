@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from hdrlab.core.picture import Statistics
 from hdrlab.io.files import replacing
-from hdrlab.show.widgets.pictures import require_alt
+from hdrlab.show.pictures import require_alt
 from hdrlab.tonemap.quality import Quality
 
 DPI = 100  # dots per inch: a matplotlib inch is a hundred pixels of the sheet

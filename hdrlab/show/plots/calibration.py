@@ -25,7 +25,7 @@ from hdrlab.diagnostics.residuals import frame_offsets, rms
 from hdrlab.io.files import replacing
 from hdrlab.show import plots
 from hdrlab.show.pages.wording import signed
-from hdrlab.show.widgets.pictures import require_alt
+from hdrlab.show.pictures import require_alt
 
 SUFFIXES = (".png", ".svg")
 COLOURS = ("#1A1A1A", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")

@@ -10,10 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import Array
-from hdrlab.show import plots
+from hdrlab.show import pictures, plots
+from hdrlab.show.pictures import Picture
 from hdrlab.show.plots import figures
-from hdrlab.show.widgets import pictures
-from hdrlab.show.widgets.pictures import Picture
 
 Image = NDArray[np.uint8]
 LEAST = 200  # pixels: a smaller picture is shown with larger pixels

@@ -22,11 +22,11 @@ from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
 from hdrlab.io.web import Image
+from hdrlab.show.pictures import encode, pictured, render, require_alt, short
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.lens import Brush, brush
-from hdrlab.show.widgets.pictures import encode, pictured, render, require_alt, short
 from hdrlab.show.widgets.scripts import STYLE, script
 
 __all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "play", "tune", "wipe"]

@@ -17,8 +17,8 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import Array, describe
 from hdrlab.io import web
+from hdrlab.show.pictures import render, require_alt
 from hdrlab.show.plots.figures import fit
-from hdrlab.show.widgets.pictures import render, require_alt
 from hdrlab.show.widgets.scripts import STYLE, script
 
 SIDE = 2000  # pixels: what is larger is shown by means of k x k pixels, or the page gets too heavy to open

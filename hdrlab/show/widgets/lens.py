@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from hdrlab import pipeline
 from hdrlab.core.arrays import as_radiance
 from hdrlab.io import web
+from hdrlab.show.pictures import render, require_alt
 from hdrlab.show.plots.figures import fit
-from hdrlab.show.widgets.pictures import render, require_alt
 from hdrlab.show.widgets.scripts import STYLE, script
 
 SIDE = 1536  # pixels: a larger map is shown by means of k x k pixels
