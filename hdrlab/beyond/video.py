@@ -210,8 +210,8 @@ def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None) -> Frame
     stack = np.asarray(Z)[None]
     values = ldr_values.as_values(stack, [t], g)
     n = levels(stack)
-    table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n).reshape(n, -1)
-    f_W = ldr_values.look_up_levels(table.astype(np.float32), stack.reshape(values.v.shape))[0]
+    table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n)
+    f_W = table.astype(np.float32)[stack.reshape(values.v.shape)][0]
     R = ldr_values.radiance(values.v[0], t, values.full)
     alpha = trapezoid(values.z[0], *EXPOSED_LEVELS)
     return Frame(values.v[0], values.noise[0], values.clipped[0], R, f_W, alpha, t, values.full)

@@ -51,7 +51,7 @@ class State(NamedTuple):
 
 def split_planes(Z: Array) -> Array:
     """Return F = Z / top level, the channels as planes."""
-    return np.moveaxis(np.atleast_3d(Z), -1, 0) / np.float32(levels(Z) - 1)
+    return np.moveaxis(np.atleast_3d(Z), -1, 0) * np.float32(1 / (levels(Z) - 1))
 
 
 def contrast(F: F32) -> F32:

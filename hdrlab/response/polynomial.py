@@ -16,7 +16,13 @@ GRID = np.linspace(0, 1, 2049)
 
 
 def slope(M: ArrayLike, c: ArrayLike) -> F64:
-    """Return the derivative of f^-1 at M, by the product rule."""
+    """Return the derivative of f^-1 at M, by the product rule.
+
+    Examples
+    --------
+    >>> slope([0, 0.5, 1], []).tolist()  # of a straight line
+    [1.0, 1.0, 1.0]
+    """
     M, c = np.asarray(M, np.float64), np.append(c, 0)
     T, dT = (chebval(2 * M - 1, one) for one in (c, 2 * chebder(c)))
     return np.asarray(1 + (1 - 2 * M) * T + M * (1 - M) * dT)

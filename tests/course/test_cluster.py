@@ -23,7 +23,7 @@ from hdrlab.course.classroom.executors import cluster, processes
 RUN = """
 import sys
 from pathlib import Path
-sys.path.insert(0, {tests!r})
+sys.path[:0] = [{tests!r}, {tests!r} + "/course"]
 import errands, test_cluster
 test_cluster.graded({address!r}, Path({folder!r}), errands.slow)
 """

@@ -136,7 +136,9 @@ def test_what_the_handout_gives_is_nobody_s_own(tmp_path):
 def test_a_copy_of_the_library_is_told_of_apart_and_is_no_pair(tmp_path):
     taken = "\n\n\n".join(library().values())
     page, table = written(tmp_path, {"a": taken, "b": renamed(taken), "c": LOOPS})
-    assert not table and "a (100 %), b (100 %)" in page and "c (" not in page
+    shares = [int(share) for share in re.findall(r"[ab] \((\d+) %\)", page)]
+    assert not table and "c (" not in page
+    assert len(shares) == 8 and min(shares) > 80 and max(shares) > 95  # two works, four tasks long enough
 
 
 def test_the_shares_of_all_pairs_are_those_of_copydetect(tmp_path):

@@ -197,8 +197,13 @@ STACK = np.random.default_rng(5).integers(0, 256, (2, 20, 30), np.uint8)
         (STACK, [1, 2], {"method": "guess"}, "method out of log, likelihood, mean, shot"),
         (STACK, [1, 2], {"align": "luck"}, "method of align out of .*mtb"),
         (STACK, [1, 2], {"response": "luck"}, "method of response out of debevec.*linear"),
-        (STACK, [1, 2], {"align": lambda images: np.zeros((3, 2), int)}, "expected 2 offsets"),
-        (STACK, [1, 2], {"align": lambda images: np.zeros((2, 2))}, "offsets .P, 2. of whole pixels"),
+        (
+            STACK,
+            [1, 2],
+            {"align": lambda images: np.zeros((3, 2), int)},
+            "expected offsets .2, 2. .*one per image",
+        ),
+        (STACK, [1, 2], {"align": lambda images: np.zeros((2, 2))}, "offsets .2, 2. of whole pixels"),
     ],
 )
 def test_what_makes_no_map_is_refused(images, times, knobs, said):

@@ -40,6 +40,7 @@ RADIANCES = {
 
 
 def stays_in_range(tonemap):
+    """Display luminance is finite, float32, of L's shape, and within 0 and 1, whatever the scene."""
     for name, L in RADIANCES.items():
         with warnings.catch_warnings():
             warnings.simplefilter("error")
@@ -49,10 +50,12 @@ def stays_in_range(tonemap):
 
 
 def answers_the_same_twice(tonemap):
+    """Nothing is left behind that changes the next answer."""
     assert np.array_equal(tonemap(scene()), tonemap(scene()))
 
 
 def takes_any_memory_layout(tonemap):
+    """Columns first, every second column, or the other order of bytes: the answer is the same."""
     wide = np.zeros((96, 256), np.float32)
     wide[:, ::2] = scene()
     for L in (np.asfortranarray(scene()), wide[:, ::2], scene().astype(">f4")):
@@ -60,6 +63,7 @@ def takes_any_memory_layout(tonemap):
 
 
 def shrugs_off_a_hot_pixel(tonemap):
+    """One hot pixel hardly moves the median of the picture."""
     for L in (scene(), scene((64, 64), 1) ** 0.2):
         assert abs(np.median(tonemap(hot_pixel(L))) - np.median(tonemap(L))) < 0.02
 
