@@ -102,7 +102,7 @@ def true_time(nominal: float) -> float:
     >>> 1 / true_time(1 / 60), 1 / true_time(1 / 125), true_time(30)
     (64.0, 128.0, 32.0)
     """
-    _positive("shutter time", nominal)
+    require_positive(("shutter time", nominal))
     dial = shutter_series(3)
     marked = np.array([seconds(name) for name in dial.names])
     return float(dial.values[np.argmin(np.abs(np.log(marked / nominal)))])
@@ -129,13 +129,14 @@ def ev(F: Real, T: Real, *, S: Real = 100.0) -> Real:
     >>> float(ev(1, 1)), float(ev(8, 1 / 64)), float(ev(8, 1 / 64, S=400))
     (0.0, 12.0, 10.0)
     """
-    F, T, S = _positive("f-number", F), _positive("shutter time", T), _positive("ISO speed", S)
+    require_positive(("f-number", F), ("shutter time", T), ("ISO speed", S))
     return 2 * np.log2(F) - np.log2(T) - np.log2(S / 100)
 
 
 def stops(more: Real, less: Real) -> Real:
     """Return log2(more / less): by how many stops one amount of light exceeds another."""
-    return np.log2(_positive("amount", more) / _positive("amount", less))
+    require_positive(("amount", more), ("amount", less))
+    return np.log2(more / less)
 
 
 def equivalent_time(T: Real, F: Real, F_new: Real, *, S: float = 100, S_new: float = 100) -> Real:
@@ -146,9 +147,9 @@ def equivalent_time(T: Real, F: Real, F_new: Real, *, S: float = 100, S_new: flo
     >>> float(equivalent_time(1 / 64, 8, 16))
     0.0625
     """
-    F, F_new = _positive("f-number", F), _positive("f-number", F_new)
-    ratio = _positive("ISO speed", S) / _positive("ISO speed", S_new)
-    return _positive("shutter time", T) * (F_new / F) ** 2 * ratio
+    require_positive(("shutter time", T), ("f-number", F), ("f-number", F_new))
+    require_positive(("ISO speed", S), ("ISO speed", S_new))
+    return T * (F_new / F) ** 2 * S / S_new
 
 
 def transmittance(D: Real) -> Real:
@@ -169,12 +170,12 @@ def saturating_luminance(T: Real, *, F: float = 8.0, S: float = 100.0) -> Real:
     >>> round(float(saturating_luminance(1 / 128, F=8, S=100)))
     9830
     """
-    T, F, S = _positive("shutter time", T), _positive("f-number", F), _positive("ISO speed", S)
+    require_positive(("shutter time", T), ("f-number", F), ("ISO speed", S))
     return SATURATION_EXPOSURE * F**2 / (LENS_TRANSMITTANCE * S * T)
 
 
-def _positive(what: str, value: Real) -> Any:
-    array = np.asarray(value, np.float64)
-    if not np.all((array > 0) & np.isfinite(array)):
-        raise ValueError(f"expected a positive {what}, got {value}")
-    return array
+def require_positive(*settings: tuple[str, Real]) -> None:
+    """Raise a ValueError that names the first setting that is not positive and finite."""
+    for what, value in settings:
+        if not np.all(np.greater(value, 0) & np.isfinite(value)):
+            raise ValueError(f"expected a positive {what}, got {value}")

@@ -164,8 +164,7 @@ def shoot(
     ((3, 40, 60), 3)
     """
     E, places, figure = as_radiance(E), np.asarray(at), as_figure(figure, E)
-    seconds = np.atleast_1d(np.asarray(times, np.float64))
-    seconds = as_times(seconds, max(seconds.size, 1))
+    seconds = as_times(np.atleast_1d(times), max(np.size(times), 1))
     moves = np.zeros((len(seconds), 2), int) if offsets is None else np.asarray(offsets)
     for what, one in (("places", places), ("offsets", moves)):
         if one.shape != (len(seconds), 2) or one.dtype.kind not in "iu":
@@ -183,8 +182,8 @@ def shoot(
         masks.append(mask)
     images, taken = (np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times"))
     order = short_to_long(images, taken)
-    photographs = bracket(images, taken, linear=shots[0].linear)
-    return Moving(photographs, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
+    taken_in_order = bracket(images, taken, linear=shots[0].linear)
+    return Moving(taken_in_order, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
 
 
 def as_figure(figure: Figure, E: F32) -> Figure:

@@ -35,7 +35,8 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     >>> bool(np.allclose(bilateral(step, sigma_s=8, sigma_r=0.4).mean, step, atol=1e-3))
     True
     """
-    v = as_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
+    v = np.asarray(v, np.float32)
+    require_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
     (H, W), r = v.shape, min(int(np.ceil(3 * sigma_s)), max(v.shape))
     padded = np.pad(v, r, constant_values=FAR)
     total, k = np.zeros_like(v), np.zeros_like(v)
@@ -48,11 +49,8 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     return Filtered(total / k, k)
 
 
-def as_signal(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> F32:
-    """Return v as float32 (H, W), finite, or raise a ValueError, as for a sigma that is not positive."""
-    v = np.asarray(v, np.float32)
-    sigmas = 0 < sigma_s < np.inf and 0 < sigma_r < np.inf
-    if v.ndim != 2 or 0 in v.shape or not np.isfinite(v).all() or not sigmas:
+def require_signal(v: F32, *, sigma_s: float, sigma_r: float) -> None:
+    """Raise a ValueError unless v is (H, W) and finite, and the sigmas are positive."""
+    if v.ndim != 2 or not (v.size and np.isfinite(v).all() and 0 < sigma_s < np.inf and 0 < sigma_r < np.inf):
         expected = "expected a finite signal (H, W) and sigmas above 0"
         raise ValueError(f"{expected}, got shape {v.shape}, {sigma_s=}, {sigma_r=}")
-    return v

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.bilateral import Filtered, as_signal
+from hdrlab.core.bilateral import Filtered, require_signal
 from hdrlab.core.types import F32
 from hdrlab.fast import blur
 
@@ -139,7 +139,8 @@ def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
     ----------
     Paris and Durand, A fast approximation of the bilateral filter, ECCV 2006.
     """
-    v = as_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
+    v = np.asarray(v, np.float32)
+    require_signal(v, sigma_s=sigma_s, sigma_r=sigma_r)
     a = _axes(v, sigma_s=sigma_s, sigma_r=sigma_r)
     mean, k = np.empty_like(v), np.empty_like(v)
     for j, (above, below) in enumerate(pairwise(_nodes(v, a))):

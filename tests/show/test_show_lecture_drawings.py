@@ -42,9 +42,9 @@ def test_few_blends_have_looks_of_their_own_and_many_look_alike():
     assert few.get_legend() is None and many.get_legend() is None
 
 
-def test_the_axes_stay_where_they_were_put():
-    ax = mixtures.samples(TWO, span=(0.01, 3), scale="log")
-    assert ax.get_xlim() == (0.01, 3) and ax.get_xscale() == "log"
+def test_the_axes_say_what_they_show():
+    ax = mixtures.samples(TWO, scale="log")
+    assert ax.get_xscale() == "log"
     assert ax.get_xlabel() and ax.get_ylabel() == "pixel level, 255 M"
 
 

@@ -105,17 +105,14 @@ def locomotive(shape: tuple[int, int] = SHAPE) -> Subject:
     black = np.maximum.reduce([boiler, cab, chimney, frame])
     E = cover(E, within(np.maximum(frame, cab), pixel), np.full((3, len(x)), 0.03 * light))
     E = cover(E, within(np.maximum(boiler, chimney), pixel), light * sheen * rgb(0.95, 1, 1.05))
-    for centre in (-0.42, -0.18, 0.06, 0.3):
-        wheel = _ellipse(x - centre, y + 0.27, 0.115, 0.115)
-        rim = within(0.012 - np.abs(wheel - 0.02), pixel)
-        E = cover(E, within(wheel, pixel), np.full((3, len(x)), 0.025 * light))
-        E = cover(E, rim, light * 0.09 * rgb(1, 1, 1))
-        black = np.maximum(black, wheel)
+    wheels = np.max([_ellipse(x - at, y + 0.27, 0.115, 0.115) for at in (-0.42, -0.18, 0.06, 0.3)], axis=0)
+    E = cover(E, within(wheels, pixel), np.full((3, len(x)), 0.025 * light))
+    E = cover(E, within(0.012 - np.abs(wheels - 0.02), pixel), light * 0.09 * rgb(1, 1, 1))
     rod = np.minimum(0.012 - np.abs(y + 0.25), 0.4 - np.abs(x + 0.06))
     E = cover(E, within(rod, pixel), light * 0.12 * rgb(1, 1, 1))
     pane = np.minimum(0.07 - np.abs(x - 0.45), 0.06 - np.abs(y - 0.2))
     E = cover(E, within(pane, pixel), rgb(500, 520, 560))
-    return _scene(shape, E, within(black, pixel), light)
+    return _scene(shape, E, within(np.maximum(black, wheels), pixel), light)
 
 
 SUBJECTS = {"backlight": backlight, "snow": snow, "locomotive": locomotive}

@@ -1,8 +1,8 @@
 """A function of the library with all that it needs of it, as text that runs with numpy and scipy alone.
 
 A solution is the library's own function. In a notebook it must stand by itself, and so must what it calls:
-definitions are copied as they are written, comments and all, those that are needed before those that need
-them. Two definitions of one name, from two modules, part by the module's name.
+definitions are copied as they are written but for types, comments and all, those that are needed before those
+that need them. Two definitions of one name, from two modules, part by the module's name.
 """
 
 import ast
@@ -23,16 +23,18 @@ class Block(NamedTuple):
     @property
     def text(self) -> str:
         """All of it, as one cell."""
-        return "\n\n\n".join(filter(None, ("\n".join(_grouped(self.imports)), self.needs, self.source)))
+        return "\n\n".join(filter(None, ("\n".join(_grouped(self.imports)), self.needs, self.source)))
 
 
-def inlined(functions: Mapping[str, str]) -> dict[str, Block]:
+def inlined(functions: Mapping[str, str], given: Iterable[str] = ()) -> dict[str, Block]:
     """Return a Block for each function, in order; what an earlier one has brought is not brought again.
 
     Parameters
     ----------
     functions : mapping
         The name that each is to have, and what it is: {"gsolve": "response.debevec.gsolve"}, under hdrlab.
+    given : iterable of str
+        Classes that stand in the notebook already, dotted likewise.
 
     Raises
     ------
@@ -50,7 +52,7 @@ def inlined(functions: Mapping[str, str]) -> dict[str, Block]:
     wanted = {key_of(function): name for name, function in functions.items()}
     orders = [_in_order(key) for key in wanted]
     names = _names(wanted, [key for order in orders for key in order])
-    done: set[str] = set()
+    done = {_text(key, {}) for key in map(key_of, given)}
     return {wanted[order[-1]]: _block(order, names, done) for order in orders}
 
 
@@ -93,11 +95,11 @@ def _rank(line: str) -> tuple[bool, bool, str]:
 
 
 def _joined(texts: Iterable[str]) -> str:
-    """Return definitions below each other: functions and classes two lines apart, constants close."""
+    """Return definitions below each other: functions and classes a line apart, constants close."""
     text, before = "", False
     for one in texts:
         long = one.lstrip("@#").startswith(("def ", "class ")) or "\ndef " in one or "\nclass " in one
-        text += ("" if not text else "\n\n\n" if long or before else "\n") + one
+        text += ("" if not text else "\n\n" if long or before else "\n") + one
         before = long
     return text
 

@@ -1,6 +1,13 @@
-"""The library's own source: which definition a name in it stands for. It is read, and not imported."""
+"""The library's own source: which definition a name in it stands for. It is read, and not imported.
+
+It is read as one writes it on the board: without types, which are for checkers, and without guards, the
+statements that only raise. Both stand in the library; what is left is the equation.
+"""
 
 import ast
+import builtins
+import re
+import textwrap
 from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
@@ -9,6 +16,11 @@ from typing import NamedTuple
 from hdrlab.course.code.names import Use, bound, free
 
 HOUSE = "hdrlab"
+# letters of a line
+WIDTH = 110
+# what is for checkers, and what a docstring says of guards
+UNSAID = re.compile(r"  # (?:noqa|type: ignore).*$|, or raise a ValueError[^.\"]*", re.MULTILINE)
+GUARDS = ("require_", "check_")
 
 
 class Key(NamedTuple):
@@ -19,11 +31,12 @@ class Key(NamedTuple):
 
 
 class Module(NamedTuple):
-    """A module's source: its lines, its definitions by name, and what each imported name stands for."""
+    """A module's source: its lines and definitions, as on the board, and what each imported name stands for."""
 
     lines: list[str]
     definitions: dict[str, list[ast.stmt]]
     imported: dict[str, tuple[str, str, str]]  # name -> (module, name in it or "", the import as text)
+    returns: dict[str, ast.expr]  # of each function that says it, the type of its answer
 
 
 def key_of(function: str) -> Key:
@@ -38,7 +51,10 @@ def module(dotted: str) -> Module:
     spec = find_spec(dotted)
     if spec is None or spec.origin is None:
         raise ValueError(f"expected a module of the library, got {dotted!r}")
-    text = Path(spec.origin).read_text(encoding="utf8")
+    typed = Path(spec.origin).read_text(encoding="utf8")
+    functions = [one for one in ast.parse(typed).body if isinstance(one, ast.FunctionDef)]
+    returns = {one.name: one.returns for one in functions if one.returns}
+    text = on_the_board(typed)
     definitions: dict[str, list[ast.stmt]] = {}
     imported: dict[str, tuple[str, str, str]] = {}
     for node in ast.parse(text).body:
@@ -47,7 +63,64 @@ def module(dotted: str) -> Module:
             continue
         for name in bound(node):
             definitions.setdefault(name, []).append(node)
-    return Module(text.splitlines(), definitions, imported)
+    return Module(text.splitlines(), definitions, imported, returns)
+
+
+def on_the_board(text: str) -> str:
+    """Return a module's text without types and guards; a field that is no plain number is an array.
+
+    Examples
+    --------
+    >>> lines = ("def gain(E: F32, *, k: float = 2) -> F32:", "    if k < 0:", "        raise ValueError(k)")
+    >>> print(on_the_board("\\n".join([*lines, "    n: int = 3", "    return k * n * E"])))
+    def gain(E, *, k=2):
+        n = 3
+        return k * n * E
+    """
+    lines, tree = UNSAID.sub("", text).splitlines(), ast.parse(text)
+    functions = [one for one in ast.walk(tree) if isinstance(one, ast.FunctionDef)]
+    guards = {one for node in functions for one in node.body if _is_guard(one)}
+    fields = {one for node in ast.walk(tree) if isinstance(node, ast.ClassDef) for one in node.body}
+    typed = [one for one in ast.walk(tree) if isinstance(one, ast.AnnAssign)]
+    for node in sorted([*functions, *guards, *typed], key=lambda one: one.lineno, reverse=True):
+        line, start = lines[node.lineno - 1], node.lineno - 1
+        if node in guards:
+            del lines[start : node.end_lineno]
+        elif isinstance(node, ast.FunctionDef):
+            body = node.body[0]
+            if not lines[body.lineno - 1][: body.col_offset].strip():  # else it shares the signature's line
+                lines[start : body.lineno - 1] = _signature(node)
+        elif isinstance(node, ast.AnnAssign):
+            name, after = line[: node.target.end_col_offset], line[node.annotation.end_col_offset :]
+            lines[start] = f"{name}: {_plain(node.annotation)}{after}" if node in fields else name + after
+    return "\n".join(lines) + "\n"
+
+
+def _is_guard(node: ast.stmt) -> bool:
+    """Return whether a statement only raises: an `if` that ends so, or a call of a function that is one."""
+    if isinstance(node, ast.If):
+        return isinstance(node.body[-1], ast.Raise) and not node.orelse
+    call = node.value if isinstance(node, ast.Expr) else None
+    return isinstance(call, ast.Call) and ast.unparse(call.func).rpartition(".")[2].startswith(GUARDS)
+
+
+def _signature(node: ast.FunctionDef) -> list[str]:
+    """Return a function's first lines, with names and defaults alone."""
+    for one in ast.walk(node.args):
+        if isinstance(one, ast.arg):
+            one.annotation = None
+    indent, arguments = " " * node.col_offset, ast.unparse(node.args)
+    whole = f"{indent}def {node.name}({arguments}):"
+    if len(whole) <= WIDTH:
+        return [whole]
+    inner = textwrap.wrap(arguments, WIDTH, initial_indent=f"{indent}    ", subsequent_indent=f"{indent}    ")
+    return [f"{indent}def {node.name}(", *inner, f"{indent}):"]
+
+
+def _plain(annotation: ast.expr) -> str:
+    """Return the type of a field, np.ndarray unless it is of builtin types alone."""
+    used = {one.id for one in ast.walk(annotation) if isinstance(one, ast.Name)}
+    return ast.unparse(annotation) if used <= set(dir(builtins)) else "np.ndarray"
 
 
 def _imported(node: ast.Import | ast.ImportFrom) -> dict[str, tuple[str, str, str]]:

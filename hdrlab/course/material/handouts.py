@@ -51,7 +51,8 @@ def handout(source: str, homework: Homework, late: str = "") -> Handout:
 
     read = jupytext.reads(source, fmt="py:percent").cells
     tasks = {task.id: task for task in homework.tasks}
-    blocks = inline.inlined({task.id: task.function for task in homework.tasks})
+    given = [dotted for task in homework.tasks for dotted in stubs.classes(task.function)]
+    blocks = inline.inlined({task.id: task.function for task in homework.tasks}, given)
     both: tuple[list[dict[str, Any]], list[dict[str, Any]]] = ([], [])
     for cell in read:
         about = (cell.metadata.get("about") or cell.metadata.get("task") or "").split()

@@ -20,7 +20,7 @@ def classes(function: str) -> tuple[str, ...]:
     ('response.debevec.Solution',)
     """
     key = source.key_of(function)
-    returns = definition(function).returns
+    returns = source.module(key.module).returns.get(key.name)
     keys = source.definitions_in(key.module, returns) if returns is not None else []
     found = [one for one in keys if isinstance(source.statements(one)[-1], ast.ClassDef)]
     return tuple(f"{one.module}.{one.name}".partition(".")[2] for one in found)
@@ -45,7 +45,7 @@ def stub(task: Task, opening: str = "") -> str:
         raise NotImplementedError("tent is yours to write")
     """
     node = definition(task.function)
-    arguments = ast.unparse(_bare(node.args))
+    arguments = ast.unparse(node.args)
     beginning, *sections = SECTION.split(ast.get_docstring(node) or "")
     kept = [one for one in sections if not one.startswith("Examples")]
     text = "\n\n".join([opening or beginning, *kept]).rstrip()
@@ -75,20 +75,6 @@ def bare_class(dotted: str) -> str:
     fields = [one for one in node.body if isinstance(one, ast.AnnAssign)]
     lines = (ast.get_docstring(node) or "").splitlines()
     body = [f'"""{lines[0]}"""'] if len(lines) == 1 else [f'"""{lines[0]}', *lines[1:], '"""']
-    typed = [f"{ast.unparse(one.target)}: {_plain_type(one.annotation)}" for one in fields]
+    typed = [ast.unparse(one) for one in fields]
     inside = "\n".join(f"    {line}".rstrip() for line in [*body, "", *typed])
     return f"from typing import NamedTuple\n\n\nclass {node.name}(NamedTuple):\n{inside}"
-
-
-def _plain_type(annotation: ast.expr) -> str:
-    return written if (written := ast.unparse(annotation)) in ("int", "float") else "np.ndarray"
-
-
-def _bare(arguments: ast.arguments) -> ast.arguments:
-    """Return arguments without their types: names and defaults."""
-    copy = ast.parse(f"def f({ast.unparse(arguments)}): ...").body[0]
-    assert isinstance(copy, ast.FunctionDef)
-    for one in ast.walk(copy.args):
-        if isinstance(one, ast.arg):
-            one.annotation = None
-    return copy.args

@@ -58,9 +58,7 @@ def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) ->
     for one in similarity.printed_steps(works(homework, handins)):
         each.append(one)
         yield one.work.team
-    blocks = inline.inlined({task.id: task.function for task in homework.tasks}).values()
-    library = "\n\n\n".join(block.text for block in blocks)
-    found = similarity.compare(each, authored.handout_code(homework.name), library)
+    found = similarity.compare(each, authored.handout_code(homework.name), library(homework))
     teams = [one.work.team for one in each]
     table = [
         (teams[one], teams[other], f"{share:.3f}", f"{forth:.3f}", f"{back:.3f}")
@@ -70,6 +68,13 @@ def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) ->
     with replacing(out / "similar.html") as temporary:
         temporary.touch(mode=0o600)
         temporary.write_text(page(homework, each, found), encoding="utf8")
+
+
+def library(homework: Homework) -> str:
+    """Return the library's functions of a homework as `authored` reads those of a team."""
+    functions = {task.id: task.function for task in homework.tasks}
+    alone = {name: inline.inlined({name: one})[name].text for name, one in functions.items()}
+    return "\n".join(authored.own(alone[name], homework.name, {*alone} - {name}) for name in alone)
 
 
 def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[Work]:

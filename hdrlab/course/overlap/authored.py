@@ -19,6 +19,7 @@ from hdrlab.course.submission import LARGEST, cells_of
 CODE = 100_000  # characters in all cells; a worked homework has some 40,000, docstrings and all
 LINES = 4_000  # of code in all cells
 TASK = 30_000  # characters of one task
+WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
 BROKEN = (SyntaxError, ValueError, RecursionError, MemoryError)  # what text may do to a parser
 
 
@@ -46,9 +47,9 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
     >>> path = Path(tempfile.mkdtemp()) / "hw2.py"
     >>> _ = path.write_text("import numpy as np\\ndef hat(n=256):\\n    return tent(n)\\ntent = np.hanning")
     >>> print(read("t7", path, "hw2", ["hat"]).texts["hat"])
+    tent = np.hanning
     def hat(n=256):
         return tent(n)
-    tent = np.hanning
     """
     try:
         sources = _sources(path, homework, tasks)
@@ -60,7 +61,7 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
             notes.append(f"{task} has more than {TASK:,} characters and is not compared")
             continue
         try:
-            texts[task] = "\n".join(_own(text, _given(homework), {*tasks} - {task}))
+            texts[task] = own(text, homework, {*tasks} - {task})
         except BROKEN:
             notes.append(f"{task} is nested too deep and is not compared")
     if not sources:
@@ -86,6 +87,20 @@ def _sources(path: Path, homework: str, tasks: Sequence[str]) -> dict[str, str]:
         return closed(cells, tasks, handouts.given_cells(homework))[0]
     except RecursionError:
         raise ValueError("what its functions need is nested too deep") from None
+
+
+def own(text: str, homework: str, others: Collection[str]) -> str:
+    """Return the statements of a task that are neither imports, nor given, nor other tasks, by their shape.
+
+    So two texts that hold the same statements are one text, in whatever order they stand and whatever is called
+    how.
+    """
+    return "\n".join(sorted(_own(text, _given(homework), others), key=_shape))
+
+
+def _shape(part: str) -> str:
+    """Return a statement without names, strings and comments."""
+    return WORDS.sub("V", ast.unparse(ast.parse(part)))
 
 
 def _own(text: str, given: Collection[str], others: Collection[str]) -> Iterator[str]:

@@ -84,9 +84,7 @@ def calibrate_frames(
     mask, Z, E = as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1), as_radiance(E)
     if E.shape != stack.shape[1:]:
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
-    curve = curves.T
-    s = level_noise(curve)
-    x = curve - np.log(seconds)[:, None, None]
+    s, x = level_noise(curves.T), curves.T - np.log(seconds)[:, None, None]
     step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
     few = (slice(None, None, step),) * 2
     with np.errstate(divide="ignore"):

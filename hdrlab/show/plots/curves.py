@@ -39,7 +39,6 @@ def lines(
     *,
     across: str,
     up: str,
-    span: tuple[float, float] | None = None,
     limits: tuple[float, float] | None = None,
     scale: str = "linear",
     legend: Any = "best",
@@ -47,8 +46,8 @@ def lines(
 ) -> Axes:
     """Draw up to six curves over x, each with its label: the first is black, what the others are held to.
 
-    `span` and `limits` fix the axes, so that a slider moves the curves and nothing else; on an `ax` that has
-    curves the colours go on from there.
+    `limits` fix the ends of y, so that a slider moves the curves and nothing else; on an `ax` that has curves
+    the colours go on from there.
     """
     x, ax = np.asarray(x, np.float64), ax or axes()
     begun = len(ax.lines)
@@ -59,7 +58,7 @@ def lines(
             raise ValueError(f"expected {label} at the {x.shape} places, got {describe(y)}")
         ax.plot(x, y, linestyle=style, color=colour, linewidth=1.8, label=label)
     ax.set(xlabel=across, ylabel=up, yscale=scale)
-    fix_limits(ax, span, limits)
+    fix_limits(ax, None, limits)
     if scale == "log":  # minor ticks and powers in mathematical type take longer than all the rest
         ax.minorticks_off()
         ax.yaxis.set_major_formatter(_short)

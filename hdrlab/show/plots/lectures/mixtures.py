@@ -27,7 +27,6 @@ def samples(
     names: Sequence[str] = (),
     joined: InverseResponse | None = None,
     across: str = "relative irradiance, s I + r",
-    span: tuple[float, float] | None = None,
     scale: str = "linear",
     ax: Axes | None = None,
 ) -> Axes:
@@ -44,8 +43,6 @@ def samples(
         label = names[k] if k < len(names) else None
         ax.plot(own * one.I + start, 255 * one.M, marker, color=colour, markersize=4, label=label)
     ax.set(xlabel=across, ylabel="pixel level, 255 M", xscale=scale, ylim=(-5, 260))
-    if span is not None:
-        ax.set_xlim(*span)
     if scale == "log":
         ax.minorticks_off()
         ax.xaxis.set_major_formatter("{x:g}")
