@@ -19,10 +19,10 @@ from types import ModuleType
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
+from hdrlab.cli.terminal import elapsed
 from hdrlab.core.colour import luminance
 from hdrlab.io.exr import LARGEST_HALF
 from hdrlab.io.layers import write_layers
-from hdrlab.io.terminal import elapsed
 from hdrlab.scenes.places import PLACES
 from scenes.lighting import SMOOTH, radiance
 from scenes.models.place import Light, Place

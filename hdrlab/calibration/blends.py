@@ -54,9 +54,7 @@ def make_blend(
     """
     x, M = np.asarray(irradiance, np.float64), np.asarray(brightness, np.float64)
     if x.shape != M.shape or x.ndim != 1 or not np.all(np.isfinite([x, M])):
-        raise ValueError(
-            f"expected irradiances and brightnesses (l,), finite, got {describe(x)} and {describe(M)}"
-        )
+        raise ValueError(f"expected finite irradiance and brightness (l,), got {describe(x)}, {describe(M)}")
     if not 0 <= low < high <= 1:
         raise ValueError(f"expected a range of brightness within 0 to 1, got {low} to {high}")
     inside = (low <= M) & (M <= high)
@@ -74,8 +72,7 @@ def select_blends(blends: Sequence[Blend], *, min_samples: int = 3) -> list[Blen
     if not usable:
         sizes = ", ".join(str(len(blend.M)) for blend in blends)
         raise ValueError(
-            f"expected a blend with {min_samples} samples of different brightness, "
-            f"got blends of {sizes or 'none'}"
+            f"expected a blend with {min_samples} samples of different brightness, got {sizes or 'none'}"
         )
     return usable
 
@@ -131,9 +128,7 @@ def difference(found: InverseResponse, truth: InverseResponse, *, fit: bool = Fa
     """
     low, high = max(found.M[0], truth.M[0]), min(found.M[-1], truth.M[-1])
     if not low < high:
-        raise ValueError(
-            f"expected curves that overlap in brightness, got {found.M[[0, -1]]}, {truth.M[[0, -1]]}"
-        )
+        raise ValueError(f"expected curves that overlap, got M of {found.M[[0, -1]]} and {truth.M[[0, -1]]}")
     M = np.linspace(low, high, TABLE_SIZE)
     X, Y = (np.interp(M, curve.M, curve.X) for curve in (found, truth))
     X, Y = (X - X[0]) / (X[-1] - X[0]), (Y - Y[0]) / (Y[-1] - Y[0])

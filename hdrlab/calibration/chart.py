@@ -122,9 +122,7 @@ def read_patches(
     """
     stack = as_stack(np.asarray(image)[None])
     if rows < 1 or columns < 1 or not gap >= 0 or not 0 < core <= 1:
-        raise ValueError(
-            f"expected rows, columns > 0, gap >= 0 and 0 < core <= 1, got {rows, columns, gap, core}"
-        )
+        raise ValueError(f"expected {rows=}, {columns=} > 0, {gap=} >= 0 and 0 < {core=} <= 1")
     H = homography(UNIT_SQUARE * [columns + gap * (columns - 1), rows + gap * (rows - 1)], corners)
     shape = np.array(stack.shape[1:3])
     if np.any(np.asarray(corners) < -0.5) or np.any(np.asarray(corners) > shape[::-1] - 0.5):
@@ -205,9 +203,7 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> InverseResponse:
     if len(x) < 3:
         raise ValueError(f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}")
     if np.any(np.diff(x) <= 0) or np.any(np.diff(m) <= 0):
-        raise ValueError(
-            f"expected patches that are brighter the more they reflect, got {m.round(4).tolist()}"
-        )
+        raise ValueError(f"expected patches brighter the more they reflect, got {m.round(4).tolist()}")
     brightness = np.linspace(m[0], m[-1], TABLE_SIZE)
     return normalize(brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1))
 

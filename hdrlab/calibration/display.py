@@ -55,9 +55,7 @@ def mixing_ratios(rows: int = 3, columns: int = 5, steps: int = 15) -> F64:
            [0.75, 1.  ]])
     """
     if rows < 1 or columns < 1 or steps < rows * columns:
-        raise ValueError(
-            f"expected a grid and at least as many steps as patches, got {rows} x {columns} and {steps}"
-        )
+        raise ValueError(f"expected at least as many steps as patches, got {rows} x {columns} and {steps}")
     return np.arange(1, rows * columns + 1).reshape(rows, columns) / steps
 
 
@@ -78,9 +76,7 @@ def frames_per_step(refresh: float = 60.0, exposure: float = 1.0, steps: int = 1
     4
     """
     if not (refresh > 0 and exposure > 0 and steps > 0):
-        raise ValueError(
-            f"expected a positive refresh rate, exposure and steps, got {refresh, exposure, steps}"
-        )
+        raise ValueError(f"expected positive numbers, got {refresh=}, {exposure=}, {steps=}")
     frames = refresh * exposure / steps
     nearest = max(2 * round(frames / 2), 2)
     if abs(frames - nearest) > 1e-6 * nearest:
@@ -123,15 +119,11 @@ def draw_schedule(schedule: Schedule = DEFAULT, *, shape: tuple[int, int] = (480
     if not high or not all(0 <= low < one <= 255 for one in high):
         raise ValueError(f"expected pixel values 0 <= low < high <= 255, got {low} and {list(high)}")
     if patch < 1 or border < 0:
-        raise ValueError(
-            f"expected patches of 1 pixel or more and no negative border, got {patch} and {border}"
-        )
+        raise ValueError(f"expected a patch of a pixel and a border of 0 at least, got {patch} and {border}")
     last_step = np.tile(np.round(mixing_ratios(rows, columns, steps) * steps), (len(high), 1))
     need = [count * (patch + border) - border for count in last_step.shape]
     if need[0] > shape[0] or need[1] > shape[1]:
-        raise ValueError(
-            f"expected pictures of at least {need[0]} x {need[1]} pixels for these grids, got {shape}"
-        )
+        raise ValueError(f"expected pictures of at least {need[0]} x {need[1]} pixels, got {shape}")
     P_hi = np.repeat(high, rows)[:, None]
     values = [np.where(step < last_step, P_hi, low).astype(np.uint8) for step in range(steps)]
     return np.stack([draw_patches(one, patch=patch, border=border, shape=shape) for one in values])

@@ -127,9 +127,7 @@ def update(blends: Sequence[Blend], p: F64, v: F64, *, count: int, smoothness: f
     c, cost = solve_increments(systems, np.sqrt(smoothness) * slope_curvature(v, count), offset)
     g = i_splines(GRID, count) @ c
     if not g[-1] > g[0]:
-        raise ValueError(
-            "expected brightness that rises with irradiance, but the blends fit a flat curve best"
-        )
+        raise ValueError("expected brightness that rises with irradiance, the blends fit a flat curve best")
     x = [np.linalg.lstsq(F, A @ c - b, rcond=None)[0] for A, F, b in systems]
     s = np.array([one[0] if len(one) == 1 + offset else 1.0 for one in x])
     r = np.array([one[-1] if offset else 0.0 for one in x])
@@ -155,10 +153,7 @@ def join_steps(
     """Yield the State after each iteration, until the curve moves by less than `tolerance` of its range."""
     blends = rescale(select_blends(blends))
     if count < 6 or not smoothness >= 0 or max_iterations < 1:
-        raise ValueError(
-            "expected count >= 6, smoothness >= 0 and max_iterations >= 1, "
-            f"got {count}, {smoothness}, {max_iterations}"
-        )
+        raise ValueError(f"expected {count=} >= 6, {smoothness=} >= 0 and {max_iterations=} >= 1")
     p, v, before = np.concatenate([blend.M for blend in blends]), np.ones(TABLE_SIZE), GRID
     for _ in range(max_iterations):
         state = update(blends, p, v, count=count, smoothness=smoothness, offset=offset)

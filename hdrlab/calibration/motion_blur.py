@@ -121,9 +121,7 @@ def find_ramps(
     if stack.ndim != 3:
         raise ValueError(f"expected one channel of a photograph (R, W), got shape {stack.shape[1:]}")
     if not 0 <= low < high <= 1 or width < 1 or shortest < 3:
-        raise ValueError(
-            f"expected 0 <= low < high <= 1, width >= 1, shortest >= 3, got {low, high, width, shortest}"
-        )
+        raise ValueError(f"expected 0 <= {low=} < {high=} <= 1, {width=} >= 1 and {shortest=} >= 3")
     found = []
     for number, row in enumerate(stack[0] / (levels(stack) - 1)):
         side = classify(row, low=low, high=high, width=width)
@@ -200,9 +198,7 @@ def compare_edges(
     ramps = find_ramps(image) if ramps is None else ramps
     left, right = ([one for one in ramps if one.rises == rises] for rises in (False, True))
     if not left or not right:
-        raise ValueError(
-            f"expected ramps on both sides of a dark region, got {len(left)} down and {len(right)} up"
-        )
+        raise ValueError(f"expected ramps on both sides, got {len(left)} down and {len(right)} up")
     curves = join(image, left), join(image, right)
     apart = rmse(*curves)
     return Comparison(apart <= limit, apart, *curves)

@@ -38,7 +38,7 @@ def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:
 
     A bar moves when an item is done; where there are few and each takes seconds, that looks like standstill.
     """
-    from hdrlab.io.terminal import elapsed
+    from hdrlab.cli.terminal import elapsed
 
     made = iter(items)
     for j, name in enumerate(names, 1):

@@ -38,8 +38,8 @@ def tonemap(
     as it must, and its hue and luminance stay.
     """
     from hdrlab import pipeline
+    from hdrlab.cli.terminal import elapsed
     from hdrlab.io import photos as files
-    from hdrlab.io.terminal import elapsed
 
     E = common.read_map(source, clean)
     settings = dict(common.knob(one) for one in knobs)
@@ -92,7 +92,7 @@ def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
 @click.argument("files", nargs=-1, required=True, type=common.FILE)
 def info(files: tuple[Path, ...]) -> None:
     """Say what FILES are: radiance maps or photographs, their size, values and exposure."""
-    from hdrlab.io.describe import describe_file
+    from hdrlab.cli.describe import describe_file
 
     for file in files:
         said = describe_file(file)

@@ -35,9 +35,9 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
     missing = [name for name in NEEDS if find_spec(name) is None]
     if missing:
         raise ValueError(f'expected {", ".join(missing)}, which make the pages: pip install "hdrlab[site]"')
+    from hdrlab.cli.terminal import elapsed
     from hdrlab.course.material import materials
     from hdrlab.course.site import execute, pages
-    from hdrlab.io.terminal import elapsed
 
     chosen = list(notebooks) or sorted(materials.folder("notebooks").glob("*.ipynb"))
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))

@@ -18,9 +18,9 @@ def report(project: Path, example: bool) -> None:
     The artifact (artifact.jpg), the bracket (photographs/), the response (response.csv) and the radiance map
     (map.hdr) are placed by themselves. The page travels alone.
     """
+    from hdrlab.cli.terminal import elapsed
     from hdrlab.course.projects import project as projects
     from hdrlab.course.projects import report as reports
-    from hdrlab.io.terminal import elapsed
 
     words = project / projects.WORDS[0]
     if example:

@@ -99,9 +99,7 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> 
     """
     E, truth = as_radiance(E).astype(np.float64), as_radiance(truth)
     if not (E.shape == truth.shape and E.shape[:2] == well.shape):
-        raise ValueError(
-            f"expected maps of one shape, got {E.shape} and, as truth, {truth.shape}, {well.shape}"
-        )
+        raise ValueError(f"expected maps of one shape, got {E.shape}, truth {truth.shape} and {well.shape}")
     ratio = E / np.where(truth > 0, truth, np.nan)
     median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
     if not median > 0:

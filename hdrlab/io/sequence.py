@@ -28,11 +28,6 @@ WRITTEN = {".gif", ".mp4"}
 MISSING = "films need the extra `video` (pip install hdrlab[video]); folders of frames and .gif do without"
 
 
-def is_film(path: str | Path) -> bool:
-    """Return whether a path is, by its suffix, a film or an animation."""
-    return Path(path).suffix.lower() in SUFFIXES
-
-
 def read(path: str | Path) -> Iterator[Array]:
     """Yield the frames of a film, an animation, or a folder of photographs sorted by name.
 

@@ -167,11 +167,8 @@ def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
         return 1 / _estimate_pair(h_B, h_A, scheme)
     parts = [collect_equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
     found = Equations._make(np.concatenate(column) for column in zip(*parts, strict=True))
-    if count_overlap(found) < FEWEST:
-        raise ValueError(
-            f"expected frames that overlap in brightness, by {FEWEST} levels of the darker one, "
-            f"got an overlap of {count_overlap(found)}"
-        )
+    if (overlap := count_overlap(found)) < FEWEST:
+        raise ValueError(f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}")
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k
 
 

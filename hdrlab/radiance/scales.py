@@ -58,9 +58,7 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     """
     I, M = np.asarray(I, np.float64), np.asarray(M, np.float64)  # noqa: E741
     if I.shape != M.shape or I.shape[-1:] != (3,) or I.size == 0:
-        raise ValueError(
-            f"expected radiance and brightness (..., 3) alike, got {describe(I)} and {describe(M)}"
-        )
+        raise ValueError(f"expected radiance and brightness (..., 3), got {describe(I)} and {describe(M)}")
     if not (np.all(np.isfinite(I) & (I > 0)) and np.all(np.isfinite(M) & (M > 0))):
         raise ValueError(f"expected positive radiance and brightness, got {describe(I)} and {describe(M)}")
     I, target = I.reshape(-1, 3), chromaticity(M.reshape(-1, 3))  # noqa: E741

@@ -9,8 +9,8 @@ from PIL import Image
 from test_cli import hdrlab
 
 from hdrlab import scenes
+from hdrlab.cli.terminal import elapsed
 from hdrlab.io import radiance
-from hdrlab.io.terminal import elapsed
 from hdrlab.pipeline import catalogue
 
 

@@ -31,7 +31,7 @@ class Key(NamedTuple):
 
 
 class Module(NamedTuple):
-    """A module's source: its lines and definitions, as on the board, and what each imported name stands for."""
+    """A module's source: lines and definitions, as on the board, and what each imported name stands for."""
 
     lines: list[str]
     definitions: dict[str, list[ast.stmt]]

@@ -92,8 +92,7 @@ def _sources(path: Path, homework: str, tasks: Sequence[str]) -> dict[str, str]:
 def own(text: str, homework: str, others: Collection[str]) -> str:
     """Return the statements of a task that are neither imports, nor given, nor other tasks, by their shape.
 
-    So two texts that hold the same statements are one text, in whatever order they stand and whatever is called
-    how.
+    So two texts that hold the same statements are one text, in whatever order, under whatever names.
     """
     return "\n".join(sorted(_own(text, _given(homework), others), key=_shape))
 
