@@ -71,9 +71,7 @@ def select_blends(blends: Sequence[Blend], *, min_samples: int = 3) -> list[Blen
     usable = [b for b in blends if len(b.M) >= min_samples and np.ptp(b.I) > 0 and np.ptp(b.M) > 0]
     if not usable:
         sizes = ", ".join(str(len(blend.M)) for blend in blends)
-        raise ValueError(
-            f"expected a blend with {min_samples} samples of different brightness, got {sizes or 'none'}"
-        )
+        raise ValueError(f"expected a blend with {min_samples} different brightnesses, got {sizes or 'none'}")
     return usable
 
 

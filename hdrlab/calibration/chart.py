@@ -245,7 +245,5 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> InverseResponse:
 
 def read_bracket(images: ArrayLike, corners: ArrayLike, **knobs: float) -> F64:
     """Return M (P, 24[, 3]) of photographs (P, H, W[, 3]) from one place; knobs of `read_chart`."""
-    stack = as_stack(images)
-    return np.stack(
-        [read_chart(image, corners, **knobs).reshape(ROWS * COLUMNS, *stack.shape[3:]) for image in stack]
-    )
+    M = np.stack([read_chart(image, corners, **knobs) for image in as_stack(images)])
+    return M.reshape(len(M), ROWS * COLUMNS, *M.shape[3:])

@@ -116,10 +116,7 @@ class Camera:
             (0 <= self.hot <= 1 and 0 <= self.vignetting <= 1, "hot and vignetting from 0 to 1"),
             (not electrons or self.full_well < np.inf, "a finite full_well for read_noise, in electrons"),
             (self.sensor is not None or not self.coloured, "a sensor for a mosaic and white balance"),
-            (
-                self.sensor is None or self.full_well == np.inf,
-                "a full well in the sensor or beside it, not both",
-            ),
+            (self.sensor is None or self.full_well == np.inf, "one full well, not both"),
         ):
             if not valid:
                 raise ValueError(f"expected {expected}, got {self}")

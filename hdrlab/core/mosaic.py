@@ -60,9 +60,8 @@ def demosaic(X: ArrayLike, c: ArrayLike) -> NDArray[np.floating[Any]]:
     """
     X, c = np.asarray(X), as_channels(c, np.shape(X))
     X = X.astype(np.result_type(X, np.float32), copy=False)
-    return np.stack(
-        [np.where(c == k, X, _neighbour_mean(X, (c == k).astype(X.dtype))) for k in range(3)], axis=-1
-    )
+    channels = [np.where(c == k, X, _neighbour_mean(X, (c == k).astype(X.dtype))) for k in range(3)]
+    return np.stack(channels, axis=-1)
 
 
 def _neighbour_mean(X: Array, m: Array) -> Array:

@@ -46,10 +46,8 @@ def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
     h = max(1, 2 * int((sigma_s / 2 + 1) / 2) - 1)
     low, extent = float(v.min()), float(np.ptp(v))
     step = min(sigma_r / LEVELS, max(extent / MIN_LEVELS, TINY))
-    if extent > MAX_LEVELS * step:
-        raise ValueError(
-            f"expected a range of at most {MAX_LEVELS * step:g} for {sigma_r=}, got {describe(v)}"
-        )
+    if extent > (most := MAX_LEVELS * step):
+        raise ValueError(f"expected a range of at most {most:g} for {sigma_r=}, got {describe(v)}")
     Y, X = ((n - 1) // h + 2 for n in v.shape)
     return Axes(h, X, Y, low, step, int(extent / step) + 2, sigma_s, sigma_r)
 

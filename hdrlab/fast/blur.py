@@ -59,12 +59,10 @@ def _band(k: ArrayLike, n: int, step: int = 1) -> F32:
 def _spline(h: int, n: int) -> F32:
     """Return the matrix (n h, n + 3) that puts h rows between each two nodes by cubic B-splines."""
     t = np.arange(h) / h
-    weights = (
-        np.stack([(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3], axis=-1) / 6
-    )
+    cubics = [(1 - t) ** 3, 4 - 6 * t**2 + 3 * t**3, 1 + 3 * t + 3 * t**2 - 3 * t**3, t**3]
     U = np.zeros((n * h, n + 3), np.float32)
     for i in range(n):
-        U[i * h : (i + 1) * h, i : i + 4] = weights
+        U[i * h : (i + 1) * h, i : i + 4] = np.stack(cubics, axis=-1) / 6
     return U
 
 

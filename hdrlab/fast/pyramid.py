@@ -13,6 +13,7 @@ from hdrlab.core import pyramid
 from hdrlab.core.pyramid import depth, half_shape  # noqa: F401
 from hdrlab.core.types import F32, Indices
 from hdrlab.fast import with_parts
+from hdrlab.fast.blur import _band
 
 _Band = tuple[slice, F32]  # rows of a picture, and their values
 
@@ -24,9 +25,7 @@ _LINEAR = (0, 8, 0)  # eighths: an even fine pixel is the coarse one over it
 
 def reduce(image: F32) -> F32:
     """Return g_(k+1)(i) = sum_m w(m) g_k(2 i + m), m = -2 ... 2, along both axes [Burt83 eq. 1]."""
-    K = np.zeros((_TILE, 2 * _TILE + 3), np.float32)
-    for i in range(_TILE):
-        K[i, 2 * i : 2 * i + 5] = pyramid.KERNEL
+    K = _band(pyramid.KERNEL, _TILE, 2)
     rows, columns = (np.pad(np.arange(n), (2, -n % (2 * _TILE) + 1), "reflect") for n in image.shape[-2:])
     g = np.empty((*image.shape[:-2], *half_shape(image.shape)), np.float32)
     for band, values in _bands(K, 2 * _TILE, image, rows, columns, g.shape):

@@ -28,13 +28,6 @@ class Emor(NamedTuple):
     components: F64
 
 
-def _text(path: str | Path) -> str:
-    path = Path(path)
-    if (size := path.stat().st_size) > MAX_FILE_BYTES:
-        raise ValueError(f"{path}: expected a file of response curves, this one has {size} bytes")
-    return path.read_text(encoding="latin-1")
-
-
 def read_emor(path: str | Path) -> Emor:
     """Read the empirical model of response, `emor.txt` or `invemor.txt`.
 
@@ -63,7 +56,10 @@ def read_emor(path: str | Path) -> Emor:
     >>> read_emor(path).components
     array([[ 1. , -0.5]])
     """
-    parts = re.split(r"^\s*([A-Za-z]\w*(?:\(\d+\))?)\s*=", _text(path), flags=re.MULTILINE)
+    if (size := Path(path).stat().st_size) > MAX_FILE_BYTES:
+        raise ValueError(f"{path}: expected a file of response curves, this one has {size} bytes")
+    text = Path(path).read_text(encoding="latin-1")
+    parts = re.split(r"^\s*([A-Za-z]\w*(?:\(\d+\))?)\s*=", text, flags=re.MULTILINE)
     try:
         blocks = [np.array(numbers.split(), np.float64) for numbers in parts[2::2]]
     except ValueError as error:

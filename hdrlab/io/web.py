@@ -16,7 +16,7 @@ Image = NDArray[np.uint8]
 MAX_RUN_BYTES = 2 / 3
 
 
-def webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
+def encode_webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
     """Return `image` as WebP, small and quick to decode; lossless suits plots, and pixels that are read out.
 
     The encoder's efforts take half of the time of its defaults, or less, for 2 to 8 % more bytes.
@@ -26,12 +26,12 @@ def webp(image: Image, *, quality: int = 85, lossless: bool = False) -> bytes:
     return iio.imwrite("<bytes>", as_rgb(image), extension=".webp", quality=quality, method=2)
 
 
-def jpeg(image: Image, *, quality: int = 80) -> bytes:
+def encode_jpeg(image: Image, *, quality: int = 80) -> bytes:
     """Return `image` as JPEG, the quickest to encode, with full colour resolution so that thin lines stay."""
     return iio.imwrite("<bytes>", as_rgb(image), extension=".jpg", quality=quality, subsampling=0)
 
 
-def runs(image: Image) -> bytes:
+def encode_runs(image: Image) -> bytes:
     """Return `image` as runs of one colour, row after row, which a script paints at once and without loss.
 
     These are words of four bytes, little endian: width, height, and then red, green, blue and length of each
@@ -39,7 +39,7 @@ def runs(image: Image) -> bytes:
 
     Examples
     --------
-    >>> np.frombuffer(runs(np.full((2, 3), 7, np.uint8)), "<u4").tolist() == [3, 2, 0x06070707]
+    >>> np.frombuffer(encode_runs(np.full((2, 3), 7, np.uint8)), "<u4").tolist() == [3, 2, 0x06070707]
     True
     """
     h, w = image.shape[:2]
@@ -54,13 +54,13 @@ def runs(image: Image) -> bytes:
     return np.concatenate([np.array([w, h], "<u4"), colours[starts] | lengths << 24]).tobytes()
 
 
-def quick(image: Image) -> bytes:
+def encode_frame(image: Image) -> bytes:
     """Return `image` as it is soonest on a page: a plot as its runs, what has too many of these as JPEG."""
-    found = runs(image)
-    return found if len(found) <= MAX_RUN_BYTES * image.shape[0] * image.shape[1] else jpeg(image)
+    found = encode_runs(image)
+    return found if len(found) <= MAX_RUN_BYTES * image.shape[0] * image.shape[1] else encode_jpeg(image)
 
 
-def half(values: ArrayLike) -> tuple[bytes, float]:
+def encode_halves(values: ArrayLike) -> tuple[bytes, float]:
     """Return values times a power of two as half floats, little endian, and that power of two.
 
     The largest comes to lie between 16384 and 32768, so none overflows, and eight decades below it keep
@@ -68,7 +68,7 @@ def half(values: ArrayLike) -> tuple[bytes, float]:
 
     Examples
     --------
-    >>> data, scale = half([0.25, 1048576])
+    >>> data, scale = encode_halves([0.25, 1048576])
     >>> (np.frombuffer(data, "<f2") / np.float64(scale)).tolist()
     [0.25, 1048576.0]
     """
@@ -78,12 +78,12 @@ def half(values: ArrayLike) -> tuple[bytes, float]:
     return (values * scale).astype("<f2").tobytes(), scale
 
 
-def pixels(encoded: bytes) -> Image:
-    """Return what `webp` or `jpeg` made of a picture, (H, W, 3).
+def decode_picture(encoded: bytes) -> Image:
+    """Return what `encode_webp` or `encode_jpeg` made of a picture, (H, W, 3).
 
     Examples
     --------
-    >>> pixels(webp(np.full((2, 3), 7, np.uint8), lossless=True)).shape
+    >>> decode_picture(encode_webp(np.full((2, 3), 7, np.uint8), lossless=True)).shape
     (2, 3, 3)
     """
     return as_rgb(iio.imread(encoded)[..., :3])

@@ -133,7 +133,7 @@ def strip(
 
 def encode(drawn: object) -> bytes:
     """Return what a draw function returned as WebP: a plot without loss, a photograph in small."""
-    return web.webp(render(drawn), lossless=not isinstance(drawn, np.ndarray))
+    return web.encode_webp(render(drawn), lossless=not isinstance(drawn, np.ndarray))
 
 
 def render(drawn: object) -> NDArray[np.uint8]:

@@ -134,7 +134,7 @@ def test_an_answer_of_runs_is_painted_to_the_bit(tuner):
             model.set("frame", new DataView(larger.buffer, 7, runs.length));
             model.set("answers", model.get("answers") + 1);
         }""",
-        list(web.runs(picture)),
+        list(web.encode_runs(picture)),
     )
     shown = tuner.evaluate("""() => {
         const canvas = document.querySelector("canvas");

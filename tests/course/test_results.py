@@ -20,7 +20,7 @@ CHECK = Check("gsolve", "test_a", "It holds", Fraction(1, 3), Fraction(1, 3), "h
 @pytest.fixture
 def hostile():
     """A Result in which everything that a student can write is hostile."""
-    picture = Drawing((web.webp(np.zeros((4, 4), np.uint8)),), (HOSTILE,), (HOSTILE,))
+    picture = Drawing((web.encode_webp(np.zeros((4, 4), np.uint8)),), (HOSTILE,), (HOSTILE,))
     bad = Check(
         "gsolve",
         "test_b",

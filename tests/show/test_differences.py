@@ -15,14 +15,16 @@ def test_three_pictures_and_the_worst_pixel_is_named_and_ringed():
     shown = differences.image(IMAGE, came, what="the map")
     assert shown.captions == ("expected", "yours", "difference: worst at row 4, column 5")
     assert "off by 0.5" in shown.alts[2] and all(alt.startswith("the map") for alt in shown.alts)
-    dark = np.argwhere(web.pixels(shown.frames[2]).max(axis=-1) < 40)  # the ring is black
-    height, width = web.pixels(shown.frames[2]).shape[:2]
+    dark = np.argwhere(web.decode_picture(shown.frames[2]).max(axis=-1) < 40)  # the ring is black
+    height, width = web.decode_picture(shown.frames[2]).shape[:2]
     assert np.allclose(dark.mean(axis=0), [4.5 / 6 * height, 5.5 / 8 * width], atol=3)
 
 
 def test_expected_and_yours_share_their_black_and_white():
     came = np.clip(2 * IMAGE, 0, None)
-    expected, yours, _ = (web.pixels(frame).astype(int) for frame in differences.image(IMAGE, came).frames)
+    expected, yours, _ = (
+        web.decode_picture(frame).astype(int) for frame in differences.image(IMAGE, came).frames
+    )
     assert yours.mean() > expected.mean() + 30
 
 
@@ -31,7 +33,7 @@ def test_a_value_that_is_no_number_is_the_worst_and_does_not_hide_the_rest(odd):
     came = IMAGE.copy()
     came[2, 3] = odd
     shown = differences.image(IMAGE, came)
-    assert "row 2, column 3" in shown.alts[2] and web.pixels(shown.frames[1]).std() > 20
+    assert "row 2, column 3" in shown.alts[2] and web.decode_picture(shown.frames[1]).std() > 20
     curve = differences.curve(IMAGE.ravel(), came.ravel())
     assert "at 19 they differ by" in curve.alts[0]
 
@@ -40,7 +42,9 @@ def test_light_over_many_decades_is_drawn_by_logarithms():
     light = np.geomspace(1e-3, 1e3, 48).reshape(6, 8)
     shown = differences.image(light, light * 1.1)
     assert "by logarithms" in shown.alts[0]
-    assert np.std(web.pixels(shown.frames[0])[..., 0].mean(axis=1)) > 20  # else all but the last row is black
+    assert (
+        np.std(web.decode_picture(shown.frames[0])[..., 0].mean(axis=1)) > 20
+    )  # else all but the last row is black
 
 
 def test_colour_is_drawn_in_colour_and_its_worst_channel_counts():
@@ -59,7 +63,7 @@ def test_an_even_picture_and_nothing_but_nan_are_drawn_too():
 
 def test_a_large_picture_is_made_small():
     shown = differences.image(np.zeros((900, 1200)), np.ones((900, 1200)))
-    assert max(web.pixels(shown.frames[0]).shape) <= differences.MOST
+    assert max(web.decode_picture(shown.frames[0]).shape) <= differences.MOST
 
 
 @pytest.mark.parametrize("came", [np.zeros((5, 8)), np.zeros(48)])

@@ -260,7 +260,7 @@ def test_a_plot_on_axes_that_are_used_again_is_the_plot_on_new_ones():
     tuner = widgets.tune(lambda k=1: k, lambda k: crowded(k) if k == 2 else curve(k), alt="A curve", k=(1, 4))
     for k in (2, 3, 1):
         tuner.at = [k - 1]
-        expected = web.runs(render(crowded(k) if k == 2 else curve(k)))
+        expected = web.encode_runs(render(crowded(k) if k == 2 else curve(k)))
         assert tuner.frame == expected
 
 
@@ -291,8 +291,8 @@ def test_axes_that_were_changed_beyond_wiping_are_not_used_again(change):
         return ax
 
     kept = reuse.Kept()
-    reuse.draw_reusing(draw, 2, lambda drawn: web.jpeg(render(drawn)), kept)
-    assert reuse.draw_reusing(draw, 1, lambda drawn: web.jpeg(render(drawn)), kept) == web.jpeg(
+    reuse.draw_reusing(draw, 2, lambda drawn: web.encode_jpeg(render(drawn)), kept)
+    assert reuse.draw_reusing(draw, 1, lambda drawn: web.encode_jpeg(render(drawn)), kept) == web.encode_jpeg(
         render(draw(1))
     )
 
@@ -329,14 +329,14 @@ def noise(*shape):
 )
 def test_runs_of_one_colour_hold_a_picture_to_the_bit(picture):
     expected = picture if picture.ndim == 3 else np.repeat(picture[..., None], 3, axis=-1)
-    assert np.array_equal(unrolled(web.runs(picture)), expected)
+    assert np.array_equal(unrolled(web.encode_runs(picture)), expected)
 
 
 def test_a_plot_is_sent_as_its_runs_and_a_photograph_as_jpeg_which_is_smaller():
-    assert web.quick(render(curve())) == web.runs(render(curve()))
+    assert web.encode_frame(render(curve())) == web.encode_runs(render(curve()))
     photograph = noise(60, 80, 3)
-    assert web.quick(photograph) == web.jpeg(photograph)
-    assert len(web.quick(photograph)) < len(web.runs(photograph))
+    assert web.encode_frame(photograph) == web.encode_jpeg(photograph)
+    assert len(web.encode_frame(photograph)) < len(web.encode_runs(photograph))
 
 
 def test_a_moved_slider_shows_a_plot_without_loss_from_the_first_one_on():
@@ -353,12 +353,12 @@ def decoded(data, scale, shape):
 @pytest.mark.parametrize("top", [1e-20, 3.0, 65504.0, 1e9, 3e38])
 def test_half_floats_keep_eight_decades_of_any_radiance(top):
     E = np.geomspace(top / 1e8, top, 200)
-    seen = decoded(*web.half(E), E.shape)
+    seen = decoded(*web.encode_halves(E), E.shape)
     assert np.abs(seen / E - 1).max() < 2**-11 and np.isfinite(seen).all()
 
 
 def test_half_floats_of_darkness_are_zeros():
-    assert not np.any(decoded(*web.half(np.zeros(3)), 3))
+    assert not np.any(decoded(*web.encode_halves(np.zeros(3)), 3))
 
 
 ROOM = np.arange(24 * 36 * 3, dtype=np.uint8).reshape(24, 36, 3)

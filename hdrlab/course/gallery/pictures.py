@@ -52,7 +52,7 @@ def prepare(path: str | Path) -> Prepared:
         image = (image // 257).astype(np.uint8)
     brought = {name: fit(image, side) for name, side in SIZES.items()}
     height, width = brought["large"].shape[:2]
-    return Prepared({name: web.webp(one, quality=88) for name, one in brought.items()}, width, height)
+    return Prepared({name: web.encode_webp(one, quality=88) for name, one in brought.items()}, width, height)
 
 
 def keep(folder: Path, id: str, prepared: Prepared) -> None:

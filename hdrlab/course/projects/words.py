@@ -162,7 +162,7 @@ def _drawing(folder: Path, pictures: Pictures, notes: list[str]) -> Callable[...
 def _decoded(source: str, folder: Path, pictures: Pictures) -> figures.Image:
     """Return the pixels of a picture that a cell has shown, or of a file of the folder."""
     if source in pictures:
-        return web.pixels(pictures[source])
+        return web.decode_picture(pictures[source])
     path = (folder / source).resolve()
     if "://" in source or not path.is_relative_to(folder.resolve()) or not path.is_file():
         raise ValueError("expected a picture in the project's folder")

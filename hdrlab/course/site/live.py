@@ -41,7 +41,7 @@ class Live(NamedTuple):
 
     def as_html(self, folder: str) -> str:
         """Return what stands on the page, where `folder` is the address of the files."""
-        height, width = web.pixels(self.picture).shape[:2]
+        height, width = web.decode_picture(self.picture).shape[:2]
         return (
             f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">'
             f'<img src="{folder}/{self.name}{suffix(self.picture)}" alt="{escape(self.alt)}" width="{width}" '
@@ -93,7 +93,7 @@ def liveliest(found: list[bytes]) -> bytes | None:
     """Return the picture that looks most like a photograph: many levels, colours, little white paper."""
 
     def score(picture: bytes) -> float:
-        Z = web.pixels(picture).astype(np.int16)
+        Z = web.decode_picture(picture).astype(np.int16)
         shares = np.bincount(Z[..., 1].ravel(), minlength=256) / Z[..., 1].size
         entropy = -np.sum(shares[shares > 0] * np.log2(shares[shares > 0]))
         colour = np.mean(np.ptp(Z, axis=-1)) / 64

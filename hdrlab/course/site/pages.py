@@ -129,7 +129,9 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
         live.write(one, folder)
         output["data"] = {"text/html": one.as_html(f"../{WIDGETS}")}
     if picture := live.liveliest(shown):
-        live.write_changed(folder / f"{name}.webp", web.webp(fit(web.pixels(picture), THUMBNAIL)))
+        live.write_changed(
+            folder / f"{name}.webp", web.encode_webp(fit(web.decode_picture(picture), THUMBNAIL))
+        )
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
     if not _title(notebook):

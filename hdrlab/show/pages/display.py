@@ -58,7 +58,7 @@ def write_display(folder: str | Path, pictures: ArrayLike, *, frames: int = 4) -
         write_picture(folder / f"step-{number:02d}.png", picture)
     template = templates(Path(__file__).parent).get_template(PAGE)
     height, width = shown.shape[1:]
-    pages = [web.data_uri(web.webp(picture, lossless=True)) for picture in shown]
+    pages = [web.data_uri(web.encode_webp(picture, lossless=True)) for picture in shown]
     with replacing(folder / PAGE) as temporary:
         temporary.write_text(
             template.render(pictures=pages, frames=frames, width=width, height=height), encoding="utf8"

@@ -107,7 +107,7 @@ class Illustration(NamedTuple):
 def photograph(image: Image, side: int, alt: str) -> Illustration:
     """Return a picture (H, W[, 3]), brought to at most `side` pixels."""
     small = fit(image, side)
-    return Illustration(web.data_uri(web.webp(small)), alt, small.shape[1], small.shape[0])
+    return Illustration(web.data_uri(web.encode_webp(small)), alt, small.shape[1], small.shape[0])
 
 
 def plot(ax: Axes, alt: str) -> Illustration:

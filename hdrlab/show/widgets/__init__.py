@@ -115,7 +115,7 @@ class Tuner(anywidget.AnyWidget):
         sync=True, echo_update=False
     )  # the browser moves this, and knows
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
-    frame = traitlets.Bytes().tag(sync=True)  # as `web.quick` makes it
+    frame = traitlets.Bytes().tag(sync=True)  # as `web.encode_frame` makes it
     alt = traitlets.Unicode().tag(sync=True)
     problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
     answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
@@ -140,7 +140,7 @@ class Tuner(anywidget.AnyWidget):
         at, frame, problem = list(self.at), self.frame, ""
         with undisturbed():
             try:
-                frame = web.quick(self._picture(at))
+                frame = web.encode_frame(self._picture(at))
             except Exception as error:  # it may be a student's function: its words belong beside the slider
                 problem = f"{type(error).__name__}: {error}"
             with self.hold_sync():
@@ -211,6 +211,6 @@ def tune(
     at = positions.start(f, grids)
     few = positions.few(grids, at, stored)
     images = [picture(position) for position in few]
-    kernelless = {"stored_at": few, "stored": [web.jpeg(image) for image in images]}
-    told = {"point": list(point or ()), "area": area, "frame": web.quick(images[0])}
+    kernelless = {"stored_at": few, "stored": [web.encode_jpeg(image) for image in images]}
+    told = {"point": list(point or ()), "area": area, "frame": web.encode_frame(images[0])}
     return Tuner(picture, grids, at=at, shown=at, alt=alt, **kernelless, **told)

@@ -153,7 +153,7 @@ def _traits(drawn: list[object], alt: str, labels: Sequence[str], values: Any, u
         raise ValueError(f"expected a label for each of {len(pictures)} pictures, got {labels!r}")
     read = [_readout(one, sizes[0]) for one in _each(values, len(pictures))]
     return {
-        "pictures": [web.webp(fit(picture, SIDE), lossless=True) for picture in pictures],
+        "pictures": [web.encode_webp(fit(picture, SIDE), lossless=True) for picture in pictures],
         "alt": require_alt(alt),
         "labels": list(labels),
         "values": [one.data for one in read],
@@ -176,4 +176,4 @@ def _readout(values: Array, size: tuple[int, ...]) -> Readout:
     fits = values.shape[:2] == size and values.shape[2:] in ((), (3,)) and values.dtype.kind in "uif"
     if not fits or not np.isfinite(values).all():
         raise ValueError(f"expected finite values {size} or {(*size, 3)}, got {describe(values)}")
-    return Readout(*web.half(fit(values.astype(np.float32), SIDE)), 3 if values.ndim == 3 else 1)
+    return Readout(*web.encode_halves(fit(values.astype(np.float32), SIDE)), 3 if values.ndim == 3 else 1)

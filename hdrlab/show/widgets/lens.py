@@ -96,13 +96,13 @@ def brush(
     E = fit(E, SIDE)
     if around.shape[:2] != E.shape[:2]:
         raise ValueError(f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}")
-    data, scale = web.half(E)
+    data, scale = web.encode_halves(E)
     traits: dict[str, Any] = {"size": size, "magnification": magnification, "limit": limit, "bins": bins}
     return Brush(
         radiance=data,
         scale=scale,
         shape=[*E.shape[:2], 3 if E.ndim == 3 else 1],
-        picture=web.webp(around, quality=90),
+        picture=web.encode_webp(around, quality=90),
         alt=require_alt(alt),
         centre=[E.shape[0] // 2, E.shape[1] // 2],
         **traits,
