@@ -47,7 +47,10 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
 @click.option("-o", "--out", multiple=True, type=common.FILE, help=f"Curve to write: {SUFFIXES}. Repeatable.")
 @click.option(
-    "--times", metavar="exif|estimate|FILE", default="exif", help="Exposure times, as for assemble."
+    "--times",
+    metavar="exif|estimate|FILE",
+    default="exif",
+    help="Exposure times: EXIF, corrected, or a list.",
 )
 @click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
@@ -108,7 +111,7 @@ def _assembled(state: "Assembly", response: Any) -> "Assembly":
     """Return the Assembly of an aligned bracket under a response."""
     from hdrlab import pipeline
 
-    return pipeline.assemble(state.bracket, align="none", response=response)
+    return pipeline.assemble(state.bracket, align="none", response=response, times="stated")
 
 
 def _one(

@@ -78,6 +78,7 @@ def _exr(path: str | Path) -> dict[str, Any]:
         **_size(*header.display[2:], ", ".join(header.channels), ", ".join(sorted(set(kinds)))),
         "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
         **({"data window": tuple(header.data)} if header.data != header.display else {}),
+        **({"comments": header.attributes["comments"]} if "comments" in header.attributes else {}),
     }
 
 

@@ -12,6 +12,9 @@ if TYPE_CHECKING:
     from hdrlab.core.bracket import Bracket
     from hdrlab.pipeline.assembly import Assembly
 
+WORDS = ("exif", "stated", "estimate")
+FUSION = "the picture is an exposure fusion of the photographs"
+
 
 @click.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
@@ -20,11 +23,13 @@ if TYPE_CHECKING:
 )
 @click.option(
     "--times",
-    metavar="exif|estimate|FILE",
+    metavar="exif|stated|estimate|FILE",
     default="exif",
-    help="Exposure times: of EXIF; these, corrected by the pixels; a CSV, or lines of `name 1/seconds`.",
+    help="Exposure times: EXIF's, or a list's in the folder, corrected by the pixels; these as they are; "
+    "those of the pixels; or those of a list with lines such as `a.jpg 1/60`.",
 )
-@click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
+@click.option("--keep-times", is_flag=True, help="Take the times of a FILE as they are, too.")
+@click.option("--stops", type=click.FloatRange(0, min_open=True), help="No times, but frames so far apart.")
 @click.option(
     "--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture (borders of scans)."
 )
@@ -54,17 +59,18 @@ if TYPE_CHECKING:
     "--picture", type=common.FILE, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
 )
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
-@click.option("--force", is_flag=True, help="Write the map even where the photographs put it in doubt.")
+@click.option("--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too.")
 def assemble(
     photos: tuple[Path, ...],
     out: Path,
     times: str,
-    estimate_times: bool,
+    keep_times: bool,
+    stops: float | None,
     mask: str | None,
     tonemap: str,
     picture: Path | None,
     report: Path | None,
-    force: bool,
+    strict: bool,
     merge: str,
     response: str | Path,
     **methods: str,
@@ -72,27 +78,34 @@ def assemble(
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
     Exposure comes from EXIF (time, ISO, f-number), or from --times. A file that is called exif or estimate is
-    reached as ./exif.
+    reached as ./exif. The map is written even where it is doubtful: then warnings say why and what to do, the
+    report and the header of .hdr and .exr repeat them, and --strict makes them an exit code.
     """
+    import numpy as np
+
     from hdrlab import pipeline
+    from hdrlab.fast import mertens
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
 
     recover = curves.method_or_curve(response)
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
-    bracket = files.read_bracket(
-        photos[0] if len(photos) == 1 else photos,
-        None if times in ("exif", "estimate") else Path(times),
-        mask=common.colour(mask),
-        progress=lambda paths: common.progress(paths, "reading"),
-    )
+    bracket = read_bracket(photos, times, mask, stops)
     methods["method"] = merge
-    methods["times"] = "estimate" if estimate_times or times == "estimate" else "stated"
+    methods["times"] = "stated" if keep_times or times == "stated" else "correct"
+    methods["times"] = "estimate" if times == "estimate" else methods["times"]
     assembly = _assembled(bracket, methods | {"response": recover})
-    _tell(assembly, force)
-    radiance.write_radiance(out, assembly.E)
+    for note in assembly.notes:
+        click.echo(f"note: {note}", err=True)
+    for doubt in _shorten(assembly.doubts):
+        click.echo(f"warning: {doubt}", err=True)
+    radiance.write_radiance(out, assembly.E, comments=[f"doubt: {doubt}" for doubt in assembly.doubts])
     if picture or report:
         rendered = pipeline.develop(assembly.E, tonemap)
+        if assembly.fallback:
+            click.echo(f"note: {FUSION}, for {assembly.fallback}", err=True)
+            assembly = assembly._replace(notes=(*assembly.notes, f"{FUSION}, for {assembly.fallback}"))
+            rendered = np.rint(255 * mertens.fuse(assembly.bracket.images).clip(0, 1)).astype(np.uint8)
         if picture:
             files.write_picture(picture, rendered)
         if report:
@@ -101,7 +114,53 @@ def assemble(
             write_report(
                 report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": tonemap}
             )
-    click.echo(f"{out}: {common.size(assembly.E)}, frames agree to {assembly.spread:.3f} stops")
+    agree = f"frames agree to {assembly.spread:.3f} stops"
+    agree = "how far the frames agree could not be measured" if assembly.spread != assembly.spread else agree
+    click.echo(f"{out}: {common.size(assembly.E)}, {agree}")
+    if strict and assembly.doubts:
+        click.get_current_context().exit(3)
+
+
+def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None) -> "Bracket":
+    """Return the bracket of PHOTOS with times by --times or --stops; all are 1 where there are none."""
+    from hdrlab import pipeline
+    from hdrlab.io import photos as files
+
+    colour, paths = common.colour(mask), files.photographs(photos)
+    given: Any = None if times in WORDS else Path(times)
+    if stops:
+        given = [1.0] * len(paths)
+    elif given is None and not files.have_times(paths):
+        given = _find_list(paths)
+        if given:
+            click.echo(f"note: the exposure times are those of {given}", err=True)
+        elif times == "estimate":
+            given = [1.0] * len(paths)
+    bracket = files.read_bracket(
+        paths, given, mask=colour, progress=lambda some: common.progress(some, "reading")
+    )
+    return pipeline.space_by_stops(bracket, stops) if stops else bracket
+
+
+def _find_list(paths: list[Path]) -> Path | None:
+    """Return the list of times that lies beside photographs and names all of them, or None."""
+    from hdrlab.io.exif_exposure import Exposure
+    from hdrlab.io.times import bracket_times
+
+    for file in sorted([*paths[0].parent.glob("*.csv"), *paths[0].parent.glob("*.txt")]):
+        try:
+            bracket_times([path.name for path in paths], [Exposure()], file)
+        except ValueError:
+            continue
+        return file
+    return None
+
+
+def _shorten(doubts: tuple[str, ...], most: int = 3) -> tuple[str, ...]:
+    """Return the doubts in at most so many lines; the last one counts those that are left out."""
+    if len(doubts) <= most:
+        return doubts
+    return *doubts[: most - 1], f"{len(doubts) - most + 1} more doubts stand in the report (--report FOLDER)"
 
 
 def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":
@@ -112,18 +171,7 @@ def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":
 
     steps = pipeline.assemble_steps(bracket, **methods)
     asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
-    count = len(pipeline.STAGES) + (methods["times"] == "estimate") + asked
+    count = len(pipeline.STAGES) - (methods["times"] == "stated") + asked
     if methods["align"] in BY_LIGHT:  # the first stage takes seconds a photograph
         return last(common.one_by_one(steps, ["aligning", *["the map"] * (count - 1)]))
     return last(common.progress(steps, "assembling", count))
-
-
-def _tell(assembly: "Assembly", force: bool) -> None:
-    """Print notes and doubts, or raise a ValueError where doubts forbid to write the map."""
-    for note in assembly.notes:
-        click.echo(f"note: {note}", err=True)
-    if assembly.doubts and not force:
-        said = "; ".join(assembly.doubts)
-        raise ValueError(f"{said} (nothing was written; --force writes the map as it is)")
-    for doubt in assembly.doubts:
-        click.echo(f"warning: {doubt}", err=True)

@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 from PIL import ExifTags, Image
 
-HINT = "give the times with --times FILE (times= in Python)"
+HINT = "give them by --times FILE (times= in Python), or without a list by --stops 2 or --times estimate"
 SHUTTER, SHUTTER_APEX = ExifTags.Base.ExposureTime, ExifTags.Base.ShutterSpeedValue
 APERTURE, APERTURE_APEX = ExifTags.Base.FNumber, ExifTags.Base.ApertureValue
 SPEEDS = (ExifTags.Base.ISOSpeedRatings, 34867, 34866, 34865)  # and ISO speed, recommended index, output

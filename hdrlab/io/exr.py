@@ -7,6 +7,7 @@ The picture is the display window: where the data window is smaller, the rest is
 
 import contextlib
 import io
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -108,7 +109,7 @@ def read_dtypes(path: str | Path) -> tuple[str, ...]:
     return tuple(planes[name].dtype.name for name in header.channels)
 
 
-def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
+def write(path: str | Path, E: ArrayLike, *, half: bool = False, comments: Sequence[str] = ()) -> None:
     """Write radiance as an OpenEXR file of float32, without loss, whole or not at all.
 
     Parameters
@@ -116,6 +117,7 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
     path : the file; what it held is replaced
     E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as Y
     half : True for 16-bit floats: half the size, 3 digits, up to 65504
+    comments : sentences for the header's attribute `comments`
 
     Raises
     ------
@@ -135,6 +137,8 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
         raise ValueError(f"expected radiance up to {LARGEST_HALF:.0f} for half floats, got {E.max():.6g}")
     pixels = np.ascontiguousarray(E, np.float16 if half else np.float32)
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    if comments:
+        header["comments"] = "\n".join(comments)
     with replacing(path) as name, OpenEXR.File(header, {"RGB" if E.ndim == 3 else "Y": pixels}) as file:
         file.write(str(name))
 

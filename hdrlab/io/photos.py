@@ -20,7 +20,7 @@ from hdrlab.core.types import Array, Mask
 from hdrlab.io import raw
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing
-from hdrlab.io.times import Times, bracket_times
+from hdrlab.io.times import Times, are_inverse, bracket_times
 
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
 PICTURES: dict[str, dict[str, Any]] = {
@@ -77,7 +77,8 @@ def read_bracket(
     ----------
     paths : the photographs, or one folder, of which all photographs are taken, sorted by name
     times : None to take them from EXIF; else seconds of equivalent exposure, in the order of the photographs
-        or by file name, or the path of a list (see `hdrlab.io.times.read_times`)
+        or by file name, or the path of a list (see `hdrlab.io.times.read_times`), of which numbers without
+        a unit are seconds or 1/seconds, whichever the brightness of the photographs says
     mask : the colour (R, G, B) of pixels that are no photograph, such as the border of a registered scan
     progress : what to wrap the paths in while they are decoded, such as tqdm
 
@@ -102,8 +103,9 @@ def read_bracket(
     headers = [look(path) for path in photographs(paths)]
     _check_alike(headers)
     names, exposures = [header.path.name for header in headers], [header.exposure for header in headers]
-    seconds = bracket_times(names, exposures, times)
-    headers = [headers[j] for j in np.argsort(seconds, kind="stable")]
+    seconds, inverse = bracket_times(names, exposures, times)
+    order = np.argsort(seconds, kind="stable")
+    headers = [headers[j] for j in order]
     linear = headers[0].kind == "RAW"
     balance = raw.balance(headers[0].path) if linear else None
     images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
@@ -122,7 +124,14 @@ def read_bracket(
     finally:
         pool.shutdown(cancel_futures=True)
     names = [header.path.name for header in headers]
-    return bracket(images, sorted(seconds), names, valid=valid, linear=linear)
+    if inverse and are_inverse(sorted(seconds), [image[::8, ::8].mean() for image in images]):
+        seconds = inverse
+    return bracket(images, [seconds[j] for j in order], names, valid=valid, linear=linear)
+
+
+def have_times(paths: Sequence[Path]) -> bool:
+    """Return whether the EXIF of each photograph states its time."""
+    return all(look(path).exposure.seconds for path in paths)
 
 
 def photographs(paths: Paths) -> list[Path]:

@@ -1,5 +1,6 @@
 """Radiance files by their suffix: .hdr, .pic and .rad are Radiance RGBE, .pfm float maps, .exr OpenEXR."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -79,7 +80,9 @@ def primaries_of(path: str | Path) -> tuple[float, ...] | None:
     return tuple(map(float, named))
 
 
-def write_radiance(path: str | Path, E: ArrayLike, *, half: bool = False) -> None:
+def write_radiance(
+    path: str | Path, E: ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
+) -> None:
     """Write a radiance map, in the format that the file's suffix names, whole or not at all.
 
     Parameters
@@ -87,6 +90,7 @@ def write_radiance(path: str | Path, E: ArrayLike, *, half: bool = False) -> Non
     path : a .hdr, .pic, .rad, .pfm or .exr file; what it held is replaced
     E : (H, W, 3) or (H, W) radiance, finite and not negative
     half : True for 16-bit floats, in .exr alone
+    comments : sentences for the header of .hdr and .exr files; .pfm has no place for them
 
     Raises
     ------
@@ -104,7 +108,8 @@ def write_radiance(path: str | Path, E: ArrayLike, *, half: bool = False) -> Non
     form = format_of(path)
     if half and form is not exr:
         raise ValueError(f"{path}: expected an .exr file for half floats, got {Path(path).suffix}")
-    form.write(path, E, **({"half": True} if half else {}))
+    knobs = ({"half": True} if half else {}) | ({} if form is pfm else {"comments": comments})
+    form.write(path, E, **knobs)
 
 
 def format_of(path: str | Path) -> ModuleType:

@@ -9,7 +9,9 @@ others decode m / 256, the lower end, and so does hdrlab: a file read and writte
 Run-length scanlines go through imagecodecs; the equations below serve the other files, and say what it does.
 """
 
+from collections.abc import Sequence
 from pathlib import Path
+from textwrap import wrap
 
 import imagecodecs
 import numpy as np
@@ -25,6 +27,8 @@ SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)
 SCALE[0] = 0
 # pixels: the longest run that one code of two bytes stands for
 LONGEST_RUN = 127
+# letters of a comment: OpenCV reads lines of up to 127
+COMMENT = 100
 # rows: a band that is encoded at a time
 BAND_ROWS = 64
 
@@ -73,13 +77,14 @@ def read(path: str | Path) -> F32:
     return E
 
 
-def write(path: str | Path, E: ArrayLike) -> None:
+def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> None:
     """Write radiance as a Radiance RGBE file, whole or not at all.
 
     Parameters
     ----------
     path : the file; what it held is replaced
     E : (H, W) or (H, W, 3) radiance, finite and not negative; one channel is written as three equal ones
+    comments : sentences for the header, in lines that begin with #
 
     Raises
     ------
@@ -102,7 +107,9 @@ def write(path: str | Path, E: ArrayLike) -> None:
         E = np.broadcast_to(E[..., None], (height, width, 3))
     room = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
     with replacing(path) as name, open(name, "wb") as file:
-        file.write(f"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n".encode())
+        said = "".join(f"# {line}\n" for one in comments for line in wrap(one, COMMENT))
+        head = f"#?RADIANCE\n{said}FORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
+        file.write(head.encode("ascii", "replace"))
         for y in range(0, height, BAND_ROWS):
             band = np.ascontiguousarray(E[y : y + BAND_ROWS])
             file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))

@@ -10,6 +10,7 @@ PLACES = {
     "assembly": ("Assembly", "Method"),
     "pictures": ("develop", "own_saturation"),
     "registration": ("aligned", "moved"),
+    "relative_times": ("space_by_stops",),
     "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps"),
 }
 

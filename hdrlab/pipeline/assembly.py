@@ -18,8 +18,7 @@ class Assembly(NamedTuple):
 
     Attributes
     ----------
-    stage : the one of STAGES that was done last, or "times", after "align" where these are estimated, or
-        "ghosts" or "flare", after "merge" where these are removed
+    stage : the one of STAGES that was done last; "ghosts" or "flare" after "merge" where these are removed
     bracket : the photographs, moved and cut to what all of them show
     offsets : (P, 2) int, (dy, dx) pixels, where each photograph, or its middle, was moved
     g : (n,) or (n, 3), response, ln exposure of each level
@@ -31,6 +30,7 @@ class Assembly(NamedTuple):
     homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions included
     moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
     glare : (h, w) bool, where veiling glare was removed; None where nobody asked
+    fallback : why the map is not worth a picture, and the photographs are fused instead; "" where it is
     """
 
     stage: str
@@ -45,6 +45,7 @@ class Assembly(NamedTuple):
     homographies: NDArray[np.float64] = None  # type: ignore[assignment]
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
+    fallback: str = ""
 
     @property
     def spread(self) -> float:

@@ -5,6 +5,7 @@ library's does. `assemble_steps` yields what is known after each stage; `assembl
 """
 
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -18,15 +19,15 @@ from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.diagnostics.contradictions import find_contradictions, warn_of_contradictions
 from hdrlab.fast.merge import merge_with_quality
-from hdrlab.pipeline import recovery
+from hdrlab.pipeline import recovery, relative_times
 from hdrlab.pipeline.assembly import Assembly, Method, Table
 from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as lens
 from hdrlab.radiance.deghosting import ghosts as moving
 from hdrlab.radiance.merge import METHODS, Merged
 
-STAGES = ("align", "response", "merge", "compare")
-TIMES = ("stated", "estimate")
+STAGES = ("align", "times", "response", "merge", "compare")
+TIMES = ("correct", "stated", "estimate")
 GHOSTS = ("none", "regions", "reference")
 FLARE = ("none", "glare")
 WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
@@ -35,6 +36,7 @@ WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "flat": lambda g: weights.flat(len(g)),
     "snr": weights.snr,
 }
+WORTHLESS = 0.5  # stops of spread: the map shows what no photograph does
 CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
 
 
@@ -59,9 +61,10 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         real brackets contradict each other least.
     method : {"log", "likelihood", "mean", "shot"}
         How the frames are merged, see `radiance.merge`.
-    times : {"stated", "estimate"}
-        "estimate" corrects rough times by the pixels, where that makes the frames agree better: see
-        `diagnostics.exposure_times`.
+    times : {"correct", "stated", "estimate"}
+        "correct" corrects rough times by the pixels, where held-out pixels prove it, see
+        `diagnostics.exposure_times`; and times that are all the same give way to `relative_times`. "stated"
+        leaves them as they are. "estimate" also replaces times that fall while the photographs get brighter.
     ghosts : {"none", "regions", "reference"}
         What becomes of what moved: it stays half transparent; or the map shows it as in a reference frame,
         the best exposure of each region, or the middle photograph in all: see `radiance.deghosting.ghosts`.
@@ -76,8 +79,8 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     Raises
     ------
     ValueError
-        For brackets that hold fewer than two exposures or nothing that two of them see well, and for
-        names that no method has.
+        For brackets that hold fewer than two exposures, nothing that two of them see well, or times in
+        the wrong order, and for names that no method has.
 
     Examples
     --------
@@ -98,12 +101,11 @@ def assemble_steps(
     response: Method = "auto",
     weight: str = "gaussian",
     method: str = "log",
-    times: str = "stated",
+    times: str = "correct",
     ghosts: str = "none",
     flare: str = "none",
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
-    _check_exposures(bracket)
     for what, given, known in (
         ("a weight", weight, WEIGHTS),
         ("a method", method, METHODS),
@@ -114,31 +116,45 @@ def assemble_steps(
     if ghosts not in GHOSTS or flare not in FLARE:
         ways = f"ghosts out of {', '.join(GHOSTS)} and flare out of {', '.join(FLARE)}"
         raise ValueError(f"expected {ways}, got {ghosts!r} and {flare!r}")
+    bracket, said = relative_times.complete_times(bracket, times)
     state = aligned(bracket, align, response)
-    yield state
+    yield (state := state._replace(notes=(*said, *state.notes)))
     if response == "auto":
         response = "linear" if bracket.linear else "debevec"
     w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
-    if times == "estimate":
-        yield (state := refine_times(state, response, w, merge))
-    images, seconds, _, valid, _ = state.bracket
-    g = recovery.find_validated_method(response)(images, seconds, valid=valid)
-    yield (state := state._replace(stage="response", g=g))
+    if times != "stated":
+        with suppress(ValueError):  # no response under these times: what comes next says what that means
+            found = refine_times(state, response, w, merge)
+            kept = np.array_equal(found.bracket.times, state.bracket.times)
+            state = state if kept and times == "correct" else found
+        yield (state := state._replace(stage="times"))
+    yield (state := recover(state, response))
+    (images, seconds, _, valid, _), g = state.bracket, state.g
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
     if ghosts != "none":
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
-    yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
+    state = assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
+    if state.spread > WORTHLESS:
+        state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
+    yield state
 
 
-def _check_exposures(bracket: Bracket) -> None:
-    """Raise a ValueError where a bracket holds fewer than two exposures."""
-    if len(set(bracket.times.tolist())) < 2:
-        exposures = zip(bracket.names, bracket.times, strict=True)
-        got = ", ".join(f"{name} {time:.6g} s" for name, time in exposures)
-        raise ValueError(f"expected photographs of at least two different exposures, got {got}")
+def recover(state: Assembly, response: Method) -> Assembly:
+    """Return the Assembly with its response; a usual camera's, with a doubt, where the method finds none."""
+    images, times, _, valid, linear = state.bracket
+    method = recovery.find_validated_method(response)
+    try:
+        g = method(images, times, valid=valid)
+    except ValueError as error:
+        if callable(response) or not np.isfinite(relative_times.compare_order(state.bracket)).any():
+            raise
+        g = relative_times.usual_response(256, linear)
+        reason = f"no response was found ({error}), so that of a usual camera was taken"
+        state = state._replace(doubts=(*state.doubts, reason), fallback=reason)
+    return state._replace(stage="response", g=g)
 
 
 def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]) -> Assembly:

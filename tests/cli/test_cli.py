@@ -3,6 +3,7 @@
 import subprocess
 import sys
 
+import cv2
 import numpy as np
 import pytest
 
@@ -101,22 +102,77 @@ def test_photographs_without_times_are_refused_with_what_to_do(photographs, tmp_
     code, said, complaint = hdrlab("assemble", photographs[0], "-o", tmp_path / "x.hdr", capsys=capsys)
     assert code == 2 and said == ""
     assert complaint.startswith("hdrlab: ") and complaint.count("\n") == 1
-    assert "--times" in complaint and "frame0.png" in complaint
+    assert "--times estimate" in complaint and "--stops 2" in complaint and "frame0.png" in complaint
     assert not (tmp_path / "x.hdr").exists()
 
 
-def test_photographs_that_contradict_their_times_are_refused_unless_told_otherwise(
-    photographs, tmp_path, capsys
-):
+def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(photographs, tmp_path, capsys):
     folder, times = photographs
-    text = times.read_text().replace("frame2.png,0.16", "frame2.png,0.05")
+    times.write_text(times.read_text().replace("frame2.png,0.16", "frame2.png,0.05"))
+    page, common = tmp_path / "page", ["assemble", folder, "--times", times, "--keep-times", "-o"]
+    for out in (tmp_path / "x.hdr", tmp_path / "x.exr", tmp_path / "x.pfm"):
+        code, _, said = hdrlab(*common, out, "--report", page, capsys=capsys)
+        warnings = [line for line in said.splitlines() if line.startswith("warning: ")]
+        assert code == 0 and 1 <= len(warnings) <= 3
+        assert any("contradict" in one and "frame2.png" in one for one in warnings)
+        assert "contradict" in (page / "report.html").read_text(encoding="utf8")
+        about = hdrlab("info", out, capsys=capsys)[1]
+        assert ("doubt: " in about) == (out.suffix != ".pfm")
+        assert radiance.read_radiance(out).any()
+    assert hdrlab(*common, tmp_path / "x.hdr", "--strict") == 3
+    assert cv2.imread(str(tmp_path / "x.hdr"), cv2.IMREAD_UNCHANGED).any()
+
+
+def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(photographs, tmp_path, capsys):
+    folder, times = photographs
+    code, _, said = hdrlab(
+        "assemble", folder, "-o", tmp_path / "x.hdr", "--times", times, "--strict", capsys=capsys
+    )
+    assert code == 0 and said == ""
+    assert b"doubt" not in (tmp_path / "x.hdr").read_bytes()[:500]
+
+
+def test_times_that_nobody_knows_are_steps_or_the_pixels(photographs, tmp_path, capsys):
+    folder, _ = photographs
+    steps, pixels = tmp_path / "steps.pfm", tmp_path / "pixels.pfm"
+    code, _, said = hdrlab("assemble", folder, "-o", steps, "--stops", 2, capsys=capsys)
+    assert code == 0 and said == ""
+    code, _, said = hdrlab("assemble", folder, "-o", pixels, "--times", "estimate", capsys=capsys)
+    assert code == 0 and "relative times, the shortest is 1" in said and "--stops" in said
+
+
+def test_a_list_of_times_in_the_folder_is_found(photographs, tmp_path, capsys):
+    folder, times = photographs
+    (folder / "readme.txt").write_text("Photographs of a room")
+    (folder / "times.txt").write_text(times.read_text())
+    code, _, said = hdrlab("assemble", folder, "-o", tmp_path / "x.pfm", capsys=capsys)
+    assert code == 0 and "note: the exposure times are those of" in said and "times.txt" in said
+
+
+@pytest.mark.parametrize("form", ["{:g}", "{:g} s"])
+@pytest.mark.parametrize("power", [1, -1])
+def test_numbers_in_a_list_are_seconds_or_one_over_seconds_by_the_pixels(photographs, tmp_path, form, power):
+    folder, times = photographs
+    exposures = [line.split(",") for line in times.read_text().splitlines()[1:]]
+    rows = [f"{name} {form.format(float(t) ** power)}" for name, t in exposures]
+    (tmp_path / "list.txt").write_text("\n".join(rows))
+    wrong = power < 0 and " s" in form
+    out = tmp_path / "x.pfm"
+    assert hdrlab("assemble", folder, "-o", out, "--times", tmp_path / "list.txt") == (2 if wrong else 0)
+    if not wrong:
+        assert hdrlab("assemble", folder, "-o", tmp_path / "y.pfm", "--times", times) == 0
+        assert np.allclose(radiance.read_radiance(out), radiance.read_radiance(tmp_path / "y.pfm"), rtol=1e-3)
+
+
+def test_times_in_the_wrong_order_are_refused_with_a_way_on_that_works(photographs, tmp_path, capsys):
+    folder, times = photographs
+    text = times.read_text().replace("0.01", "x").replace("0.64", "0.01").replace("x", "0.64")
     times.write_text(text)
     out = tmp_path / "x.hdr"
-    code, _, complaint = hdrlab("assemble", folder, "-o", out, "--times", times, capsys=capsys)
-    assert code == 2 and "contradict" in complaint and "frame2.png" in complaint
+    code, _, said = hdrlab("assemble", folder, "-o", out, "--times", times, capsys=capsys)
+    assert code == 2 and "longer exposure is the darker" in said and "--times estimate" in said
     assert not out.exists()
-    assert hdrlab("assemble", folder, "-o", out, "--times", times, "--force") == 0
-    assert out.exists()
+    assert hdrlab("assemble", folder, "-o", out, "--times", "estimate") == 0
 
 
 @pytest.mark.parametrize(
@@ -226,7 +282,7 @@ def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("hdrlab.io.photos.read_bracket", interrupted)
+    monkeypatch.setattr("hdrlab.io.photos.photographs", interrupted)
     code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
     assert list(tmp_path.iterdir()) == []

@@ -256,21 +256,22 @@ def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
 def test_the_pipeline_estimates_times_between_alignment_and_response(taken):
     rough = taken(5)._replace(times=taken(5).times * [1, 1, 1.1, 0.95, 1])
     states = list(pipeline.assemble_steps(rough, align="none", times="estimate"))
-    assert [state.stage for state in states] == ["align", "times", *pipeline.STAGES[1:]]
-    assert states[-1].spread < 0.3 * pipeline.assemble(rough, align="none").spread
+    assert tuple(state.stage for state in states) == pipeline.STAGES
+    assert states[-1].spread < 0.3 * pipeline.assemble(rough, align="none", times="stated").spread
     assert any("times estimated" in one and "frame 3 -0.1" in one for one in states[-1].notes)
     assert states[-1].doubts == () and not np.array_equal(states[-1].bracket.times, rough.times)
 
 
 def test_an_estimate_far_from_the_stated_times_is_accepted_with_a_doubt(taken):
     wrong = taken(5)._replace(times=taken(5).times * [1, 1, 2, 1, 1])
-    assert any("contradict their exposure times" in one for one in pipeline.assemble(wrong).doubts)
-    found = pipeline.assemble(wrong, times="estimate")
+    stated = pipeline.assemble(wrong, times="stated")
+    assert any("contradict their exposure times" in one for one in stated.doubts)
+    found = pipeline.assemble(wrong)
     assert found.spread < 0.03 and len(found.doubts) == 1 and "contrast of the map" in found.doubts[0]
 
 
-def test_other_words_than_stated_and_estimate_are_refused(taken):
-    with pytest.raises(ValueError, match="times out of stated, estimate, got 'guess'"):
+def test_other_words_than_correct_stated_and_estimate_are_refused(taken):
+    with pytest.raises(ValueError, match="times out of correct, stated, estimate, got 'guess'"):
         pipeline.assemble(taken(3), times="guess")
 
 
@@ -290,14 +291,15 @@ def rough(taken, tmp_path, monkeypatch):
 
 
 WAYS = [["estimate"], ["times.csv"], ["times.csv", "--estimate-times"]]
+KEPT = [["stated"], ["times.csv", "--keep-times"]]
 
 
-@pytest.mark.parametrize("arguments", WAYS)
-def test_the_command_estimates_times_where_it_is_told_to(rough, tmp_path, capsys, arguments):
+@pytest.mark.parametrize("arguments", [["exif"], ["estimate"], ["times.csv"], *KEPT])
+def test_the_command_corrects_times_unless_they_are_to_stay(rough, tmp_path, capsys, arguments):
     with pytest.raises(SystemExit) as stop:
         cli.run(["assemble", *rough, "-o", "map.exr", "--align", "none", "--times", *arguments])
     assert not stop.value.code and (tmp_path / "map.exr").exists()
-    assert ("times estimated" in capsys.readouterr().err) == (arguments != ["times.csv"])
+    assert ("times estimated" in capsys.readouterr().err) == (arguments not in KEPT)
 
 
 @pytest.mark.parametrize("arguments", WAYS)

@@ -9,7 +9,7 @@ from PIL import Image
 from PIL.TiffImagePlugin import IFDRational
 
 from hdrlab.io.exif_exposure import Exposure, equivalent, exif_exposure
-from hdrlab.io.times import bracket_times, read_times
+from hdrlab.io.times import are_inverse, bracket_times, read_times
 
 NAMES = ["a.jpg", "b.jpg"]
 TIME, NUMBER, SPEED, TV, AV, BIAS = 33434, 33437, 34855, 37377, 37378, 37380
@@ -90,24 +90,69 @@ def test_a_missing_time_is_named_with_the_way_out():
 
 def test_a_csv_list_gives_equivalent_exposures(tmp_path):
     text = "file,exposure_time_s,f_number,iso\na.jpg,0.5,8,100\nb.jpg,0.5,4,200\n"
-    assert read_times(wrote(tmp_path, text)) == {"a.jpg": 0.5, "b.jpg": pytest.approx(4.0)}
+    assert read_times(wrote(tmp_path, text)).seconds == {"a.jpg": 0.5, "b.jpg": pytest.approx(4.0)}
 
 
 def test_a_csv_list_may_leave_f_number_and_iso_empty_or_out(tmp_path):
     text = "file,exposure_time_s,f_number,iso\na.jpg,0.5,,\n\nb.jpg,2,,\n"
-    assert read_times(wrote(tmp_path, text)) == {"a.jpg": 0.5, "b.jpg": 2}
+    assert read_times(wrote(tmp_path, text)).seconds == {"a.jpg": 0.5, "b.jpg": 2}
     text = '\ufeffexposure_time_s, file\n0.5,"a, the first.jpg"\n'
-    assert read_times(wrote(tmp_path, text)) == {"a, the first.jpg": 0.5}
+    assert read_times(wrote(tmp_path, text)).seconds == {"a, the first.jpg": 0.5}
 
 
-def test_the_second_column_of_a_course_list_is_one_over_seconds(tmp_path):
+def test_bare_numbers_are_seconds_or_one_over_seconds(tmp_path):
     text = "# OpenCV's tutorial\nmemorial00.png 0.03125\nmemorial 01.png\t1024  # darkest\n"
-    assert read_times(wrote(tmp_path, text)) == {"memorial00.png": 32, "memorial 01.png": 1 / 1024}
+    seconds, inverse = read_times(wrote(tmp_path, text))
+    assert seconds == {"memorial00.png": 1 / 32, "memorial 01.png": 1024}
+    assert inverse == {"memorial00.png": 32, "memorial 01.png": 1 / 1024}
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "a.jpg 1/60\nb 1.jpg 1/2",
+        "a.jpg 1/60 s\nb 1.jpg 0.5 s",
+        "a.jpg\t1 / 60 sec\nb 1.jpg\t1/2",
+        "a.jpg, 1/60\nb 1.jpg, 0.5",
+        "a.jpg;1/60\nb 1.jpg;0,5",
+        "a.jpg 1/60 60\nb 1.jpg 1/2 2",
+        "a.jpg 1/60 8\nb 1.jpg 1/2 8",
+        "a.jpg 1/60 100\nb 1.jpg 1/2 100",
+        "a.jpg,1/60,8,100\nb 1.jpg,1/2,8,100",
+        "Filename\tTime (s)\na.jpg\t0.016666666666666666\nb 1.jpg\t0.5",
+        "image;1/s;ISO\na.jpg;60;200\nb 1.jpg;2;200",
+        "# by hand\n\nname, shutter speed\na.jpg, 1/60\n\nb 1.jpg, 1/2",
+    ],
+)
+def test_lists_are_read_as_people_write_them(tmp_path, text):
+    seconds, inverse = read_times(wrote(tmp_path, text))
+    assert seconds == {"a.jpg": pytest.approx(1 / 60), "b 1.jpg": 0.5} and inverse is None
+
+
+def test_a_third_column_of_f_numbers_or_iso_speeds_counts(tmp_path):
+    assert read_times(wrote(tmp_path, "a 1/60 8\nb 1/60 4")).seconds["b"] == pytest.approx(4 / 60)
+    assert read_times(wrote(tmp_path, "a 1/60 100\nb 1/60 400")).seconds["b"] == pytest.approx(4 / 60)
+
+
+def test_a_list_may_leave_out_suffixes_and_folders_and_capitals(tmp_path):
+    assert bracket_times(NAMES, [], wrote(tmp_path, "photos/A.JPG 1/2\nb 1/4"))[0] == [0.5, 0.25]
+
+
+def test_exif_decides_between_seconds_and_one_over_seconds(tmp_path):
+    path, stated = wrote(tmp_path, "a.jpg 60\nb.jpg 15"), [Exposure(1 / 50), Exposure(1 / 13)]
+    assert bracket_times(NAMES, stated, path) == ([pytest.approx(1 / 60), pytest.approx(1 / 15)], None)
+    assert bracket_times(NAMES, stated[::-1], path) == ([60, 15], None)
+    assert bracket_times(NAMES, [Exposure(), Exposure()], path)[1] == [1 / 60, 1 / 15]
+
+
+def test_numbers_that_do_not_follow_the_brightness_are_asked_for_again():
+    with pytest.raises(ValueError, match="write them as 1/60 or as 0.5 s"):
+        are_inverse([1, 2, 4, 8], [30, 90, 20, 60])
 
 
 def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_path):
     text = "# Filename exposure 1/shutter f/stop gain ND\na.png 4 0.25 8 0 0\nb.png 1 0.25 16 0 0\n"
-    assert read_times(wrote(tmp_path, text)) == {"a.png": 4, "b.png": 1}
+    assert read_times(wrote(tmp_path, text)).seconds == {"a.png": 4, "b.png": 1}
 
 
 @pytest.mark.parametrize(
@@ -115,18 +160,28 @@ def test_a_list_of_debevec_gives_one_over_its_third_column_and_the_f_stop(tmp_pa
     [
         ("", "times.txt: expected a list of exposure times, it is empty"),
         ("# only a comment\n", "it is empty"),
-        ("a.jpg 2\nb.jpg\n", "times.txt, line 2: expected a file name and 1/seconds, got b.jpg"),
-        ("a.jpg 2\n\nb.jpg fast\n", "line 3: expected a positive number, got fast"),
-        ("a.jpg 2\nb.jpg 0\n", "line 2: expected a positive number, got 0"),
-        ("a.jpg -2\n", "line 1: expected a positive number, got -2"),
-        ("a.jpg nan\n", "line 1: expected a positive number, got nan"),
-        ("a.jpg 2\na.jpg 4\n", "line 1: expected each file once, got a.jpg again"),
+        ("a.jpg 2\nb.jpg\n", "times.txt, line 2: expected a file name and its time, such as 1/60, got b.jpg"),
+        ("a.jpg 2\n\nb.jpg fast\n", "line 3: expected a positive number such as 0.5 or 1/60, got fast"),
+        ("a.jpg 2\nb.jpg 0\n", "line 2: expected a positive number such as 0.5 or 1/60, got 0"),
+        ("a.jpg -2\n", "line 1: expected a positive number such as 0.5 or 1/60, got -2"),
+        ("a.jpg nan\n", "line 1: expected a positive number such as 0.5 or 1/60, got nan"),
+        ("a.jpg 2\na.jpg 4\n", "line 2: expected each file once, got a.jpg again"),
         ("a.png 1 1 8 6 0\n", "line 1: expected neither gain nor ND filters"),
-        ("file,exposure_time_s\na.jpg\n", "line 2: expected 2 columns, got 1"),
-        ("file,exposure_time_s\na.jpg,\n", "line 2: expected a positive number, got nothing"),
-        ("file,exposure_time_s\na.jpg,1/30\n", "line 2: expected a positive number, got 1/30"),
-        ("name,exposure_time_s\na.jpg,1\n", "line 1: expected the columns file and exposure_time_s"),
-        ("file,exposure_time_s,iso\na.jpg,1,0\n", "line 2: expected a positive number, got 0"),
+        ("file,exposure_time_s\na.jpg\n", "line 2: expected 2 columns, got a.jpg"),
+        (
+            "file,exposure_time_s\na.jpg,\n",
+            "line 2: expected a positive number such as 0.5 or 1/60, got nothing",
+        ),
+        (
+            "file,exposure_time_s\na.jpg,1/0\n",
+            "line 2: expected a positive number such as 0.5 or 1/60, got 1/0",
+        ),
+        ("file,exposure_time_s\n", "it is empty"),
+        ("1/60\n1/30\n", "line 1: expected a file name and its time, such as 1/60, got 1/60"),
+        (
+            "file,exposure_time_s,iso\na.jpg,1,0\n",
+            "line 2: expected a positive number such as 0.5 or 1/60, got 0",
+        ),
         ("file,exposure_time_s,iso\na.jpg,1,100\nb.jpg,1,\n", "times.txt: b.jpg: expected the ISO speed"),
     ],
 )
@@ -148,7 +203,7 @@ def test_any_text_is_a_list_or_a_value_error(tmp_path_factory, text):
     path = tmp_path_factory.mktemp("lists") / "times.txt"
     path.write_text(text, encoding="utf-8", errors="replace")
     try:
-        times = read_times(path)
+        times = read_times(path).seconds
     except ValueError as error:
         assert str(path) in str(error)
     else:
@@ -157,10 +212,10 @@ def test_any_text_is_a_list_or_a_value_error(tmp_path_factory, text):
 
 def test_explicit_times_beat_exif(tmp_path):
     stated = [Exposure(1.0, 8.0, 100), Exposure(2.0, 4.0, 100)]
-    assert bracket_times(NAMES, stated, None) == [1, pytest.approx(8)]
-    assert bracket_times(NAMES, stated, [3, 4]) == [3, 4]
-    assert bracket_times(NAMES, stated, {"b.jpg": 5, "a.jpg": 6, "c.jpg": 7}) == [6, 5]
-    assert bracket_times(NAMES, stated, wrote(tmp_path, "b.jpg 4\na.jpg 2\n")) == [0.5, 0.25]
+    assert bracket_times(NAMES, stated, None)[0] == [1, pytest.approx(8)]
+    assert bracket_times(NAMES, stated, [3, 4])[0] == [3, 4]
+    assert bracket_times(NAMES, stated, {"b.jpg": 5, "a.jpg": 6, "c.jpg": 7})[0] == [6, 5]
+    assert bracket_times(NAMES, stated, wrote(tmp_path, "b.jpg 1/4\na.jpg 1/2\n"))[0] == [0.5, 0.25]
 
 
 def test_a_photograph_that_the_list_does_not_name_is_named(tmp_path):
@@ -181,6 +236,6 @@ def test_as_many_times_as_photographs_are_expected():
 
 def test_the_lists_of_the_memorial_bracket_agree(shared):
     folder = shared("memorial")
-    times = read_times(folder / "memorial.hdr_image_list.txt")
-    assert times == read_times(folder / "exposures.csv")
+    times = read_times(folder / "memorial.hdr_image_list.txt").seconds
+    assert times == read_times(folder / "exposures.csv").seconds
     assert len(times) == 16 and times["memorial0061.png"] == 32 and times["memorial0076.png"] == 1 / 1024

@@ -38,9 +38,9 @@ def hand_held(room):
 def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     states = list(assemble_steps(hand_held[0]))
     assert tuple(state.stage for state in states) == pipeline.STAGES
-    for name, first in (("g", 1), ("E", 2), ("quality", 2), ("medians", 3)):
-        assert [getattr(state, name) is not None for state in states] == [j >= first for j in range(4)]
-    assert [math.isnan(state.spread) for state in states] == [True, True, True, False]
+    for name, first in (("g", 2), ("E", 3), ("quality", 3), ("medians", 4)):
+        assert [getattr(state, name) is not None for state in states] == [j >= first for j in range(5)]
+    assert [math.isnan(state.spread) for state in states] == [True, True, True, True, False]
     assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
 
 

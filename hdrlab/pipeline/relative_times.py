@@ -1,0 +1,103 @@
+"""Exposure times of photographs that come with none: relative ones, from their brightness.
+
+The histograms of two photographs of one scene give their exposure ratio, if the response is known. Taken is
+that of a usual camera: its JPEGs are steeper than the curve of sRGB, in three by a power of 1.3 to 1.5. So
+these times are true up to a power, and `diagnostics.exposure_times` then improves each of them.
+"""
+
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.align import light, mtb
+from hdrlab.core.arrays import levels
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.bracket import bracket as make_bracket
+from hdrlab.core.colour import decode_srgb
+from hdrlab.core.types import F64
+from hdrlab.diagnostics import plausibility
+
+# stops by sRGB's curve over stops of exposure
+STEEPNESS = 1.4
+# stops: less between the darkest and the brightest photograph is one exposure
+LEAST_SPAN = 0.3
+# pixels of a frame, on an even grid
+PIXELS = 400_000
+WRONG_ORDER = "the longer exposure is the darker photograph: check which time belongs to which, or take them"
+
+
+def usual_response(n: int, linear: bool = False) -> F64:
+    """Return ln exposure of n levels for a usual camera, or a linear one; level 0 has a quarter level's."""
+    z = np.maximum(np.arange(n), 0.25) / (n - 1)
+    return np.log(z) if linear else np.log(decode_srgb(z)) / STEEPNESS
+
+
+def space_by_stops(bracket: Bracket, stops: ArrayLike) -> Bracket:
+    """Return the bracket with relative times: from dark to bright, each so many stops above the last.
+
+    Parameters
+    ----------
+    bracket : Bracket, whose times do not count
+    stops : one number, or one a step
+
+    Examples
+    --------
+    >>> space_by_stops(make_bracket(np.uint8([[[90]], [[9]]]), [1, 1]), 2).times.tolist()
+    [1.0, 4.0]
+    """
+    images, _, names, valid, linear = bracket
+    if not np.all(np.asarray(stops) >= 0):
+        raise ValueError(f"expected positive steps between the photographs in stops, got {stops}")
+    times = np.empty(len(images))
+    steps = np.broadcast_to(np.asarray(stops, float), (len(images) - 1,))
+    times[mtb.by_brightness(images)] = 2 ** np.cumsum([0, *steps])
+    return make_bracket(images, times, names, valid=valid, linear=linear)
+
+
+def estimate_relative_times(bracket: Bracket) -> Bracket:
+    """Return the bracket with the times that histograms give under a usual response, the shortest being 1."""
+    images = bracket.images if bracket.images.ndim == 3 else bracket.images[..., 1]
+    every = max(1, int(np.sqrt(images[0].size / PIXELS)))
+    Z, g = images[:, ::every, ::every], usual_response(levels(images), bracket.linear)
+    pairs = pairwise(mtb.by_brightness(bracket.images))
+    k = [light.exposure_ratio(Z[dark], Z[bright], g) for dark, bright in pairs]
+    return space_by_stops(bracket, np.maximum(np.log2(k), 0))
+
+
+def compare_order(bracket: Bracket) -> F64:
+    """Return how often the longer of two neighbours is the darker one, (P - 1,); NaN: they share nothing."""
+    images, times, _, valid, _ = bracket
+    Z = plausibility.ranks(images, valid)
+    return plausibility.neighbour_errors(Z, times, np.zeros((256, Z.shape[-1])))[1]
+
+
+def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ...]]:
+    """Return the bracket with times that mean something, and a note where they are relative.
+
+    Raises
+    ------
+    ValueError
+        For photographs of one exposure, for times that fall while the photographs get brighter, unless
+        they are to be estimated, and for times that are all the same, if "stated".
+    """
+    equal = np.ptp(bracket.times) == 0
+    falls = [] if equal else np.flatnonzero(compare_order(bracket) > 0.5)
+    if len(falls) and times != "estimate":
+        pair = " and ".join(
+            f"{bracket.names[j]} ({bracket.times[j]:.4g} s)" for j in (falls[0], falls[0] + 1)
+        )
+        raise ValueError(f"{pair}: {WRONG_ORDER} from the pixels (--times estimate)")
+    if not equal and not len(falls):
+        return bracket, ()
+    found = estimate_relative_times(bracket)
+    steps = np.diff(np.log2(found.times))
+    if len(found.times) < 2 or steps.sum() < LEAST_SPAN or (equal and times == "stated"):
+        exposures = zip(bracket.names, bracket.times, strict=True)
+        got = ", ".join(f"{name} {time:.6g} s" for name, time in exposures)
+        raise ValueError(f"expected photographs of at least two different exposures, got {got}")
+    by = ", ".join(f"{step:.1f}" for step in steps)
+    return found, (
+        f"relative times, the shortest is 1, by the pixels and the response of a usual camera: steps of {by} "
+        "stops; the contrast of the map is as true as these, so give --stops 2 or the like if you know them",
+    )

@@ -1,0 +1,85 @@
+"""Photographs without times: relative ones, from their order in brightness or from their histograms."""
+
+import numpy as np
+import pytest
+
+from hdrlab import pipeline, scenes
+from hdrlab.capture import camera
+from hdrlab.core.bracket import bracket
+from hdrlab.pipeline.relative_times import complete_times, estimate_relative_times, space_by_stops
+
+
+@pytest.fixture(scope="module")
+def room():
+    return scenes.room((96, 144))
+
+
+@pytest.fixture(scope="module")
+def taken(room):
+    return camera.shoot(room, camera.times_around(room, 5, stops=2), rng=1)
+
+
+def test_photographs_so_many_stops_apart_make_the_map_of_their_times(taken):
+    shuffled = bracket(taken.images[[3, 0, 4, 2, 1]], np.ones(5))
+    spaced = space_by_stops(shuffled, 2)
+    assert spaced.times.tolist() == [1, 4, 16, 64, 256] and np.array_equal(spaced.images, taken.images)
+    ratio = pipeline.assemble(spaced).E / pipeline.assemble(taken).E
+    assert np.allclose(ratio, np.median(ratio), rtol=1e-2)
+
+
+def test_steps_may_differ_and_are_positive(taken):
+    assert space_by_stops(taken, [1, 2, 1, 3]).times.tolist() == [1, 2, 8, 16, 128]
+    with pytest.raises(ValueError, match="positive steps"):
+        space_by_stops(taken, -1)
+
+
+@pytest.mark.parametrize("response", ["film", "srgb", "gamma"])
+def test_relative_times_have_the_right_order_and_roughly_the_right_steps(room, response):
+    taken = camera.shoot(room, camera.times_around(room, 5, stops=2), camera.Camera(response=response), rng=1)
+    shuffled = bracket(taken.images[[3, 0, 4, 2, 1]], np.ones(5))
+    steps = np.diff(np.log2(estimate_relative_times(shuffled).times))
+    assert np.all((steps > 1) & (steps < 3.2))
+
+
+def test_relative_times_of_a_linear_camera_are_right(room):
+    linear = camera.Camera(response="linear", bits=16)
+    taken = camera.shoot(room, camera.times_around(room, 4, stops=2), linear, rng=1)
+    steps = np.diff(np.log2(estimate_relative_times(taken._replace(times=np.ones(4))).times))
+    assert np.allclose(steps, 2, atol=0.1)
+
+
+def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
+    found = pipeline.assemble(taken._replace(times=np.full(5, 0.01)))
+    assert "relative times, the shortest is 1" in found.notes[0] and "--stops" in found.notes[0]
+    assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
+    with pytest.raises(ValueError, match="at least two different exposures"):
+        pipeline.assemble(taken._replace(times=np.full(5, 0.01)), times="stated")
+
+
+def test_one_exposure_many_times_is_refused(room):
+    burst = camera.shoot(room, [0.002] * 4, camera.Camera(full_well=20_000), rng=1)
+    with pytest.raises(ValueError, match="at least two different exposures"):
+        pipeline.assemble(burst)
+
+
+def test_times_in_the_wrong_order_are_refused_or_estimated_where_that_is_asked_for(taken):
+    reversed_ = bracket(taken.images, taken.times[::-1])
+    with pytest.raises(ValueError, match="frame 5 .* and frame 4 .*darker photograph.*--times estimate"):
+        complete_times(reversed_, "correct")
+    found, (note,) = complete_times(reversed_, "estimate")
+    assert np.array_equal(found.images, taken.images) and "relative times" in note
+
+
+def test_true_times_stay_byte_for_byte_and_say_nothing(taken):
+    found = pipeline.assemble(taken)
+    assert found.bracket.times.tobytes() == taken.times.tobytes()
+    assert found.notes == () and found.doubts == () and found.fallback == ""
+
+
+def test_rough_times_are_corrected_unless_they_are_to_stay():
+    room = scenes.room((280, 420))
+    taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
+    rough = taken._replace(times=taken.times * [1, 1, 1.1, 1, 1])
+    found, stated = (pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated"))
+    assert stated.bracket.times.tobytes() == rough.times.tobytes()
+    assert found.spread < stated.spread and "times estimated" in found.notes[0]
