@@ -107,11 +107,13 @@ def calibrate(
         _one(state, response, out, plot, rounds, seed)
 
 
-def _assembled(state: "Assembly", response: Any) -> "Assembly":
-    """Return the Assembly of an aligned bracket under a response."""
+def _assembled(state: "Assembly", name: str) -> "Assembly":
+    """Return the Assembly of an aligned bracket under the plausible response that a method finds."""
     from hdrlab import pipeline
+    from hdrlab.pipeline import recovery
 
-    return pipeline.assemble(state.bracket, align="none", response=response, times="stated")
+    g = recovery.find_validated_method(name)(*state.bracket[:2], valid=state.bracket.valid)
+    return pipeline.assemble(state.bracket, align="none", response=lambda *_, **__: g, times="stated")
 
 
 def _one(

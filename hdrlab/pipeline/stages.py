@@ -119,12 +119,10 @@ def assemble_steps(
     bracket, said = relative_times.complete_times(bracket, times)
     state = aligned(bracket, align, response)
     yield (state := state._replace(notes=(*said, *state.notes)))
-    if response == "auto":
-        response = "linear" if bracket.linear else "debevec"
     w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
     if times != "stated":
         with suppress(ValueError):  # no response under these times: what comes next says what that means
-            found = refine_times(state, response, w, merge)
+            found = refine_times(state, recovery.resolve_auto(response, bracket), w, merge)
             kept = np.array_equal(found.bracket.times, state.bracket.times)
             state = state if kept and times == "correct" else found
         yield (state := state._replace(stage="times"))
@@ -143,18 +141,10 @@ def assemble_steps(
 
 
 def recover(state: Assembly, response: Method) -> Assembly:
-    """Return the Assembly with its response; a usual camera's, with a doubt, where the method finds none."""
-    images, times, _, valid, linear = state.bracket
-    method = recovery.find_validated_method(response)
-    try:
-        g = method(images, times, valid=valid)
-    except ValueError as error:
-        if callable(response) or not np.isfinite(relative_times.compare_order(state.bracket)).any():
-            raise
-        g = relative_times.usual_response(256, linear)
-        reason = f"no response was found ({error}), so that of a usual camera was taken"
-        state = state._replace(doubts=(*state.doubts, reason), fallback=reason)
-    return state._replace(stage="response", g=g)
+    """Return the Assembly with its response, and what is to be said of it."""
+    g, notes, doubts, fallback = recovery.find_response(response, state.bracket)
+    notes, doubts = (*state.notes, *notes), (*state.doubts, *doubts)
+    return state._replace(stage="response", g=g, notes=notes, doubts=doubts, fallback=fallback)
 
 
 def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]) -> Assembly:

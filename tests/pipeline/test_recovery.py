@@ -1,4 +1,4 @@
-"""A response that its photographs contradict is refused; one that a reader brings is taken as it is."""
+"""A response that its photographs contradict is replaced, with a doubt; a reader's own is taken as it is."""
 
 import laws
 import numpy as np
@@ -6,7 +6,7 @@ import pytest
 
 from hdrlab import pipeline
 from hdrlab.capture import camera
-from hdrlab.capture.responses import RESPONSES
+from hdrlab.capture.responses import RESPONSES, true_g
 from hdrlab.fast import debevec
 from hdrlab.pipeline import catalogue, recovery
 from hdrlab.response import linear
@@ -22,12 +22,27 @@ def test_every_recovery_by_name_is_validated(name, response, law):
     law(recovery.find_validated_method(name), response)
 
 
-def test_a_usual_response_serves_where_the_photographs_contradict_their_times(decades):
-    taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64], camera.Camera(response="film"))
+@pytest.fixture(scope="module")
+def taken(decades):
+    return camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64], camera.Camera(response="film"), rng=1)
+
+
+@pytest.mark.parametrize("method", ["auto", *METHODS])
+def test_a_usual_response_serves_where_the_photographs_contradict_their_times(taken, method):
     wrong = taken._replace(times=taken.times * [1, 1, 1, 10_000])
-    found = pipeline.assemble(wrong, align="none", response="debevec")
+    found = pipeline.assemble(wrong, align="none", response=method)
     assert any("no response was found" in doubt for doubt in found.doubts)
     assert found.fallback and np.all(np.isfinite(found.E)) and found.E.any()
+
+
+def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken, monkeypatch):
+    def refuse(*_, **__):
+        raise ValueError("expected the moon")
+
+    monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
+    found = recovery.find_response("mann", taken)
+    assert laws.curve_error(found.g, true_g("film")) < 0.05 and not found.fallback
+    assert "expected the moon" in found.doubts[0]
 
 
 def test_linear_and_a_function_are_taken_as_they_are():
@@ -35,7 +50,6 @@ def test_linear_and_a_function_are_taken_as_they_are():
     assert recovery.find_validated_method(debevec.recover) is debevec.recover
 
 
-def test_a_validated_response_is_the_method_s_own(decades):
-    taken = camera.shoot(decades((60, 80)), [0.01, 0.04, 0.16, 0.64])
+def test_a_validated_response_is_the_method_s_own(taken):
     g = recovery.find_validated_method("debevec")(taken.images, taken.times)
     assert np.array_equal(g, debevec.recover(taken.images, taken.times))
