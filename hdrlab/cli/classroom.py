@@ -35,7 +35,7 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> N
     from hdrlab.course.classroom import handins, journal, overview
     from hdrlab.course.classroom import run as classroom
 
-    times = classroom.times(asked.received) if asked.received else {}
+    times = handins.read_times(asked.received) if asked.received else {}
     found = handins.find(folder, course.roster, times)
     for note in found.notes:
         click.echo(f"note: {note}", err=True)
@@ -48,7 +48,7 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> N
         for said in lost:
             click.echo(f"warning: {said}", err=True)
         counted = overview.tally(classroom.read(out, everything))
-        *_, page = overview.write(out, course, found.handins, counted, [*found.notes, *lost])
+        *_, page = overview.write(out, course, found, counted, lost)
         _compare(out, course, found.handins)
     fresh = sum(one.fresh for one in done if one.result)
     click.echo(f"{page}: {len(counted.points)} of {len(found.handins)} graded, {fresh} of them now")

@@ -13,10 +13,11 @@ MAX_PIXELS = 1 << 27
 
 
 @contextmanager
-def replacing(path: str | Path) -> Iterator[Path]:
+def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     """Yield a temporary name beside `path`, which takes the place of `path` when the block ends well.
 
     When the block fails, or is interrupted, the temporary file is removed and what stood at `path` stays.
+    A private file is for its owner's eyes, from the first byte on.
 
     Raises
     ------
@@ -41,6 +42,8 @@ def replacing(path: str | Path) -> Iterator[Path]:
         raise ValueError(f"cannot write {path}: expected the name of a file, this is a folder or a device")
     temporary = path.with_name(f".hdrlab-{secrets.token_hex(6)}{path.suffix}")  # codecs look at the suffix
     try:
+        if private:
+            temporary.touch(mode=0o600)
         yield temporary
         os.replace(temporary, path)
     except BaseException:  # Ctrl-C as well

@@ -147,4 +147,4 @@ def test_files_find_their_owners(tmp_path):
         "b3": "hw2.ipynb",
     }
     assert found.handins["team1"].students == ("b1", "b2")
-    assert len(found.notes) == 3 and any("B2_hw2" in note for note in found.notes)
+    assert len(found.notes) == 6 and any("B2_hw2" in note for note in found.notes)

@@ -77,6 +77,58 @@ def test_a_practice_score_is_never_for_credit(hostile):
     assert json.loads(results.to_json(practice))["for_credit"] is False
 
 
+def test_without_a_secret_a_score_is_for_practice_whatever_the_tier(hostile):
+    public = hostile._replace(seed="")
+    assert not public.for_credit and "without a secret" in public.why_practice
+    assert "without a secret" in feedback.page(public) and "For practice" in feedback.page(public)
+    assert "without a secret" in gradebook.gradescope(public).decode()
+    assert json.loads(results.to_json(public))["for_credit"] is False
+
+
+def values(read):
+    """All texts of a JSON."""
+    if isinstance(read, dict | list):
+        return [text for one in (read.values() if isinstance(read, dict) else read) for text in values(one)]
+    return [str(read)]
+
+
+SECRETS = ("the message", "first hint", "expected 0.25", "what it printed", "test_hidden_name")
+
+
+def test_a_teams_copy_holds_of_a_hidden_check_its_words_and_points_alone(hostile):
+    picture = Drawing((web.webp(np.zeros((4, 4), np.uint8)),), ("expected 0.25",), ("expected 0.25",))
+    hidden = Check("gsolve", "test_hidden_name", "It is kept", Fraction(), Fraction(1), "fails", *SECRETS[:1])
+    hidden = hidden._replace(hints=("first hint",), drawing=picture, said="what it printed", hidden=True)
+    own = hostile.checks[1]._replace(message="yours to read")
+    whole = results.to_json(hostile._replace(checks=(own, hidden)))
+    shown = json.loads(results.for_team(whole))
+    assert not [text for text in values(shown) if any(secret in text for secret in SECRETS)]
+    assert set(shown["checks"][1]) == {"task", "promise", "points", "max_points", "outcome", "hidden"}
+    assert shown["checks"][0]["message"] == "yours to read" and shown["score"] == 0
+
+
+def test_what_a_later_version_adds_to_a_result_is_not_in_a_teams_copy(hostile):
+    whole = json.loads(results.to_json(hostile))
+    whole["answers"] = whole["checks"][0]["answer"] = whole["checks"][2]["answer"] = "expected 0.25"
+    assert "expected 0.25" not in results.for_team(json.dumps(whole).encode()).decode()
+
+
+def test_all_that_is_written_is_for_its_owners_eyes(hostile, tmp_path):
+    for file in gradebook.write_results(tmp_path / "new" / "out", hostile):
+        assert file.stat().st_mode & 0o077 == 0
+    assert (tmp_path / "new" / "out").stat().st_mode & 0o077 == 0
+
+
+def test_a_promise_that_holds_and_earns_nothing_says_why(hostile):
+    held = CHECK._replace(
+        points=Fraction(), message="It holds, and earns its points where this holds, too: B"
+    )
+    result = hostile._replace(checks=(held,))
+    assert "where this holds, too: B" in feedback.text(
+        result
+    ) and "where this holds, too: B" in feedback.page(result)
+
+
 def test_gradescope_gets_what_its_schema_asks(hostile):
     """The keys, types and words of its specification of results.json."""
     read = json.loads(gradebook.gradescope(hostile))

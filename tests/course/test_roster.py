@@ -1,7 +1,7 @@
 """The class list, its teams, and tables that spreadsheets cannot run."""
 
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from hdrlab.course.classroom import roster
@@ -31,7 +31,7 @@ def test_students_and_teams_are_recognised(listed):
     "text, said",
     [
         ("name\nAda\n", "column student"),
-        ("student\nb1\nB1\n", "each student once"),
+        ("student\nb1\nB1\n", "lines 2 and 3: expected each name once"),
         ("student,team\nb1,7\nb2,7\nb3,7\n", "teams of 2"),
         ("student\n../b1\n", "line 2"),
         ("student,team\nb1,7\nb2,../7\n", "line 3: expected a team's name"),
@@ -43,6 +43,61 @@ def test_students_and_teams_are_recognised(listed):
 def test_a_roster_that_cannot_be_is_refused_and_the_place_is_named(listed, text, said):
     with pytest.raises(ValueError, match=said):
         listed(text)
+
+
+CONFUSED = {
+    "a team that is another's id": "student,team\nb01,b02\nb02,\n",
+    "a team that is another's id, in capitals": "student,team\nb01,B02\nb02,\n",
+    "a team that is another's file": "student,team\nb01,\nb02,b01_hw2\n",
+    "a team that begins another's file, by a blank": "student,team\nb01,\nb02,b01 hw2\n",
+    "an id that begins another id": "student\nb01\nb01-a\n",
+    "an id that begins another's team": "student,team\nt,\nb02,t.7\n",
+    "a team that begins another team": "student,team\nb01,t\nb02,t_1\n",
+    "an id in wide letters": "student\nb01\n\uff42\uff10\uff11\n",
+    "an id with a composed letter": "student\nb\u00e9\nbe\u0301\n",
+    "an id with a ligature": "student\nsta\ufb03\nstaffi\n",
+    "an id with a sharp s": "student\nwei\u00df\nWEISS\n",
+    "an id with a mark that is not seen": "student\nb01\nb0\u200b1\n",
+    "a team in two ways of writing": "student,team\nb01,T\nb02,t\n",
+    "a team that is another's id, who is in a third": "student,team\nb01,b02\nb02,t\n",
+}
+
+
+@pytest.mark.parametrize("text", CONFUSED.values(), ids=CONFUSED)
+def test_names_that_a_file_could_confuse_are_refused_with_both_lines(listed, text):
+    with pytest.raises(ValueError, match=r"lines 2 and 3: expected each name once"):
+        listed(text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "student,team\nb01,b01\nb02,b01\n",  # a team named after one of its own
+        "student,team\nb01,b01-b02\nb02,b01-b02\n",  # or after both
+        "student\nb1\nb12\nb123\n",  # no sign between
+        "student,team\nb01,t1\nb02,t1\nb03,t10\n",
+    ],
+)
+def test_names_that_no_file_confuses_are_taken(listed, text):
+    assert listed(text).students
+
+
+@settings(max_examples=30)
+@given(
+    st.lists(
+        st.text("ab1_-", min_size=1, max_size=4).filter(lambda id: id[0] != "-"), unique=True, min_size=1
+    )
+)
+def test_of_a_roster_that_is_taken_each_file_has_one_owner(tmp_path_factory, ids):
+    path = tmp_path_factory.mktemp("class") / "roster.csv"
+    path.write_text("\n".join(["student", *ids]))
+    try:
+        found = roster.read(path)
+    except ValueError:
+        return
+    for id in ids:
+        for name in (id, f"{id}_hw2.ipynb", f"{id}.zip", f"{id.upper()}-b.py"):
+            assert found.owner(name) == id
 
 
 def test_a_stranger_and_a_mixed_team_are_told(listed):

@@ -90,8 +90,9 @@ def place(folder: Path, piece: Piece) -> Path:
 
 
 def write(path: Path, data: bytes) -> None:
-    """Write a file so that after a power failure, too, it is there whole or not at all."""
+    """Write a file for its owner's eyes; after a power failure, too, it is there whole or not at all."""
     temporary = path.with_name(f".hdrlab-{os.getpid()}-{path.name}")
+    temporary.touch(mode=0o600)
     with open(temporary, "wb") as file:
         file.write(data)
         file.flush()
@@ -105,6 +106,13 @@ def write(path: Path, data: bytes) -> None:
             os.close(handle)
 
 
+def make_private(folder: Path) -> Path:
+    """Make a folder that nobody but its owner can open, also where it is there already; return it."""
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
+    folder.chmod(0o700)
+    return folder
+
+
 @contextlib.contextmanager
 def lock_folder(folder: Path) -> Iterator[None]:
     """Make a folder and hold it for one run; what a killed one left half written in it is removed.
@@ -114,7 +122,7 @@ def lock_folder(folder: Path) -> Iterator[None]:
     ValueError
         Where another run holds it. Who is killed holds nothing.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     with _locked(folder):
         for rest in folder.rglob(".hdrlab-*"):
             rest.unlink(missing_ok=True)
@@ -173,7 +181,7 @@ def done_steps(pieces: Sequence[Piece], executor: Executor, folder: Path) -> Ite
     executor : does it
     folder : of the results, made where it is missing
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    make_private(folder)
     older = _older(folder, pieces)
     for ending in _endings(pieces, executor):
         piece, result = ending.piece, ending.result

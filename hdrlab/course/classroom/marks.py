@@ -5,6 +5,7 @@ A row of the gradebook holds what the next homework's needs, so gradebooks add u
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 from hdrlab.course.classroom.handins import Handin
@@ -18,6 +19,7 @@ COLUMNS = (
     *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),
     *("grace left", "note"),
 )
+NOT_GRADED = "not graded"
 LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
 DAYS = range(15)  # of the what-if table
 
@@ -40,7 +42,12 @@ class Mark(NamedTuple):
     note: str = ""
 
 
-def marks(course: Course, handins: Mapping[str, Handin], points: Mapping[str, float]) -> list[Mark]:
+def marks(
+    course: Course,
+    handins: Mapping[str, Handin],
+    points: Mapping[str, float],
+    remarks: Mapping[str, str] = MappingProxyType({}),
+) -> list[Mark]:
     """Return a row for each student of the roster.
 
     Parameters
@@ -48,6 +55,7 @@ def marks(course: Course, handins: Mapping[str, Handin], points: Mapping[str, fl
     course : of whom, of what, and by which rule for what comes late
     handins : what counts of each team
     points : of the work, by team; a team without is noted
+    remarks : by team, why a file was refused, or what else stands in its note
     """
     homework, late = course.homework, course.late
     handed = [*course.before]
@@ -59,12 +67,14 @@ def marks(course: Course, handins: Mapping[str, Handin], points: Mapping[str, fl
     mine = {bill.student: bill for bill in bills if bill.project == homework.name}
     rows = []
     for id, name, team, _ in course.roster.students:
-        who, of = (id, name, team, homework.name), homework.points
+        who, of, remark = (id, name, team, homework.name), homework.points, remarks.get(team, "")
         if id not in mine:
             grace = left.get(id, late.free_days)
-            rows.append(Mark(*who, "", 0, 0, 0.0, of, 0.0, 0.0, grace, "not handed in"))
+            note = "; ".join(filter(None, ("not handed in", remark)))
+            rows.append(Mark(*who, "", 0, 0, 0.0, of, 0.0, 0.0, grace, note))
             continue
-        bill, work, note = mine[id], points.get(team, 0.0), "" if team in points else "not graded"
+        bill, work = mine[id], points.get(team, 0.0)
+        note = "; ".join(filter(None, ("" if team in points else NOT_GRADED, handins[team].note, remark)))
         received = handins[team].received.isoformat(timespec="minutes")
         row = Mark(
             *who, received, bill.late, bill.excused, work, of, bill.penalty, bill.score, bill.left, note
@@ -99,7 +109,7 @@ def read(paths: Sequence[Path]) -> list[Handed]:
     for path in paths:
         for row in sheets.read_csv(path, most=LARGE):
             try:
-                if not row["note"]:
+                if row["received"] and not row["note"].startswith(NOT_GRADED):
                     student = (row["student"].removeprefix("'"),)
                     handed.append(Handed(row["homework"], int(row["late"]), student, float(row["work"])))
             except (KeyError, ValueError):

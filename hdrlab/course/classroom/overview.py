@@ -8,12 +8,12 @@ class.html      how many hold each promise, and which misconceptions were met: w
 
 import statistics
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course.classroom import journal, marks
-from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.handins import Found
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
@@ -52,25 +52,23 @@ def tally(each: Iterable[Result]) -> Tally:
     return Tally(points, outcomes, met)
 
 
-def write(
-    out: Path, course: Course, handins: Mapping[str, Handin], counted: Tally, notes: Sequence[str] = ()
-) -> list[Path]:
+def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequence[str] = ()) -> list[Path]:
     """Write all that is about the whole class, and return the files; a new one has its line here.
 
     Parameters
     ----------
     out : the folder of the results
-    course, handins, counted : by what, what counts of each team, and what came of it
-    notes : of what was left out, or could not be graded
+    course, found, counted : by what, what was handed in, and what came of it
+    lost : what could not be graded
     """
-    rows = marks.marks(course, handins, counted.points)
+    rows = marks.marks(course, found.handins, counted.points, found.refused)
     tables: dict[str, tuple[Sequence[str], Sequence[Sequence[sheets.Cell]]]] = {
         "gradebook.csv": (marks.COLUMNS, rows),
         "canvas.csv": marks.canvas(rows, course.homework),
         "what_if.csv": marks.what_if(course, counted.points),
     }
     files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]
-    journal.write(out / "class.html", page(course.homework, counted, notes).encode())
+    journal.write(out / "class.html", page(course.homework, counted, [*found.notes, *lost]).encode())
     return [*files, out / "class.html"]
 
 

@@ -4,6 +4,7 @@ The roster is a CSV file with the columns `student` (the number or name at the u
 `name`, `email` and `team`. Who has no team works alone.
 """
 
+import unicodedata
 from collections import Counter
 from collections.abc import Iterable, Iterator
 from pathlib import Path
@@ -17,6 +18,24 @@ NAME = 80  # characters
 FORBIDDEN = set('/\\:*?"<>|') | {chr(code) for code in range(32)}  # an id or a team names files
 
 
+def fold(name: str) -> str:
+    """Return a name as names are compared: case and Unicode's other ways of writing a letter do not count.
+
+    Examples
+    --------
+    >>> fold("B03") == fold("b03") == fold("\uff22\uff10\uff13"), fold("e\u0301") == fold("\u00c9")
+    (True, True)
+    """
+    return unicodedata.normalize("NFKC", unicodedata.normalize("NFKC", name).casefold())
+
+
+def _beginnings(key: str) -> Iterator[str]:
+    """Yield a folded name, and what stands in it before a sign, from the longest on."""
+    for end in range(len(key), 0, -1):
+        if end == len(key) or not (key[end].isalnum() or unicodedata.combining(key[end])):
+            yield key[:end]
+
+
 class Student(NamedTuple):
     """One of the class; `team` is the student's own id where there is no partner."""
 
@@ -26,6 +45,15 @@ class Student(NamedTuple):
     email: str = ""
 
 
+class Name(NamedTuple):
+    """An id or a team as a line of the roster has it, and whose files begin with it."""
+
+    text: str
+    kind: str
+    line: int
+    owner: str
+
+
 class Roster(NamedTuple):
     """The class, in the order of its file."""
 
@@ -33,9 +61,9 @@ class Roster(NamedTuple):
 
     def find(self, id: str) -> Student:
         """Return a student by id, whatever its case, or raise a ValueError."""
-        wanted = plain(id, NAME).casefold()
+        wanted = fold(plain(id, NAME))
         for one in self.students:
-            if one.id.casefold() == wanted:
+            if fold(one.id) == wanted:
                 return one
         raise ValueError(f"expected a student of the roster, got {plain(id, NAME)!r}")
 
@@ -45,6 +73,18 @@ class Roster(NamedTuple):
         for one in self.students:
             found.setdefault(one.team, []).append(one)
         return {team: tuple(members) for team, members in found.items()}
+
+    def owner(self, file: str) -> str | None:
+        """Return the team whose file it is: its name begins with the team's or a student's.
+
+        Examples
+        --------
+        >>> roster = Roster((Student("b1", "Ada", "t"), Student("b12", "Bo", "b12")))
+        >>> [roster.owner(name) for name in ("B1_hw2.ipynb", "b12.py", "t-hw2.zip", "b123.py", "xb1.py")]
+        ['t', 'b12', 't', None, None]
+        """
+        teams = {fold(name): one.team for one in self.students for name in (one.team, one.id)}
+        return next((teams[one] for one in _beginnings(fold(file)) if one in teams), None)
 
     def team_of(self, ids: Iterable[str]) -> str:
         """Return the team that a submission's students are; all of them must be of one.
@@ -71,13 +111,17 @@ def read(path: str | Path) -> Roster:
     Raises
     ------
     ValueError
-        Where a student is missing or there twice, an id or a team cannot name a file, or a team is of three.
+        Where an id or a team cannot name a file, a team is of three, or a name could be taken for another's:
+        both lines are named.
     """
     rows = sheets.read_csv(path)
     if not rows or "student" not in rows[0]:
         raise ValueError(f"{path}: expected the column student, and name, email, team where wanted")
-    students = tuple(_students(path, rows))
-    _check(path, students)
+    students, lines = tuple(_students(path, rows)), list(_names(rows))
+    _check_names(path, lines)
+    large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
+    if large:
+        raise ValueError(f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}")
     return Roster(students)
 
 
@@ -91,10 +135,28 @@ def _students(path: str | Path, rows: list[dict[str, str]]) -> Iterator[Student]
         yield Student(id, plain(row.get("name", ""), NAME) or id, team, plain(row.get("email", ""), 200))
 
 
-def _check(path: str | Path, students: tuple[Student, ...]) -> None:
-    twice = [id for id, count in Counter(one.id.casefold() for one in students).items() if count > 1]
-    if twice:
-        raise ValueError(f"{path}: expected each student once, got {', '.join(twice)} more often")
-    large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
-    if large:
-        raise ValueError(f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}")
+def _names(rows: list[dict[str, str]]) -> Iterator[Name]:
+    """Yield each id and each team that is written, with who hands in under it."""
+    for line, row in enumerate(rows, 2):
+        id, team = (plain(row.get(column, ""), NAME) for column in ("student", "team"))
+        owner = f"team {fold(team)}" if team else f"student {fold(id)}"
+        yield Name(id, "student", line, owner)
+        if team:
+            yield Name(team, "team", line, owner)
+
+
+def _check_names(path: str | Path, names: list[Name]) -> None:
+    """Raise a ValueError for two names of which one is the other, or begins with it and goes on by a sign."""
+    known: dict[str, Name] = {}
+    for one in sorted(names, key=lambda one: len(fold(one.text))):
+        key = fold(one.text)
+        for other in (known[name] for name in _beginnings(key) if name in known):
+            same = one.kind == other.kind and key == fold(other.text)
+            if one.owner != other.owner or (same and (one.kind == "student" or one.text != other.text)):
+                first, second = sorted((one, other), key=lambda name: name.line)
+                raise ValueError(
+                    f"{path}, lines {first.line} and {second.line}: expected each name once, and none that "
+                    f"begins another; got the {first.kind} {first.text!r} and the {second.kind} "
+                    f"{second.text!r}, whose files could be taken for each other's"
+                )
+        known.setdefault(key, one)

@@ -25,7 +25,7 @@ from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.grading import Conditions
 from hdrlab.course.plan import Homework, Late
-from hdrlab.course.reports import gradebook, results, sheets
+from hdrlab.course.reports import gradebook, results
 from hdrlab.course.reports.results import Result
 from hdrlab.course.sandbox import doctor
 from hdrlab.course.sandbox.running import Unavailable
@@ -188,11 +188,13 @@ def write_feedback(out: Path, done: Done) -> Done:
     """
     if done.result is not None:
         folder, data = out / "feedback" / done.piece.owner, done.result.read_bytes()
-        whole = folder / "result.json"
+        whole, shown = folder / "result.json", results.for_team(data)
         missing = [name for name in gradebook.FILES if not (folder / name).is_file()]
-        if missing or whole.read_bytes() != data:
+        if missing or whole.read_bytes() != shown:
+            for one in (folder.parent, folder):
+                journal.make_private(one)
             whole.unlink(missing_ok=True)
-            gradebook.write_results(folder, results.from_json(data))
+            gradebook.write_results(folder, results.from_json(data), shown)
     return done
 
 
@@ -202,18 +204,3 @@ def read(out: Path, everything: Sequence[Piece]) -> Iterator[Result]:
         path = journal.place(out / "results", piece)
         if path.is_file():
             yield results.from_json(path.read_bytes())
-
-
-def times(path: Path) -> dict[str, datetime]:
-    """Return when files came, from a table with the columns file and received."""
-    came = {}
-    for row in sheets.read_csv(path):
-        try:
-            came[row["file"]] = datetime.fromisoformat(row["received"])
-        except (KeyError, ValueError):
-            raise ValueError(
-                f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
-            ) from None
-        if came[row["file"]].tzinfo is None:
-            raise ValueError(f"{path}: expected times with a zone, got {row['received']}")
-    return came

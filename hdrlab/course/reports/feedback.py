@@ -54,8 +54,10 @@ def text(result: Result, *, hints: int = 0, private: bool = False) -> str:
 
 
 def _why(check: Check, hints: int, private: bool) -> list[str]:
-    if check.outcome == "holds" or (check.hidden and not private):
+    if check.hidden and not private:
         return []
+    if check.outcome == "holds":
+        return [check.message] if check.message else []
     told = [f"Hint {n}: {hint}" for n, hint in enumerate(check.hints[:hints], 1)]
     return [*check.message.splitlines(), *check.drawing.alts, *told]
 

@@ -25,7 +25,7 @@ def gradescope(result: Result) -> bytes:
     """
     head = [*result.problems]
     if not result.for_credit:
-        head.append("For practice: it ran without a sandbox, so this score is not for credit.")
+        head.append(f"For practice. {result.why_practice}")
     whole = {
         "score": result.score,
         "output": "\n".join(head),
@@ -87,20 +87,21 @@ def table(graded: Iterable[Result]) -> str:
     return sheets.csv_text([*COLUMNS, *tasks], rows)
 
 
-def write_results(folder: Path, result: Result) -> list[Path]:
+def write_results(folder: Path, result: Result, shown: bytes | None = None) -> list[Path]:
     """Write a Result in all forms into a folder, which is made where it is missing; return the files.
 
-    The JSON is written last: where it is, all of it is.
+    The JSON is written last: where it is, all of it is. It is `shown` where a team is to read it, and the
+    whole Result unless told. The files are for their owner's eyes.
     """
-    folder.mkdir(parents=True, exist_ok=True)
+    folder.mkdir(mode=0o700, parents=True, exist_ok=True)
     contents = {
         "gradescope.json": gradescope(result),
         "junit.xml": junit(result),
         "result.csv": table([result]).encode(),
         "feedback.html": feedback.page(result).encode(),
-        "result.json": results.to_json(result),
+        "result.json": results.to_json(result) if shown is None else shown,
     }
     for name, data in contents.items():
-        with replacing(folder / name) as temporary:
+        with replacing(folder / name, private=True) as temporary:
             temporary.write_bytes(data)
     return [folder / name for name in FILES]

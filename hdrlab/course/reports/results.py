@@ -10,6 +10,11 @@ from typing import Any, Literal, NamedTuple
 
 VERSION = 1
 CREDIT = ("strict", "container")  # tiers that count
+# what a team's copy holds, and nothing else: of the whole, of a check, of a hidden one
+TEAM_SEES = ("version", "student", "homework", "title", "tier", "for_credit", "score", "max_score")
+TEAM_SEES += ("problems", "misconceptions", "checks", "submission", "specification", "seed", "versions")
+OF_HIDDEN = ("task", "promise", "points", "max_points", "outcome", "hidden")
+OF_OWN = (*OF_HIDDEN, "name", "message", "hints", "drawing", "said")
 Outcome = Literal["holds", "fails", "no answer"]
 
 
@@ -77,9 +82,18 @@ class Result(NamedTuple):
         return _number(sum((one.max_points for one in self.checks), Fraction()))
 
     @property
+    def why_practice(self) -> str:
+        """Why the score is not for credit, in a sentence, or ""."""
+        if self.tier not in CREDIT:
+            return "What was handed in ran without a sandbox, so this score is not for credit."
+        if not self.seed:
+            return "Its inputs were drawn without a secret: anybody can look them up. It is not for credit."
+        return ""
+
+    @property
     def for_credit(self) -> bool:
-        """Whether the tier keeps a hostile submission from its own score."""
-        return self.tier in CREDIT
+        """Whether the tier keeps a hostile submission from its own score, and the inputs were not public."""
+        return not self.why_practice
 
     def of(self, task: str) -> tuple[Check, ...]:
         """Return the checks of one task."""
@@ -128,6 +142,16 @@ def to_json(result: Result) -> bytes:
         "versions": result.versions,
     }
     return (json.dumps(whole, indent=1, ensure_ascii=True) + "\n").encode()
+
+
+def for_team(data: bytes) -> bytes:
+    """Return what a team may see of a Result's JSON: of hidden checks the promise and the points alone."""
+    whole = json.loads(data)
+    shown = {name: whole[name] for name in TEAM_SEES}
+    shown["checks"] = [
+        {name: one[name] for name in (OF_HIDDEN if one["hidden"] else OF_OWN)} for one in whole["checks"]
+    ]
+    return (json.dumps(shown, indent=1, ensure_ascii=True) + "\n").encode()
 
 
 def _check_to_json(check: Check) -> dict[str, Any]:

@@ -50,9 +50,7 @@ def write_csv(
     A private one is for its owner's eyes from the first byte on: links that vote, grades.
     """
     path = Path(path)
-    with replacing(path) as temporary:
-        if private:
-            temporary.touch(mode=0o600)
+    with replacing(path, private=private) as temporary:
         temporary.write_text(csv_text(header, rows), encoding="utf-8-sig", newline="")
     return path
 

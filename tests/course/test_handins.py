@@ -1,0 +1,149 @@
+"""Whose a file is, and when it came: nobody's file is another's, and nobody's time."""
+
+import os
+import stat
+from datetime import UTC, datetime, timedelta
+from types import SimpleNamespace
+
+import pytest
+
+from hdrlab.course.classroom import handins
+from hdrlab.course.classroom.roster import Roster, Student
+
+ROSTER = Roster(
+    tuple(Student(id, id, "t1" if id in ("b01", "b02") else id) for id in ("b01", "b02", "b05", "b06"))
+)
+NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
+LATE = NOON + timedelta(days=9)
+
+
+@pytest.fixture
+def find(tmp_path):
+    """find({name: text}, rows) -> what is found; the files' own times are late."""
+
+    def found(files, rows=None, roster=ROSTER):
+        for name, text in files.items():
+            path = tmp_path / "in" / name
+            path.parent.mkdir(parents=True, exist_ok=True)
+            path.write_text(text)
+            os.utime(path, (LATE.timestamp(),) * 2)
+        if rows is None:
+            return handins.find(tmp_path / "in", roster)
+        table = tmp_path / "times.csv"
+        table.write_text(
+            "\n".join(["file,received", *(f"{name},{when.isoformat()}" for name, when in rows.items())])
+        )
+        return handins.find(tmp_path / "in", roster, handins.read_times(table))
+
+    return found
+
+
+def came(found):
+    return {team: one.received for team, one in found.handins.items()}
+
+
+def test_a_late_file_in_a_folder_does_not_get_the_time_of_the_name_it_bears(find):
+    found = find({"b05_hw2.ipynb": "x", "b06/b05_hw2.ipynb": "y"}, {"b05_hw2.ipynb": NOON})
+    assert came(found) == {"b05": NOON, "b06": LATE}
+    assert any("b06/b05_hw2.ipynb" in note and "no row" in note for note in found.notes)
+    assert "no row" in found.handins["b06"].note and not found.handins["b05"].note
+
+
+@pytest.mark.parametrize("name", ["b05/hw2.ipynb", "./b05/hw2.ipynb", "b05\\hw2.ipynb"])
+def test_with_a_folder_for_each_student_every_row_can_be_given(find, name):
+    found = find({"b05/hw2.ipynb": "x", "b06/hw2.ipynb": "y"}, {name: NOON, "b06/hw2.ipynb": NOON})
+    assert came(found) == {"b05": NOON, "b06": NOON} and found.notes == ()
+
+
+@pytest.mark.parametrize(
+    "theirs", ["b05_hw2.ipynb", "B05_hw2.ipynb", "b05.ipynb", "hw2.ipynb", "t1_hw2.ipynb"]
+)
+def test_no_name_in_ones_own_folder_takes_a_row_that_is_anothers(find, theirs):
+    found = find({f"b06/{theirs}": "y"}, {theirs: NOON})
+    assert came(found) == {"b06": LATE}
+    assert any("there is no such file" in note for note in found.notes)
+
+
+def test_a_row_by_bare_name_serves_its_owners_file_in_its_owners_folder(find):
+    found = find({"b05/b05_hw2.ipynb": "x"}, {"b05_hw2.ipynb": NOON})
+    assert came(found) == {"b05": NOON} and found.notes == ()
+
+
+def test_a_row_without_a_file_and_a_file_without_a_row_are_noted(find):
+    found = find({"b05.py": "x", "b06.py": "y"}, {"b05.py": NOON, "b02.py": NOON})
+    assert any(note.startswith("b02.py") and "no such file" in note for note in found.notes)
+    assert (
+        any(note.startswith("b06.py") and "no row" in note for note in found.notes) and len(found.notes) == 2
+    )
+
+
+def test_without_a_table_of_times_nothing_is_said_of_it(find):
+    assert find({"b05.py": "x"}).notes == ()
+
+
+def test_a_file_with_two_rows_is_refused(find):
+    with pytest.raises(ValueError, match="each file once"):
+        find({"b05.py": "x"}, {"b05.py": NOON, "./b05.py": LATE})
+
+
+def test_a_composed_name_finds_its_row_in_the_other_form(find):
+    roster = Roster((Student("zo\u00e9", "Z", "zo\u00e9"),))
+    found = find({"zoe\u0301_hw2.py": "x"}, {"zo\u00e9_hw2.py": NOON}, roster)
+    assert came(found) == {"zo\u00e9": NOON}
+
+
+@pytest.mark.parametrize("name", ["b05", "B05", "\uff22\uff10\uff15"])
+@pytest.mark.parametrize("rest", ["_hw2.py", "-b06.py", ".py", " (1).py", "/b06.py", "/t1_hw2.py"])
+def test_a_file_is_of_the_name_that_it_begins_with_or_of_its_folder(find, name, rest):
+    assert set(find({f"{name}{rest}": "x"}).handins) == {"b05"}
+
+
+@pytest.mark.parametrize(
+    "name", ["b055.py", "b0.py", "xb05.py", "\u200bb05.py", "b05\u0301.py", "nobody/b05.py"]
+)
+def test_a_name_that_is_not_quite_a_students_is_nobodys(find, name):
+    found = find({name: "x"})
+    assert found.handins == {} and "knows nobody" in found.notes[0]
+
+
+def awkward(kind, path):
+    """Make a file that is none, or one that nobody could grade."""
+    path.parent.mkdir(exist_ok=True)
+    if kind == "link":
+        path.symlink_to("/etc/passwd")
+    elif kind == "pipe":
+        os.mkfifo(path)
+    elif kind == "folder":
+        path.mkdir()
+        (path / "hw2.py").write_text("x")
+    elif kind == "sparse":
+        with open(path, "wb") as file:
+            file.truncate(200 << 30)
+    else:
+        path.write_text("x")
+
+
+@pytest.mark.parametrize("kind", ["link", "pipe", "folder", "sparse", "document"])
+def test_what_cannot_be_graded_is_noted_and_the_rest_is_found(find, tmp_path, kind):
+    if kind == "pipe" and not hasattr(os, "mkfifo"):
+        pytest.skip("this system has no named pipes")
+    odd = tmp_path / "in" / "b05" / ("hw2.docx" if kind == "document" else "hw2.py")
+    odd.parent.mkdir(parents=True)
+    awkward(kind, odd)
+    found = find({"b06.py": "y"})
+    assert set(found.handins) == {"b06"} and set(found.refused) == {"b05"}
+    assert found.refused["b05"] == found.notes[0] and found.notes[0].startswith("b05/hw2")
+
+
+@pytest.mark.parametrize("seconds", [316_000_000_000, 1e30, -1e15])
+def test_a_time_that_no_calendar_has_is_noted(seconds):
+    status = SimpleNamespace(st_mode=stat.S_IFREG, st_size=1, st_mtime=seconds)
+    odd = SimpleNamespace(name="b05.py", lstat=lambda: status)
+    assert "before the year 10000" in handins._why_not(odd)
+
+
+def test_what_cannot_be_graded_leaves_what_can(find, tmp_path):
+    (tmp_path / "in" / "b05").mkdir(parents=True)
+    awkward("link", tmp_path / "in" / "b05" / "later.py")
+    found = find({"b05/hw2.py": "x"})
+    assert found.handins["b05"].path.name == "hw2.py" and found.refused == {} and len(found.notes) == 1
