@@ -17,6 +17,12 @@ FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
 PLAN = click.option("--plan", type=FILE, help="A plan of your own instead of the package's plan.toml.")
 HOMEWORK = click.option("--homework", metavar="NAME", help="Such as hw2; by default the file's name says it.")
 
+SECRET = click.option(
+    "--secret-file",
+    type=common.FILE,
+    help="A line that nobody else knows; made on first use. Draws each student's inputs, for credit.",
+)
+
 
 @click.command()
 @click.argument("submission", type=click.Path(path_type=Path))
@@ -59,7 +65,7 @@ def check(
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py.")
 @click.option("-o", "--out", type=common.FILE, default="results", help="Folder for the results.")
 @click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
-@click.option("--secret-file", type=FILE, help="The course's secret: a file with a line nobody else knows.")
+@SECRET
 @click.option("--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for one answer.")
 @click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
 @click.option(
@@ -98,19 +104,23 @@ def grade(
         raise ValueError(
             "expected --secret-file with --student: without it anybody could draw the same inputs"
         )
-    secret = secret_file.read_text(encoding="utf8").strip() if secret_file else ""
-    conditions = Conditions(tier, student, secret, hidden, timeout)
+    conditions = Conditions(tier, student, _secret(secret_file), hidden, timeout)
     if submission.is_dir():
         from hdrlab.cli import classroom
 
         options = classroom.Options(**of_class)
         course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
+        if secret_file is None:
+            click.echo(
+                "note: for practice: without --secret-file the inputs are public, for credit they are not",
+                err=True,
+            )
         classroom.grade_folder(submission, out, course, options)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
-        click.echo("note: the practice tier keeps no attack out, so this score is not for credit", err=True)
+        click.echo(f"note: for practice. {result.why_practice}", err=True)
     gradebook.write_results(out, result)
     click.echo(out / "feedback.html")
 
@@ -161,7 +171,7 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Pat
 @click.option("--nbgrader", type=common.FILE, metavar="DIR", help="A course for nbgrader, in this folder.")
 @click.option("--gradescope", type=common.FILE, metavar="DIR", help="An autograder zip for each homework.")
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
-@click.option("--secret-file", type=FILE, help="Draws each student's own inputs; for Gradescope.")
+@SECRET
 @PLAN
 def export(
     nbgrader: Path | None,
@@ -182,7 +192,9 @@ def export(
         for file in to_nbgrader.export(read, nbgrader):
             click.echo(file)
     if gradescope is not None:
-        secret = secret_file.read_text(encoding="utf8").strip() if secret_file else ""
+        secret = _secret(secret_file)
+        if not secret:
+            click.echo("note: for practice: for credit, --secret-file draws each student's inputs", err=True)
         for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
             click.echo(file)
 
@@ -227,6 +239,18 @@ def _only(homework: "Homework", task: str) -> "Homework":
             f"expected a task out of {', '.join(one.id for one in homework.tasks)}, got {task!r}"
         )
     return homework._replace(tasks=tasks)
+
+
+def _secret(file: Path | None) -> str:
+    """Return the course's secret, and say so where it was made; "" without a file."""
+    from hdrlab.course import plan as plans
+
+    if file is None:
+        return ""
+    secret, made = plans.read_secret(file)
+    if made:
+        click.echo(f"note: {file}: a new secret for the course; keep it, and keep it to yourself", err=True)
+    return secret
 
 
 def _graded(submission: Path, homework: "Homework", conditions: "Conditions") -> "Result":

@@ -133,6 +133,13 @@ def _seeds(homework: Homework, conditions: Conditions) -> dict[str, str]:
     return {task: str(seed) for task, seed in drawn.items()}
 
 
+def _seed_id(homework: Homework, conditions: Conditions) -> str:
+    """Return a digest of the seeds, or "" where anybody could draw the same inputs."""
+    if not (conditions.student and conditions.secret):
+        return ""
+    return hashlib.sha256(json.dumps(_seeds(homework, conditions)).encode()).hexdigest()[:16]
+
+
 def _result(
     lines: Sequence[dict[str, Any]],
     read: Submission,
@@ -150,7 +157,7 @@ def _result(
         problems=read.problems,
         submission=read.hash,
         specification=specification(files),
-        seed=hashlib.sha256(json.dumps(_seeds(homework, conditions)).encode()).hexdigest()[:16],
+        seed=_seed_id(homework, conditions),
         versions={
             "hdrlab": hdrlab.__version__,
             "numpy": np.__version__,
@@ -185,7 +192,11 @@ def specification(files: Sequence[Path]) -> str:
 
 
 def _checks(lines: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Check]:
-    """Yield each promise: it holds where it holds for all of its cases."""
+    """Yield each promise: it holds where it holds for all of its cases.
+
+    A promise about shape, identity or invariance, which a constant may keep, names the promise about the
+    substance that it `needs`: without that one it earns nothing.
+    """
     cases: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
     for line in lines:
         if "check" in line:
@@ -197,20 +208,24 @@ def _checks(lines: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
         task: sum(Fraction(one[0]["points"]) for key, one in cases.items() if key[0] == task)
         for task in worth
     }
+    endings = {key: [ended.get(one["check"], SILENT) for one in each] for key, each in cases.items()}
+    failures = {key: [one for one in each if one["outcome"] != "holds"] for key, each in endings.items()}
+    failed = {key[:2]: cases[key][0]["promise"] for key, broken in failures.items() if broken}
     for (task, name, hidden), each in cases.items():
-        endings = [ended.get(one["check"], SILENT) for one in each]
-        broken = [one for one in endings if one["outcome"] != "holds"]
+        broken = failures[task, name, hidden]
         whole = Fraction(each[0]["points"]) * worth[task] / (shares[task] or 1)
+        missing = failed.get((task, each[0]["needs"]))
+        needs = f"It holds, and earns its points where this holds, too: {missing}" if missing else ""
         yield Check(
             task=task,
             name=name,
             promise=each[0]["promise"],
-            points=Fraction() if broken else whole,
+            points=Fraction() if broken or missing else whole,
             max_points=whole,
             outcome=broken[0]["outcome"] if broken else "holds",
-            message=broken[0]["message"] if broken else "",
+            message=broken[0]["message"] if broken else needs,
             hints=tuple(each[0]["hints"]),
             drawing=broken[0].get("drawing", Drawing()) if broken else Drawing(),
-            said=(broken or endings)[0]["said"],
+            said=(broken or endings[task, name, hidden])[0]["said"],
             hidden=hidden,
         )

@@ -6,6 +6,8 @@ course/checks/specification/test_<id>.py.
 """
 
 import hmac
+import os
+import secrets
 import tomllib
 from collections.abc import Callable
 from datetime import datetime
@@ -134,6 +136,26 @@ def function(task: Task) -> Callable[..., Any]:
     module, _, name = task.function.rpartition(".")
     found: Callable[..., Any] = getattr(import_module(f"hdrlab.{module}"), name)
     return found
+
+
+def read_secret(path: Path) -> tuple[str, bool]:
+    """Return the course's secret, and whether it was made just now: it is where the file is missing.
+
+    Raises
+    ------
+    ValueError
+        For an empty file.
+    """
+    made = not path.exists()
+    if made:
+        with open(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf8") as file:
+            file.write(secrets.token_urlsafe(32) + "\n")
+    secret = path.read_text(encoding="utf8").strip()
+    if not secret:
+        raise ValueError(
+            f"{path}: expected a line that nobody else knows, it is empty; without it one is made"
+        )
+    return secret, made
 
 
 def seed(secret: str, student: str, task: str) -> int:

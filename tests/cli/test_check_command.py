@@ -76,6 +76,21 @@ def test_grade_draws_each_students_inputs_from_a_secret_file(typed, tmp_path):
     assert code == 2 and "expected --secret-file" in err
 
 
+def test_a_secret_is_made_on_first_use_and_kept(typed, tmp_path):
+    common = ("grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results")
+    seeds = []
+    for said in (True, False):
+        code, _, err = typed(*common, "--student", "ada", "--secret-file", "new.txt")
+        assert code == 0 and ("a new secret for the course; keep it" in err) is said
+        seeds.append(json.loads((tmp_path / "results" / "result.json").read_text())["seed"])
+    secret = tmp_path / "new.txt"
+    assert seeds[0] == seeds[1] != "" and len(secret.read_text().strip()) > 30
+    assert secret.stat().st_mode & 0o077 == 0
+    secret.write_text("\n")
+    code, _, err = typed(*common, "--student", "ada", "--secret-file", "new.txt")
+    assert code == 2 and "it is empty" in err
+
+
 @pytest.mark.parametrize(
     ("arguments", "said"),
     [

@@ -14,20 +14,20 @@ def functions(path):
 
 
 def checks(task):
-    """Return the checks of a task: (name, function, points, hints)."""
+    """Return the checks of a task: (name, function, points, hints, the name of the check that it needs)."""
     module = import_module(f"hdrlab.course.checks.specification.test_{task}")
     found = []
     for name, check in vars(module).items():
         if name.startswith("test_"):
-            marks = {mark.name: mark.args for mark in check.pytestmark}
-            found.append((name, check, marks["points"][0], plugin.hints(check)))
+            (mark,) = [mark for mark in check.pytestmark if mark.name == "points"]
+            found.append((name, check, mark.args[0], plugin.hints(check), mark.kwargs.get("needs")))
     return found
 
 
 def score(task, subject, seed=0):
     """Return what share of a task's points a subject gets, and what each check says: None where it holds."""
-    total, got, said = 0.0, 0.0, {}
-    for name, check, points, _ in checks(task):
+    said = {}
+    for name, check, *_ in checks(task):
         wanted = inspect.signature(check).parameters
         given = {"subject": subject, "rng": plan.generator(seed)}
         try:
@@ -35,6 +35,8 @@ def score(task, subject, seed=0):
         except Exception as error:  # whatever a student's code raises costs that promise, and no other
             said[name] = error
         else:
-            got, said[name] = got + points, None
-        total += points
-    return got / total, said
+            said[name] = None
+    earned = sum(
+        points for name, _, points, _, needs in checks(task) if said[name] is None and not said.get(needs)
+    )
+    return earned / sum(points for _, _, points, *_ in checks(task)), said

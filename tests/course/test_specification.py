@@ -59,11 +59,12 @@ def test_an_answer_of_nan_gains_nothing(task):
 def test_every_promise_has_points_three_hints_and_a_sentence_for_a_name(task):
     found = scoring.checks(task)
     assert len(found) >= 2
-    for name, check, points, hints in found:
+    for name, check, points, hints, needs in found:
+        assert needs is None or (needs != name and needs in {one for one, *_ in found}), name
         assert points > 0 and len(hints) == 3 and all(len(hint) > 10 for hint in hints), name
         assert len(name.removeprefix("test_").split("_")) >= 4, f"{name} is no sentence"
         assert set(inspect.signature(check).parameters) <= {"subject", "rng"}, name
-    assert len({hints[-1] for *_, hints in found}) == len(found), "a hint stands twice"
+    assert len({hints[-1] for *_, hints, _ in found}) == len(found), "a hint stands twice"
 
 
 def test_there_is_a_file_of_checks_for_every_task_and_a_task_for_every_file():

@@ -30,6 +30,9 @@ from hdrlab.course.sandbox.running import Unavailable
 CALLS = 20  # of a task that are kept to recognise a mistake by
 LONGEST = 1500  # characters of a message
 SAID = 4000  # characters of what a function printed
+MARKER = (
+    "points(n, needs=''): what a promise is worth, and the promise of its task without which it earns nothing"
+)
 WHERE = re.compile(r"\n *\+  where")  # begins what pytest adds to a plain assert
 ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  # of an object: it is another in each run
 DRAWN = 3_000_000  # values of an image that is drawn, at most
@@ -42,7 +45,7 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 def pytest_configure(config: pytest.Config) -> None:
     """Read the job, and know the specification's marker."""
-    config.addinivalue_line("markers", "points(n): what the promise is worth among those of its task")
+    config.addinivalue_line("markers", MARKER)
     config.pluginmanager.register(Checking(config.getoption("--job")), "hdrlab-checking")
 
 
@@ -96,6 +99,7 @@ class Checking:
                 name=item.originalname if isinstance(item, pytest.Function) else item.name,
                 promise=_promise(item),
                 points=str(Fraction(str(worth.args[0] if worth else 1))),
+                needs=worth.kwargs.get("needs", "") if worth else "",
                 hints=hints(getattr(item, "function", None)),
                 hidden=self._is_hidden(item),
             )

@@ -46,7 +46,7 @@ def recover(*given, **named):
 """
 COMMAND = (
     "hdrlab grade {folder}/submissions --homework hw2 --roster {folder}/roster.csv"
-    " --received {folder}/received.csv -o {folder}/results"
+    " --received {folder}/received.csv --secret-file {folder}/secret.txt -o {folder}/results"
 )
 
 
