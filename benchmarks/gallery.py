@@ -2,6 +2,7 @@
 
 burst    every voter opens the wall, and then all send a ballot in the same instant
 session  the voters come within ten seconds, open wall and pictures, vote, and change their ballots twice
+slow     the same, while 1,300 clients hold half a request each, and come again when they are sent away
 killed   the server is killed while ballots come in, and started again: what it acknowledged must be there
 
 The figures are those of the client: from the first byte of a request to the last of its answer.
@@ -10,6 +11,7 @@ The figures are those of the client: from the first byte of a request to the las
 import asyncio
 import json
 import os
+import resource
 import signal
 import socket
 import subprocess
@@ -29,6 +31,7 @@ from hdrlab.course.gallery import access_tokens, ballots, collect, store
 from hdrlab.io import photos
 
 VOTERS, WITHIN, TEAM, PICTURES = 300, 10.0, 2, 8
+SLOW, KINDS = 1300, ("wall", "picture", "ballot")
 OPEN_FOR = "2099-12-31T23:59+00:00"
 
 
@@ -51,6 +54,17 @@ class Connection:
     async def ask(
         self, method: str, path: str, body: bytes = b"", accept: str = "text/html"
     ) -> tuple[int, bytes]:
+        """Return status and body of an answer; a connection that was closed meanwhile is made again."""
+        fresh = self.streams is None
+        try:
+            return await self.exchange(method, path, body, accept)
+        except (OSError, EOFError):
+            if fresh:
+                raise
+            self.streams = None  # as a browser does
+            return await self.exchange(method, path, body, accept)
+
+    async def exchange(self, method: str, path: str, body: bytes, accept: str) -> tuple[int, bytes]:
         """Return status and body of an answer."""
         if self.streams is None:
             self.streams = await asyncio.open_connection(self.parts.hostname, self.parts.port)
@@ -95,13 +109,18 @@ def _when() -> Any:
     return datetime.fromisoformat(OPEN_FOR)
 
 
-def start(room: Path, port: int = 0) -> tuple[subprocess.Popen[bytes], str]:
-    """Serve a gallery in a process of its own, and return it with its address when it answers."""
+def start(room: Path, port: int = 0, descriptors: int | None = None) -> tuple[subprocess.Popen[bytes], str]:
+    """Serve a gallery in a process of its own, and return it with its address when it answers.
+
+    It has so many descriptors, and those of this process unless told.
+    """
     if not port:
         with socket.socket() as free:
             free.bind(("127.0.0.1", 0))
             port = free.getsockname()[1]
     command = [sys.executable, "-m", "hdrlab", "gallery", "serve", str(room), "--port", str(port)]
+    if descriptors is not None:
+        command = ["sh", "-c", f'ulimit -n {descriptors}; exec "$@"', "sh", *command]
     server = subprocess.Popen(command, cwd=ROOT, stdout=subprocess.DEVNULL)
     for _ in range(600):
         try:
@@ -157,7 +176,7 @@ class Voter:
 async def voted(address: str, links: dict[str, str], *, within: float, changes: int, together: bool) -> Voted:
     """Let everybody vote, and return what they saw. A server that dies ends it."""
     random, gate = Random(7), asyncio.Barrier(len(links)) if together else None
-    done = Voted({"wall": [], "picture": [], "ballot": []}, {}, {}, 0)
+    done = Voted({kind: [] for kind in KINDS}, {}, {}, 0)
     voters = [Voter(address, who, token, done) for who, token in links.items()]
 
     async def visit(voter: Voter, come: float) -> None:
@@ -208,24 +227,63 @@ def voters(address: str, links: str, within: str, changes: str, together: str) -
     sys.stdout.write(json.dumps(seen._asdict()) + "\n")
 
 
+async def hold_half_requests(address: str, count: int) -> None:
+    """Hold so many connections with half a request each; who is sent away comes again after a second."""
+    parts, most = urlsplit(address), resource.getrlimit(resource.RLIMIT_NOFILE)[1]
+    resource.setrlimit(resource.RLIMIT_NOFILE, (most, most))
+
+    async def hold() -> None:
+        while True:
+            try:
+                reader, writer = await asyncio.open_connection(parts.hostname, parts.port)
+                writer.write(b"GET / HTTP/1.1\r\nHost: ")
+                await reader.read()
+                writer.close()
+            except OSError:
+                pass
+            await asyncio.sleep(1)
+
+    await asyncio.gather(*(hold() for _ in range(count)))
+
+
 def load(
-    folder: Path, how: str, count: int = VOTERS, *, within: float = WITHIN, changes: int = 3
+    folder: Path,
+    how: str,
+    count: int = VOTERS,
+    *,
+    within: float = WITHIN,
+    changes: int = 3,
+    slow: int = 0,
+    descriptors: int | None = None,
 ) -> dict[str, Any]:
-    """Return the figures of a class that votes."""
+    """Return the figures of a class that votes, meanwhile so many clients hold half a request each."""
     room, links = build(folder / how, count)
     file = folder / how / "links.json"
     file.write_text(json.dumps(links))
-    server, address = start(room)
+    server, address = start(room, descriptors=descriptors)
+    holding = None
     try:
+        if slow:
+            words = [sys.executable, "-m", "benchmarks.gallery", "hold", address, str(slow)]
+            holding = subprocess.Popen(words, cwd=ROOT)
+            _wait_for_connections(server, slow if descriptors is None else min(slow, descriptors // 5))
         arguments = [address, str(file), str(within), str(changes), how]
         command = [sys.executable, "-m", "benchmarks.gallery", *arguments]
         ran = subprocess.run(command, cwd=ROOT, capture_output=True, text=True)
         if ran.returncode:
             raise RuntimeError(ran.stderr.strip()[-2000:])
     finally:
-        server.terminate()
-        server.wait()
-    return judged(room, Voted(**json.loads(ran.stdout)))
+        for process in filter(None, (holding, server)):
+            process.terminate()
+            process.wait()
+    log = sum(path.stat().st_size for path in room.glob("gallery.log*"))
+    return judged(room, Voted(**json.loads(ran.stdout))) | {"bytes of log": log}
+
+
+def _wait_for_connections(server: subprocess.Popen[bytes], count: int) -> None:
+    """Wait until a server has so many descriptors open."""
+    while server.poll() is None and len(list(Path(f"/proc/{server.pid}/fd").iterdir())) < count:
+        time.sleep(0.02)
 
 
 def killed(folder: Path, count: int = VOTERS, times: int = 5, *, after: float = 1.5) -> dict[str, Any]:
@@ -266,6 +324,10 @@ WHOLE = (
     at_least("voters", VOTERS),
 )
 QUICK = at_most("ms of a ballot: median, 95 %, worst", np.inf, 200, np.inf)
+UNDER_ATTACK = (
+    *(at_most(f"ms of a {kind}: median, 95 %, worst", np.inf, 500, np.inf) for kind in KINDS),
+    at_most("bytes of log", 3_000_000),
+)
 ROWS = (
     Experiment(
         "session",
@@ -280,6 +342,12 @@ ROWS = (
         WHOLE,  # ballots of one instant wait for each other; what is held is that none is lost
     ),
     Experiment(
+        "slow",
+        f"{VOTERS} voters within {WITHIN:g} s, while {SLOW:,} clients hold half a request; 1,024 descriptors",
+        lambda f: load(f, "apart", slow=SLOW, descriptors=1024),
+        (*WHOLE, *UNDER_ATTACK),
+    ),
+    Experiment(
         "killed",
         "the server is killed while ballots come in",
         killed,
@@ -288,4 +356,7 @@ ROWS = (
 )
 
 if __name__ == "__main__":
-    voters(*sys.argv[1:])
+    if sys.argv[1] == "hold":
+        asyncio.run(hold_half_requests(sys.argv[2], int(sys.argv[3])))
+    else:
+        voters(*sys.argv[1:])

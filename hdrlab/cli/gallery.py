@@ -46,9 +46,9 @@ def init(folder: Path, title: str, closes: str, marks: int) -> None:
 def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
     """Admit the students of a roster, and hang ARTIFACTS (files or folders) in the gallery of FOLDER.
 
-    A picture is named after its team or student, team7.jpg; a text beside it, team7.txt, holds its title and
-    then a caption. Archives of `hdrlab submit` say all of that themselves. What cannot hang is named, and the
-    rest hangs.
+    A file, or its folder, is named after its team or student: team7.jpg, b0123/submission.zip. A text
+    beside a picture, team7.txt, holds its title and then a caption; archives of `hdrlab submit` hold both
+    themselves. What cannot hang is named, and the rest hangs.
     """
     from contextlib import closing
 
@@ -61,11 +61,14 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
         with store.transaction(db):
             for one in students.students:
                 store.admit(db, store.Voter(one.id, one.name, one.team))
-        for source in common.progress(collect.sources(artifacts), "hanging"):
+        for source, name in common.progress(collect.sources(artifacts), "hanging"):
             try:
-                with collect.entry(source, students) as entry:
-                    collect.hang(db, folder, entry)
+                with collect.entry(source, students, name) as entry:
+                    votes = collect.hang(db, folder, entry, source.name)
                 hung += 1
+                if votes:
+                    said = f"{entry.team} hung another before, whose {votes} votes do not count any longer"
+                    click.echo(f"note: {source.name}: {said}", err=True)
             except ValueError as error:
                 refused += 1
                 click.echo(f"note: {source.name}: {error}", err=True)
@@ -120,7 +123,7 @@ def serve(folder: Path, host: str, port: int, address: str | None, behind_proxy:
     address = address or f"http://{host}:{port}"
     if not address.startswith("https://") and host not in ("127.0.0.1", "localhost", "::1"):
         click.echo("warning: without https:// whoever shares the network can read the links", err=True)
-    click.echo(f"{address}: the gallery of {folder}; Ctrl-C ends it")
+    click.echo(f"{address}: the gallery of {folder}; Ctrl-C ends it, and what goes wrong is in gallery.log")
     run(folder, address, host=host, port=port, behind_proxy=behind_proxy)
 
 
@@ -153,6 +156,8 @@ def results(folder: Path, out: Path) -> None:
         set_up = store.settings(db)
         if set_up.is_open(time.time()):
             raise ValueError(f"{folder}: expected a vote that has ended, it is open until {set_up.closes}")
-        rows = list(export.gradebook(db))
+        rows, changes = list(export.gradebook(db)), store.changes(db)
+    for one in changes:
+        click.echo(f"note: {one}", err=True)
     sheets.write_csv(out, export.GRADEBOOK, rows, private=True)
     click.echo(f"{out}: {len(rows)} students. {counting.METHOD.format(marks=set_up.marks)}")

@@ -4,6 +4,7 @@ import csv
 import re
 from contextlib import closing
 from importlib.util import find_spec
+from pathlib import Path
 
 import gallery_class as small
 import pytest
@@ -77,7 +78,7 @@ def test_a_refused_ballot_leaves_the_one_before(tmp_path):
         assert ballots.read_ballot(db, "ann")[1] == {room.artifacts["eve"]}
 
 
-def test_a_new_title_keeps_the_votes_and_a_new_picture_does_not(tmp_path):
+def test_a_new_title_keeps_the_votes_and_a_new_picture_begins_without(tmp_path):
     room = small.make(tmp_path)
     with store.writing(room.folder) as db:
         ballots.cast(db, "ann", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
@@ -161,3 +162,13 @@ def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
     found = bench.killed(tmp_path, 40, 1, after=1.0)
     assert found["acknowledged ballots lost"] == 0
     assert found["acknowledged before the kill"] >= 10
+
+
+@served
+@pytest.mark.skipif(not Path("/proc/self/fd").is_dir(), reason="counts the descriptors of a server in /proc")
+def test_voters_are_answered_while_others_hold_all_places_with_half_requests(tmp_path):
+    from benchmarks import gallery as bench
+
+    found = bench.load(tmp_path, "apart", 12, within=0.5, changes=1, slow=200, descriptors=400)
+    assert (found["ballots lost"], found["refused"], found["voters"]) == (0, 0, 12)
+    assert 0 < found["bytes of log"] < 1000

@@ -5,9 +5,14 @@ The pages are asked as a program would ask them, byte by byte where that matters
 
 import asyncio
 import io
+import json
+import logging
 import re
+import socket
 import sqlite3
 import struct
+import threading
+import zipfile
 import zlib
 from contextlib import closing, contextmanager
 from html.parser import HTMLParser
@@ -19,13 +24,13 @@ import gallery_class as small
 import pytest
 from PIL import Image
 
-if find_spec("starlette") is None:
+if find_spec("starlette") is None or find_spec("uvicorn") is None:
     pytest.skip('the gallery needs pip install ".[class]"', allow_module_level=True)
 
 from hdrlab.course import gallery
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import access_tokens, collect, export, pictures, store
-from hdrlab.course.gallery.web import app, guard
+from hdrlab.course.gallery.web import app, guard, serve
 from hdrlab.course.reports import sheets
 
 ORIGIN = {"origin": small.ADDRESS}
@@ -305,10 +310,71 @@ def test_a_link_as_an_artifact(tmp_path):
         pictures.prepare(tmp_path / "team1.png")
 
 
-def test_an_archive_with_traps(tmp_path):
-    import json
-    import zipfile
+def handed_in(path, students=("ann",), title="t"):
+    """Write an archive as `hdrlab submit` makes it, whose description says anything."""
+    small.picture(path.with_suffix(".png"), 11)
+    said = {"students": students, "title": title, "caption": "", "artifact": "a.png"}
+    with zipfile.ZipFile(path, "w") as archive:
+        archive.writestr("submission.json", json.dumps(said))
+        archive.write(path.with_suffix(".png"), "a.png")
+    path.with_suffix(".png").unlink()
+    return path
 
+
+@pytest.mark.parametrize("students", [["ann"], ["eve", "ann"], ["team1"], [], "ann", ["nobody"]])
+@pytest.mark.parametrize(
+    "name", ["eve.zip", "eve_project.zip", "eve/ann.zip", "eve/team1.zip", "EVE-ann.zip"]
+)
+def test_anothers_artifact(tmp_path, students, name):
+    room, folder = small.make(tmp_path), tmp_path / "in"
+    (folder / name).parent.mkdir(parents=True)
+    handed_in(folder / name, students)
+    with closing(store.connect(room.folder)) as db:
+        before = store.artifacts(db)
+        for path, owner in collect.sources([folder]):
+            with collect.entry(path, ROSTER, owner) as entry:
+                assert entry.team == "eve"
+                collect.hang(db, room.folder, entry)
+        assert {id: one for id, one in store.artifacts(db).items() if one.team != "eve"} == {
+            id: one for id, one in before.items() if one.team != "eve"
+        }
+
+
+@pytest.mark.parametrize("name", ["submission.zip", "nobody/submission.zip", "anne.zip", "project_ann.zip"])
+def test_an_artifact_of_nobody_is_refused_whoever_it_names(tmp_path, name):
+    (tmp_path / "in" / name).parent.mkdir(parents=True)
+    handed_in(tmp_path / "in" / name)
+    ((path, owner),) = collect.sources([tmp_path / "in"])
+    with (
+        pytest.raises(ValueError, match="named after a student or a team"),
+        collect.entry(path, ROSTER, owner),
+    ):
+        pass
+
+
+def test_votes_erased(client, room, tmp_path):
+    eve, fay = room.artifacts["eve"], room.artifacts["fay"]
+    vote(client, enter(client, room, "ann"), eve)
+    vote(client, enter(client, room, "cy"), eve, fay)
+    with closing(store.connect(room.folder)) as db:
+        other = small.picture(tmp_path / "other.png", 12)
+        lost = collect.hang(db, room.folder, collect.Entry("eve", "Other", "", other), "eve.zip")
+        assert lost == 2 and len(store.artifacts(db)) == 4
+        rows = {row[0]: row for row in export.gradebook(db)}
+        assert rows["eve"][4:6] == ("Other", 0) and rows["fay"][5] == 1
+        assert rows["ann"][3] == rows["cy"][3] == "yes"  # who voted has voted
+        assert db.execute("SELECT count(*) FROM votes").fetchone()[0] == 3
+        assert "eve has hung another picture (eve.zip); 2 votes" in store.changes(db)[0]
+        assert vote(client, small.key(client.get("/").text), eve).status == 409  # it hangs no longer
+        first = collect.Entry("eve", "Again", "", tmp_path / "eve.png")
+        assert (
+            collect.hang(db, room.folder, first) == 0
+        )  # the picture of before is back, and so are its votes
+        assert {row[0]: row for row in export.gradebook(db)}["eve"][4:6] == ("Again", 2)
+        assert len(store.changes(db)) == 2
+
+
+def test_an_archive_with_traps(tmp_path):
     small.picture(tmp_path / "a.png")
     said = {"students": ["ann"], "title": "t", "caption": "", "artifact": "../a.png"}
     with zipfile.ZipFile(tmp_path / "one.zip", "w") as archive:
@@ -316,7 +382,8 @@ def test_an_archive_with_traps(tmp_path):
     with zipfile.ZipFile(tmp_path / "two.zip", "w") as archive:
         archive.writestr("../planted.png", b"x")
     for name in ("one.zip", "two.zip"):
-        with pytest.raises(ValueError), collect.entry(tmp_path / name, ROSTER):
+        entry = collect.entry(tmp_path / name, ROSTER, "ann")
+        with pytest.raises(ValueError, match="artifact|leads out"), entry:
             pass
     assert not (tmp_path.parent / "planted.png").exists()
 
@@ -372,6 +439,121 @@ def test_a_slow_form(client, room, monkeypatch):
     slow = Slow(None)
     slow.cookies = client.cookies
     assert vote(slow, key, room.artifacts["eve"]).status == 408
+
+
+@contextmanager
+def served(most):
+    """Yield the port of a server that answers "here", with so many connections at a time."""
+    import uvicorn
+
+    async def here(scope, receive, send):
+        headers = [(b"content-length", b"4")]
+        await send({"type": "http.response.start", "status": 200, "headers": headers})
+        await send({"type": "http.response.body", "body": b"here"})
+
+    with socket.socket() as listening:
+        listening.bind(("127.0.0.1", 0))
+        kind = serve.limited(most)
+        config = uvicorn.Config(
+            here, http=kind, ws="none", lifespan="off", log_config=None, log_level="critical"
+        )
+        server = uvicorn.Server(config)
+        thread = threading.Thread(target=asyncio.run, args=(server.serve([listening]),))
+        thread.start()
+        try:
+            while not server.started:
+                threading.Event().wait(0.005)
+            yield listening.getsockname()[1]
+        finally:
+            server.should_exit = True
+            thread.join()
+
+
+def ask(port, text=b"GET / HTTP/1.1\r\nhost: a\r\n\r\n"):
+    """Send bytes on a new connection, and return it."""
+    one = socket.create_connection(("127.0.0.1", port), timeout=20)
+    one.sendall(text)
+    return one
+
+
+def closed(one):
+    """Return what the server sends before it closes a connection."""
+    said = b""
+    with one:
+        try:
+            while piece := one.recv(4096):
+                said += piece
+        except ConnectionResetError:
+            pass
+    return said
+
+
+HALF = {
+    "nothing": b"",
+    "a letter": b"G",
+    "a line": b"GET / HTTP/1.1\r\n",
+    "half a header": b"GET / HTTP/1.1\r\nhost: a\r\ncookie: x",
+    "half a form": b"POST /ballot HTTP/1.1\r\nhost: a\r\ncontent-length: 900\r\n\r\nkey=",
+    "half a piece": b"POST / HTTP/1.1\r\nhost: a\r\ntransfer-encoding: chunked\r\n\r\nff\r\nkey=",
+}
+
+
+@pytest.mark.parametrize("sent", HALF.values(), ids=HALF)
+def test_half_a_request(sent, monkeypatch):
+    monkeypatch.setattr(serve, "PATIENCE", 0.2)
+    with served(50) as port:
+        said = closed(ask(port, sent))  # which ends: nobody waits for the rest
+        assert said.count(b"200 OK") == sent.startswith(b"POST")  # a form is refused without being read
+        whole = ask(port)
+        assert closed(whole).endswith(b"here")  # and no connection is kept for nothing
+
+
+def test_when_it_is_full_the_oldest_half_request_makes_room(monkeypatch, caplog):
+    monkeypatch.setattr(serve, "PATIENCE", 600.0)
+    with served(8) as port:
+        waiting = [ask(port, b"GET / HT") for _ in range(8)]
+        voters = []
+        for k in range(4):
+            voters.append(ask(port))
+            assert voters[k].recv(4096).endswith(b"here")
+            assert closed(waiting[k]) == b""  # the oldest has gone
+        waiting[-1].sendall(b"TP/1.1\r\nhost: a\r\n\r\n")  # who was slow and is whole is answered
+        assert waiting[-1].recv(4096).endswith(b"here")
+        for one in (*voters, *waiting[4:]):
+            one.close()
+    assert [record.message.split(":")[0] for record in caplog.records if record.name == "hdrlab.gallery"] == [
+        "full"
+    ]
+
+
+def test_a_full_log(tmp_path):
+    root = logging.getLogger()
+    handlers, level = root.handlers[:], root.level
+    try:
+        serve.keep_log(tmp_path)
+        for _ in range(300):
+            serve.log.warning("x" * 20_000)
+        sizes = [path.stat().st_size for path in tmp_path.iterdir()]
+        assert len(sizes) == 1 + serve.LOGS and max(sizes) <= serve.LOG_SIZE and sum(sizes) > serve.LOG_SIZE
+    finally:
+        for one in root.handlers:
+            one.close()
+        root.handlers[:] = handlers
+        root.setLevel(level)
+
+
+def test_connections_leave_descriptors_for_everything_else(monkeypatch):
+    resource = pytest.importorskip("resource")
+    limits = [(1024, 1024), (256, 4096), (20_000, 20_000), (1024, resource.RLIM_INFINITY)]
+    for soft, hard in limits:
+        set_to = []
+        monkeypatch.setattr(resource, "getrlimit", lambda which, found=(soft, hard): found)
+        monkeypatch.setattr(resource, "setrlimit", lambda which, to, kept=set_to: kept.append(to))
+        most, open_files = serve.connection_limit(), (set_to or [(soft, hard)])[-1][0]
+        assert 300 < most <= serve.CONNECTIONS and most + serve.BACKLOG + serve.FILES <= open_files
+    monkeypatch.setattr(resource, "getrlimit", lambda which: (300, 300))
+    with pytest.raises(ValueError, match="ulimit"):
+        serve.connection_limit()
 
 
 def test_csrf(client, room):

@@ -124,7 +124,7 @@ def test_a_whole_project_is_reported_handed_in_and_hung(home, tmp_path, hdrlab):
     described = json.loads((tmp_path / "there" / "submission.json").read_text())
     assert described["students"] == ["b1", "b2"] and set(described["files"]) == names - {"submission.json"}
     roster = Roster((Student("b1", "Ada", "t"), Student("b2", "Bo", "t")))
-    with collect.entry(tmp_path / "submission.zip", roster) as entry:
+    with collect.entry(tmp_path / "submission.zip", roster, "b1_project") as entry:
         assert entry[:3] == ("t", "Dusk", "By <hand>.") and entry.picture.read_bytes()[:4] == b"\x89PNG"
 
 

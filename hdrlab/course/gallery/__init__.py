@@ -36,6 +36,8 @@ link as an artifact    plain files alone                                        
 path traversal         names are looked up, and never joined to a path             path_traversal
 oversize form          bytes counted as they come                                  an_oversize_form
 slow form              ten seconds for all of it                                   a_slow_form
+half a request         ten seconds for its head; when full, the oldest is closed   half_a_request
+full log               three files of a megabyte                                   a_full_log
 CSRF                   origin, key of the session, kind of content, SameSite       csrf
 SQL injection          parameters alone                                            sql_injection
 clickjacking           frame-ancestors 'none'                                      clickjacking
@@ -45,8 +47,10 @@ forged client address  a proxy is believed where one is stated                  
 flood by a voter       so many requests and ballots of each session                a_flood
 formulas in a table    cells are text                                              formulas_in_a_table
 archive with traps     see hdrlab.course.archives.unpack                           an_archive_with_traps
+another's artifact     the file's name says whose it is, not what stands in it     anothers_artifact
+votes erased           a picture that is replaced keeps its votes, uncounted       votes_erased
 =====================  ==========================================================  ======================
 
 What it does not stop: somebody who is given another's link votes with it, and who can read the network votes
-too unless a proxy adds TLS. A flood of connections is a proxy's to stop.
+too unless a proxy adds TLS. A flood that fills the line, or the processor, is a proxy's to stop.
 """

@@ -40,14 +40,15 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
 
 
 def read_ballot(db: sqlite3.Connection, voter: str) -> tuple[float | None, frozenset[str]]:
-    """Return when a voter's ballot was cast, or None, and what it marks."""
+    """Return when a voter's ballot was cast, or None, and what it marks of what hangs."""
     row = db.execute("SELECT cast_at FROM ballots WHERE voter = ?", (voter,)).fetchone()
-    found = db.execute("SELECT artifact FROM votes WHERE voter = ?", (voter,))
+    hung = "SELECT artifact FROM votes JOIN artifacts ON artifact = id WHERE hangs AND voter = ?"
+    found = db.execute(hung, (voter,))
     return (row[0] if row else None), frozenset(one for (one,) in found)
 
 
 def every(db: sqlite3.Connection) -> dict[str, frozenset[str]]:
-    """Return all ballots, by voter: for counting, and for no page."""
+    """Return all ballots, by voter, with votes for what hangs no longer: for counting, and for no page."""
     found: dict[str, set[str]] = {voter: set() for (voter,) in db.execute("SELECT voter FROM ballots")}
     for voter, artifact in db.execute("SELECT voter, artifact FROM votes"):
         found[voter].add(artifact)

@@ -1,6 +1,8 @@
 """What is to hang: pictures named after a team or a student, and archives that `hdrlab submit` has made.
 
-A picture `team7.jpg` may have a file `team7.txt` beside it: the title in its first line, then a caption.
+Whose an artifact is, the name of its file says, or that of the folder it lies in, as with all that is handed
+in: what stands in an archive's description is the word of whoever made it. A picture `team7.jpg` may have a
+file `team7.txt` beside it: the title in its first line, then a caption.
 """
 
 import hashlib
@@ -34,67 +36,76 @@ class Entry(NamedTuple):
     picture: Path
 
 
-def sources(paths: Sequence[Path]) -> list[Path]:
-    """Return the pictures and archives that are meant: files as they are, and those in folders."""
+def sources(paths: Sequence[Path]) -> list[tuple[Path, str]]:
+    """Return the pictures and archives of files and folders, each with the name that says whose it is."""
     found = []
     for path in paths:
-        inside = sorted(path.iterdir()) if path.is_dir() else [path]
-        found += [one for one in inside if one.suffix.lower() not in NOT_THESE and one.name[0] != "."]
-    return found
+        for one in sorted(path.iterdir()) if path.is_dir() else [path]:
+            inside = sorted(one.iterdir()) if one.is_dir() and not one.is_symlink() else [one]
+            found += [(file, one.name) for file in inside]
+    return [one for one in found if one[0].suffix.lower() not in NOT_THESE and one[0].name[0] != "."]
 
 
 @contextmanager
-def entry(source: Path, roster: Roster) -> Iterator[Entry]:
+def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
     """Yield the Entry of a picture or an archive, which is unpacked meanwhile.
+
+    Parameters
+    ----------
+    source, roster : the file, and the class
+    name : says whose it is; the file's own unless told
 
     Raises
     ------
     ValueError
-        For an archive with a trap, without a description or an artifact, and for students of no team.
+        For a name that is nobody's, and an archive with a trap, without a description or an artifact.
     """
+    team = roster.owner(name or source.name)
+    if team is None:
+        raise ValueError(
+            "expected a file, or a folder with it, that is named after a student or a team of the roster"
+        )
     if not source.name.lower().endswith(ARCHIVES):
-        yield _picture(source, roster)
+        yield _picture(source, team)
         return
     with tempfile.TemporaryDirectory(prefix="hdrlab-") as scratch:
         folder = Path(scratch) / "submission"
         unpack.unpack(source, folder)
-        yield _archive(folder, roster)
+        yield _archive(folder, team)
 
 
-def hang(db: sqlite3.Connection, folder: Path, one: Entry) -> None:
-    """Make an artifact's pictures, and put it on the wall."""
+def hang(db: sqlite3.Connection, folder: Path, one: Entry, source: str = "") -> int:
+    """Make an artifact's pictures, put it on the wall, and return how many votes the one before had."""
     prepared = pictures.prepare(one.picture)
     seal = hmac.new(store.settings(db).secret, one.team.encode() + b"\0", hashlib.sha256)
     seal.update(prepared.files["large"])
     id = seal.hexdigest()[:24]  # nobody can tell the address of another picture
     pictures.keep(folder / store.PICTURES, id, prepared)
     with store.transaction(db):
-        store.hang(db, store.Artifact(id, one.team, one.title, one.caption, prepared.width, prepared.height))
+        made = store.Artifact(id, one.team, one.title, one.caption, prepared.width, prepared.height)
+        return store.hang(db, made, plain(source, 80))
 
 
-def _picture(source: Path, roster: Roster) -> Entry:
-    stem, words = source.stem, source.with_suffix(".txt")
-    teams = {team.casefold(): team for team in roster.teams()}
-    team = teams.get(stem.casefold()) or roster.team_of([stem])
+def _picture(source: Path, team: str) -> Entry:
+    words = source.with_suffix(".txt")
     text = words.read_text(encoding="utf8", errors="replace")[:SMALL] if words.is_file() else ""
     title, _, caption = text.strip().partition("\n")
     return _described(team, title, caption, source)
 
 
-def _archive(folder: Path, roster: Roster) -> Entry:
+def _archive(folder: Path, team: str) -> Entry:
     manifest = folder / MANIFEST
     if not manifest.is_file() or manifest.stat().st_size > SMALL:
         raise ValueError(f"expected an archive of `hdrlab submit`, it has no {MANIFEST}")
     try:
         said: Any = json.loads(manifest.read_text(encoding="utf8"))
-        students = [str(one) for one in said["students"]]
         title, caption, artifact = (str(said[name]) for name in ("title", "caption", "artifact"))
     except (ValueError, KeyError, TypeError, RecursionError):
         raise ValueError(f"expected an archive of `hdrlab submit`, its {MANIFEST} is damaged") from None
     inside = {path.relative_to(folder).as_posix(): path for path in folder.rglob("*") if path.is_file()}
     if artifact not in inside:
         raise ValueError(f"expected an artifact in the archive, got the name {plain(artifact, 40)!r}")
-    return _described(roster.team_of(students), title, caption, inside[artifact])
+    return _described(team, title, caption, inside[artifact])
 
 
 def _described(team: str, title: str, caption: str, picture: Path) -> Entry:

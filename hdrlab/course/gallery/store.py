@@ -2,13 +2,14 @@
 
 What must never happen is forbidden by the database itself, whatever the program above it does: a second
 ballot (its key is the voter), a vote for one's own team and a vote too many (triggers), a vote for what is
-not there (a foreign key). A ballot is acknowledged after it is on the disk: WAL with full synchronisation.
+not there (a foreign key) or hangs no longer (a trigger). A ballot is acknowledged after it is on the disk:
+WAL with full synchronisation. An artifact that another replaces stays with its votes, which do not count.
 """
 
 import sqlite3
 from collections.abc import Iterator
 from contextlib import contextmanager
-from datetime import datetime
+from datetime import UTC, datetime
 from pathlib import Path
 from secrets import token_bytes
 from typing import NamedTuple
@@ -19,8 +20,12 @@ CREATE TABLE gallery (
   one INTEGER PRIMARY KEY CHECK (one = 1), title TEXT NOT NULL, closes TEXT NOT NULL,
   marks INTEGER NOT NULL CHECK (marks > 0), secret BLOB NOT NULL) STRICT;
 CREATE TABLE artifacts (
-  id TEXT PRIMARY KEY, team TEXT NOT NULL UNIQUE, title TEXT NOT NULL, caption TEXT NOT NULL,
-  width INTEGER NOT NULL, height INTEGER NOT NULL) STRICT;
+  id TEXT PRIMARY KEY, team TEXT NOT NULL, title TEXT NOT NULL, caption TEXT NOT NULL,
+  width INTEGER NOT NULL, height INTEGER NOT NULL, hangs INTEGER NOT NULL DEFAULT 1) STRICT;
+CREATE UNIQUE INDEX one_of_a_team ON artifacts (team) WHERE hangs;
+CREATE TABLE changes (
+  at TEXT NOT NULL, team TEXT NOT NULL, source TEXT NOT NULL, before TEXT NOT NULL, after TEXT NOT NULL,
+  votes INTEGER NOT NULL) STRICT;
 CREATE TABLE voters (
   id TEXT PRIMARY KEY, name TEXT NOT NULL, team TEXT NOT NULL,
   link TEXT UNIQUE, link_digest BLOB, session TEXT UNIQUE, session_digest BLOB) STRICT;
@@ -31,6 +36,8 @@ CREATE TABLE votes (
 CREATE TRIGGER own BEFORE INSERT ON votes WHEN
   (SELECT team FROM artifacts WHERE id = NEW.artifact) = (SELECT team FROM voters WHERE id = NEW.voter)
   BEGIN SELECT RAISE(ABORT, 'own team'); END;
+CREATE TRIGGER gone BEFORE INSERT ON votes WHEN (SELECT NOT hangs FROM artifacts WHERE id = NEW.artifact)
+  BEGIN SELECT RAISE(ABORT, 'hangs no longer'); END;
 CREATE TRIGGER many BEFORE INSERT ON votes WHEN
   (SELECT count(*) FROM votes WHERE voter = NEW.voter) >= (SELECT marks FROM gallery)
   BEGIN SELECT RAISE(ABORT, 'too many'); END;
@@ -146,25 +153,40 @@ def close(db: sqlite3.Connection, now: datetime) -> None:
 
 
 def artifacts(db: sqlite3.Connection) -> dict[str, Artifact]:
-    """Return the artifacts by id."""
-    rows = db.execute("SELECT id, team, title, caption, width, height FROM artifacts ORDER BY id")
+    """Return the artifacts that hang, by id."""
+    rows = db.execute("SELECT id, team, title, caption, width, height FROM artifacts WHERE hangs ORDER BY id")
     return {row[0]: Artifact(*row) for row in rows}
 
 
 def hangs(db: sqlite3.Connection, id: str) -> bool:
     """Return whether there is such an artifact."""
-    return db.execute("SELECT 1 FROM artifacts WHERE id = ?", (id,)).fetchone() is not None
+    return db.execute("SELECT 1 FROM artifacts WHERE hangs AND id = ?", (id,)).fetchone() is not None
 
 
-def hang(db: sqlite3.Connection, artifact: Artifact) -> None:
-    """Put an artifact in the place of the team's earlier one; another picture starts without votes."""
-    gone = (artifact.team, artifact.id)
-    db.execute(
-        "DELETE FROM votes WHERE artifact IN (SELECT id FROM artifacts WHERE team = ? AND id != ?)", gone
-    )
-    db.execute("DELETE FROM artifacts WHERE team = ? AND id != ?", gone)
-    update = "ON CONFLICT (id) DO UPDATE SET title = excluded.title, caption = excluded.caption"
-    db.execute(f"INSERT INTO artifacts VALUES (?, ?, ?, ?, ?, ?) {update}", artifact)
+def hang(db: sqlite3.Connection, artifact: Artifact, source: str = "") -> int:
+    """Hang an artifact in the place of the team's earlier one, and return how many votes that one had.
+
+    The earlier one keeps its votes, which count again if it is hung again; the change is written down.
+    """
+    before = db.execute("SELECT id FROM artifacts WHERE hangs AND team = ?", (artifact.team,)).fetchone()
+    db.execute("UPDATE artifacts SET hangs = 0 WHERE team = ?", (artifact.team,))
+    update = "ON CONFLICT (id) DO UPDATE SET title = excluded.title, caption = excluded.caption, hangs = 1"
+    db.execute(f"INSERT INTO artifacts VALUES (?, ?, ?, ?, ?, ?, 1) {update}", artifact)
+    if before is None or before[0] == artifact.id:
+        return 0
+    (votes,) = db.execute("SELECT count(*) FROM votes WHERE artifact = ?", before).fetchone()
+    row = (datetime.now(UTC).isoformat(), artifact.team, source, before[0], artifact.id, votes)
+    db.execute("INSERT INTO changes VALUES (?, ?, ?, ?, ?, ?)", row)
+    return int(votes)
+
+
+def changes(db: sqlite3.Connection) -> list[str]:
+    """Return in words which artifacts took the place of another, from the first change on."""
+    rows = db.execute("SELECT at, team, source, votes FROM changes ORDER BY at")
+    return [
+        f"{at[:19]} UTC: {team} has hung another picture ({source}); {votes} votes for the first do not count"
+        for at, team, source, votes in rows
+    ]
 
 
 def voters(db: sqlite3.Connection) -> list[Voter]:
