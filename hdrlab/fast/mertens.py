@@ -4,6 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
+from hdrlab.core.arrays import levels
 from hdrlab.core.types import F32, Array
 from hdrlab.enhance import mertens
 from hdrlab.fast import pyramid, with_parts
@@ -12,11 +13,16 @@ from hdrlab.fast._bands import banded
 _BAND = 16  # rows
 
 
+def _split_planes(Z: Array) -> F32:
+    """Return F = Z / top level, the channels as planes, each in one piece."""
+    return np.ascontiguousarray(np.moveaxis(np.atleast_3d(Z), -1, 0)) * np.float32(1 / (levels(Z) - 1))
+
+
 def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]:
     """Yield W_j / sum_i W_i, photograph after photograph: they sum to 1 in every pixel [Mertens07]."""
 
     def measure(Z: Array) -> F32:
-        return mertens.weight(mertens.split_planes(np.moveaxis(Z, 0, -1)), powers)
+        return mertens.weight(_split_planes(np.moveaxis(Z, 0, -1)), powers)
 
     each: list[F32] = [banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
     total: F32 = np.zeros(images.shape[1:3], np.float32)
@@ -36,6 +42,6 @@ def add_term(blended: F32, W: F32, detail: F32) -> F32:
     return total
 
 
-_parts = {"weights": weights, "add_term": add_term, "pyramid": pyramid}
+_parts = {"weights": weights, "add_term": add_term, "pyramid": pyramid, "split_planes": _split_planes}
 fuse_steps = with_parts(__name__, mertens.fuse_steps, **_parts)
 fuse = with_parts(__name__, mertens.fuse, fuse_steps=fuse_steps, pyramid=pyramid)

@@ -85,6 +85,12 @@ def test_the_solution_was_run_and_keeps_every_promise(name):
     assert f"{name}: {whole} of {whole} points" in checked[-1]
 
 
+def test_all_tasks_together_are_worked_in_600_lines():
+    cells = [cell for name in NAMES for cell in committed(SOURCES, name)["cells"]]
+    worked = [cell["source"] for cell in cells if "task" in cell["metadata"].get("hdrlab", {})]
+    assert len(worked) == 31 and sum(len("".join(one).splitlines()) for one in worked) <= 600
+
+
 @pytest.mark.parametrize("name", NAMES)
 def test_every_picture_of_a_solution_has_an_alt_text(name):
     pages = [

@@ -8,6 +8,7 @@ import pytest
 from hdrlab.core import weights
 from hdrlab.course import plan
 from hdrlab.course.code import inline, names
+from hdrlab.course.material import stubs
 from hdrlab.response import debevec
 
 TASKS = [task for homework in plan.read().homeworks.values() for task in homework.tasks]
@@ -66,6 +67,24 @@ def test_of_a_docstring_the_first_paragraph_stays_for_the_sheet_has_the_rest():
     text = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text
     assert "Return g and lE" in text and "Parameters" not in text and ">>>" not in text
     assert text.count('"""') % 2 == 0
+
+
+@pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
+def test_a_solution_has_the_signature_of_its_sheet_and_neither_types_nor_guards(task):
+    text = inline.inlined({task.id: task.function})[task.id].text
+    assert stubs.stub(task).splitlines()[0] in text
+    functions = [one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.FunctionDef)]
+    arguments = [one for node in functions for one in ast.walk(node.args) if isinstance(one, ast.arg)]
+    assert not any(node.returns for node in functions) and not any(one.annotation for one in arguments)
+    inside = [one for node in functions for one in node.body]
+    assert not any(isinstance(one, ast.If) and isinstance(one.body[-1], ast.Raise) for one in inside)
+    assert "require_" not in text and "# noqa" not in text and "hdrlab" not in text
+
+
+def test_a_class_that_the_notebook_gives_is_not_copied_again():
+    functions, given = {"gsolve": "response.debevec.gsolve"}, stubs.classes("response.debevec.gsolve")
+    assert "class Solution" in inline.inlined(functions)["gsolve"].text
+    assert "class Solution" not in inline.inlined(functions, given)["gsolve"].text
 
 
 def test_imports_from_one_module_stand_in_one_line():
