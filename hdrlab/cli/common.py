@@ -12,7 +12,7 @@ SUFFIXES = ".hdr, .exr or .pfm"
 CLEAN = click.option(
     "--clean",
     is_flag=True,
-    help="Fill NaN from around it and infinity with the largest value, move colours below 0 toward gray.",
+    help="Repair even a map of which most is NaN, infinite or below 0; without it, a part is repaired.",
 )
 
 
@@ -50,15 +50,23 @@ def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:
 
 
 def read_map(source: Path, clean: bool) -> Any:
-    """Return the radiance map of a file, and say what was cleaned."""
+    """Return the radiance map of a file, with one line on what was repaired.
+
+    Raises a ValueError where half of the pixels or more hold no light at all, unless `clean`.
+    """
     from hdrlab.io import radiance
 
-    if not clean:
-        return radiance.read_radiance(source)
     E, *counts = radiance.read_sanitized(source)
+    unknown, infinite, _, black = counts
     what = ("unknown pixels", "infinite values", "pixels with a negative channel", "pixels below black")
     said = ", ".join(f"{count} {name}" for count, name in zip(counts, what, strict=True) if count)
-    click.echo(f"{source}: cleaned {said or 'nothing, all is radiance'}")
+    pixels = E.shape[0] * E.shape[1]
+    if not clean and 2 * (unknown + black + infinite / (E.size / pixels)) >= pixels:
+        raise ValueError(f"{source}: expected radiance, got {said} of {pixels} pixels; --clean repairs all")
+    if said:
+        click.echo(f"note: {source}: cleaned {said}, of {pixels} pixels", err=True)
+    elif clean:
+        click.echo(f"{source}: cleaned nothing, all is radiance")
     return E
 
 

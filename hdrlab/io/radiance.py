@@ -60,7 +60,7 @@ def read_valid(path: str | Path) -> F32:
     try:
         E = as_radiance(E)
     except ValueError as error:
-        raise ValueError(f"{path}: {error}; clean=True (--clean) mends them") from None
+        raise ValueError(f"{path}: {error}; clean=True repairs them") from None
     primaries = primaries_of(path)
     return E if primaries is None else gamut.to_srgb(E, primaries)
 

@@ -222,30 +222,37 @@ def test_convert_keeps_every_bit_of_a_float_map(suffix, map_file, tmp_path):
     assert np.array_equal(radiance.read_radiance(tmp_path / f"b{suffix}"), radiance.read_radiance(map_file))
 
 
-def test_a_map_with_nan_is_refused_and_cleaned_on_demand(tmp_path, capsys):
-    broken = tmp_path / "broken.pfm"
-    pixels = np.array([[1, np.nan], [np.inf, 2]], "<f4")
-    broken.write_bytes(b"Pf\n2 2\n-1.0\n" + pixels.tobytes())
-    code, _, complaint = hdrlab("convert", broken, tmp_path / "out.pfm", capsys=capsys)
-    assert code == 2 and "1 NaN" in complaint and "1 infinite" in complaint and str(broken) in complaint
-    assert hdrlab("convert", broken, tmp_path / "out.pfm", "--clean") == 0
-    assert np.isfinite(radiance.read_radiance(tmp_path / "out.pfm")).all()
+def write_pfm(file, pixels):
+    """Write a .pfm file of any values, (H, W, 3): `write_radiance` takes radiance alone."""
+    file.write_bytes(
+        b"PF\n%d %d\n-1.0\n" % (pixels.shape[1], pixels.shape[0]) + pixels.astype("<f4").tobytes()
+    )
 
 
-def test_cleaning_says_what_it_mended(tmp_path, capsys):
+def test_values_that_are_no_radiance_are_repaired_with_a_note(tmp_path, capsys):
     file, out = tmp_path / "x.pfm", tmp_path / "x.png"
-    pixels = np.ones((4, 5, 3), "<f4")
+    pixels = np.ones((4, 5, 3))
     pixels[0, 0, 0], pixels[1, 1, 1], pixels[2, 2, 2], pixels[3, 3] = np.nan, np.inf, -0.1, -1
-    file.write_bytes(b"PF\n5 4\n-1.0\n" + pixels.tobytes())
-    code, _, complaint = hdrlab("tonemap", file, "-o", out, capsys=capsys)
-    assert code == 2 and "1 NaN, 1 infinite and 4 negative" in complaint and not out.exists()
-    code, said, _ = hdrlab("tonemap", file, "-o", out, "--clean", capsys=capsys)
-    assert code == 0 and out.exists()
+    write_pfm(file, pixels)
     counts = "1 unknown pixels, 1 infinite values, 1 pixels with a negative channel, 1 pixels below black"
-    assert counts in said
-    code, said, _ = hdrlab("convert", file, tmp_path / "y.exr", "--clean", capsys=capsys)
-    assert code == 0 and counts in said
+    for command in (["tonemap", file, "-o", out], ["convert", file, tmp_path / "y.exr"]):
+        code, _, note = hdrlab(*command, capsys=capsys)
+        assert code == 0 and note == f"note: {file}: cleaned {counts}, of 20 pixels\n"
+    assert out.exists() and np.isfinite(radiance.read_radiance(tmp_path / "y.exr")).all()
+    assert hdrlab("convert", tmp_path / "y.exr", file, capsys=capsys)[2] == ""
     assert "nothing" in hdrlab("convert", tmp_path / "y.exr", file, "--clean", capsys=capsys)[1]
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, -1.0])
+def test_a_map_that_is_mostly_no_radiance_is_refused_unless_it_is_to_be_cleaned(value, tmp_path, capsys):
+    file, out = tmp_path / "x.pfm", tmp_path / "out.pfm"
+    pixels = np.ones((4, 5, 3))
+    pixels[:2] = value
+    write_pfm(file, pixels)
+    code, _, complaint = hdrlab("convert", file, out, capsys=capsys)
+    assert code == 2 and str(file) in complaint and "of 20 pixels" in complaint and "--clean" in complaint
+    assert not out.exists() and hdrlab("convert", file, out, "--clean") == 0
+    assert np.isfinite(radiance.read_radiance(out)).all()
 
 
 def test_either_way_of_colour_can_be_asked_for(tmp_path, capsys):

@@ -66,13 +66,12 @@ def test_what_cannot_be_compared_ends_in_one_line(options, said, map_file, tmp_p
     assert list(tmp_path.iterdir()) == [map_file]
 
 
-def test_compare_refuses_nan_and_cleans_on_demand(tmp_path, capsys):
+def test_compare_repairs_what_is_no_radiance_and_says_so(tmp_path, capsys):
     broken, sheet = tmp_path / "broken.pfm", tmp_path / "sheet.png"
-    pixels = np.array([[1, np.nan], [np.inf, 2]], "<f4")
-    broken.write_bytes(b"Pf\n2 2\n-1.0\n" + pixels.tobytes())
-    code, _, complaint = hdrlab("compare", broken, "-o", sheet, capsys=capsys)
-    assert code == 2 and "1 NaN" in complaint and "--clean" in complaint and not sheet.exists()
-    assert hdrlab("compare", broken, "-o", sheet, "--clean") == 0 and sheet.exists()
+    pixels = np.array([[1, np.nan, 3], [np.inf, 2, 4]], "<f4")
+    broken.write_bytes(b"Pf\n3 2\n-1.0\n" + pixels.tobytes())
+    code, _, note = hdrlab("compare", broken, "-o", sheet, "--operators", "reinhard", capsys=capsys)
+    assert code == 0 and "1 unknown pixels, 1 infinite values" in note and sheet.exists()
 
 
 class Terminal(io.StringIO):

@@ -46,7 +46,7 @@ def spoiled(path):
 
 
 def test_values_that_are_no_radiance_are_counted_and_refused(tmp_path):
-    with pytest.raises(ValueError, match=r"x.pfm: .*got 1 NaN, 2 infinite and 2 negative values.*--clean"):
+    with pytest.raises(ValueError, match=r"x.pfm: .*got 1 NaN, 2 infinite and 2 negative values.*clean=True"):
         read_radiance(spoiled(tmp_path / "x.pfm"))
 
 
