@@ -8,14 +8,19 @@ from hdrlab.cli import common
 from hdrlab.pipeline import catalogue
 
 WAY = click.option(
-    "--way", type=click.Choice(["ratio", "chroma"]), default="ratio", help="Of colour, see below."
+    "--way", type=click.Choice(["hue", "ratio", "chroma"]), default="hue", help="Of colour, see below."
 )
 
 
 @click.command()
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.FILE, help="Picture to write: .png, .jpg or .tif.")
-@click.option("--operator", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
+@click.option(
+    "--operator",
+    type=click.Choice(["photograph", *catalogue.names("tonemap")]),
+    default="photograph",
+    help="photograph chooses its settings by the map; the others have their papers'.",
+)
 @click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
 @click.option(
     "--saturation", type=float, help="1 keeps the colours' ratios, 0 is gray.  [default: the operator's]"
@@ -33,21 +38,22 @@ def tonemap(
 ) -> None:
     """Make a picture of the radiance map SOURCE.
 
-    Bright colours may want more of a channel than a display has. By --way ratio such a channel is clipped:
-    the picture stays colourful, but a bright blue turns toward cyan. By --way chroma the colour pales as far
-    as it must, and its hue and luminance stay.
+    Bright colours may want more of a channel than a display has. By --way hue they become a little darker and
+    a little paler, and keep their hue. By --way ratio the channel is clipped: the picture stays colourful,
+    but a bright blue turns toward cyan. By --way chroma the colour pales as far as its luminance needs.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
     from hdrlab.io import photos as files
+    from hdrlab.pipeline.pictures import find_operator
 
     E = common.read_map(source, clean)
     settings = dict(common.knob(one) for one in knobs)
-    catalogue.check_knobs("tonemap", operator, settings)
+    catalogue.check_knobs("tonemap", find_operator(operator), settings)
     with elapsed(operator):
-        picture = pipeline.develop(E, operator, saturation=saturation, way=way, **settings)
-        files.write_picture(out, picture)
-    click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {operator}")
+        made = pipeline.develop_and_describe(E, operator, saturation=saturation, way=way, **settings)
+        files.write_picture(out, made.picture)
+    click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 
 @click.command()

@@ -6,11 +6,13 @@ Ld       display luminance   (H, W), linear, 1 = white
 display  linear display RGB  (H, W, 3) in [0, 1], or (H, W)
 s        saturation          1 keeps the colour's ratios, 0 is gray
 
-A saturated colour may want more of a channel than the display has. There are two policies, by name in `WAYS`:
+A saturated colour may want more of a channel than the display has. There are three policies, in `WAYS`:
 
 ratio    `recolour` clips the channel: the luminance drops and the hue turns, a blue sky toward cyan and a
          flame from orange to yellow, but what is bright stays colourful
 chroma   `recolour_chroma` gives up saturation instead: luminance and hue stay, what is bright becomes pale
+hue      some of both: a colour darkens, by M^0.85 where its largest channel is M > 1, and then pales, by and
+         by before that channel meets 1: hue and gradation stay, and lamps and glass keep a colour
 
 Out-of-gamut colours, with a channel below 0, become gray as far as they must: `core.gamut`.
 """
@@ -172,7 +174,31 @@ def _chroma(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
     return np.maximum((1 + s * chroma) * Ld[..., None], 0)
 
 
-WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "chroma": _chroma}
+def _hue(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
+    dark, s = L < DARK, np.float32(saturation)
+    scale = s * Ld / np.maximum(L, DARK)
+    gray = (1 - s) * Ld
+    if dark.any():
+        scale[dark], gray[dark] = 0, Ld[dark]
+    C = E * np.stack([scale] * 3, axis=-1)
+    if saturation != 1 or dark.any():
+        C += np.stack([gray] * 3, axis=-1)
+    M = np.maximum(np.maximum(C[..., 0], C[..., 1]), C[..., 2])
+    bright = M - Ld > np.float32(0.5) * (1 - Ld)
+    if bright.any():
+        C[bright] = _pale(C[bright], M[bright, None], Ld[bright, None])
+    return np.clip(C, 0, 1)
+
+
+def _pale(C: F32, M: F32, Ld: F32) -> F32:
+    """Return colours (N, 3) whose largest channel M, (N, 1) like Ld, no longer exceeds 1."""
+    fit = np.maximum(M, 1) ** np.float32(-0.85)
+    C, M, Ld = C * fit, M * fit, Ld * fit
+    full = np.minimum((M - Ld) / np.maximum(1 - Ld, DARK), 1000)  # of the room between the luminance and 1
+    return Ld + (C - Ld) * (1 + full**8) ** np.float32(-1 / 8)
+
+
+WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "chroma": _chroma, "hue": _hue}
 
 
 def _codes(display: F32) -> Array:

@@ -8,7 +8,7 @@ from typing import Any
 
 PLACES = {
     "assembly": ("Assembly", "Method"),
-    "pictures": ("develop", "own_saturation"),
+    "pictures": ("develop", "develop_and_describe", "own_saturation"),
     "registration": ("aligned", "moved"),
     "relative_times": ("space_by_stops",),
     "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps"),

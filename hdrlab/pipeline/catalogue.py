@@ -45,7 +45,7 @@ def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
     return own or getattr(import_module(f"hdrlab.{chapter}.{name}"), VERBS[chapter])
 
 
-def check_knobs(chapter: str, name: str, knobs: dict[str, Any]) -> None:
+def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, Any]) -> None:
     """Raise a ValueError that lists a method's knobs where one of `knobs` is not among them."""
     known = [
         knob.name
@@ -54,4 +54,5 @@ def check_knobs(chapter: str, name: str, knobs: dict[str, Any]) -> None:
     ]
     for knob in knobs:
         if knob not in known:
+            name = name if isinstance(name, str) else name.__module__.rpartition(".")[2]
             raise ValueError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")

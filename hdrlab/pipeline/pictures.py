@@ -1,8 +1,8 @@
-"""A radiance map becomes a picture, by an operator of `tonemap` or a function of yours."""
+"""A radiance map becomes a picture: by `photograph`, an operator of `tonemap` or a function of yours."""
 
 from collections.abc import Callable
 from importlib import import_module
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -10,16 +10,20 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core import colour
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
+from hdrlab.pipeline.photograph import choose_settings, photograph
+
+# the default: settings from the map, see `photograph`
+AUTO = "photograph"
 
 
-def develop(
-    E: ArrayLike,
-    tonemap: Method = "reinhard",
-    *,
-    saturation: float | None = None,
-    way: str = "ratio",
-    **knobs: Any,
-) -> NDArray[np.uint8]:
+class Developed(NamedTuple):
+    """A picture (H, W[, 3]) uint8, and how it was made, in words: "photograph, share 0.62, key 0.24, ..."."""
+
+    picture: NDArray[np.uint8]
+    settings: str
+
+
+def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.uint8]:
     """Return the picture of a radiance map: tone-mapped luminance, its colours, sRGB in 8 bits.
 
     Parameters
@@ -27,14 +31,17 @@ def develop(
     E : (H, W) or (H, W, 3)
         Radiance, any linear unit.
     tonemap : str or function
-        A method of `tonemap`, or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
+        "photograph", which chooses its settings by the map; a method of `tonemap`, with the defaults of its
+        paper; or your own `tonemap(L, **knobs) -> Ld` in [0, 1].
     saturation : float, optional
-        1 keeps the ratios of the channels, 0 is gray; the SATURATION of the operator's module, or else 1.
-    way : {"ratio", "chroma"}
-        How colour comes back, and what becomes of colours beyond the display: "ratio" clips a channel,
-        "chroma" keeps hue and luminance and gives up saturation, see `core.colour`.
+        1 keeps the ratios of the channels, 0 is gray. By default "photograph" chooses it, and an operator
+        has the SATURATION of its module, or else 1.
+    way : {"hue", "ratio", "chroma"}
+        How colour comes back, and what becomes of colours beyond the display: "hue" darkens them a little
+        and makes them paler, "ratio" clips a channel, "chroma" makes them as pale as their luminance needs;
+        see `core.colour`.
     **knobs
-        Those of the operator.
+        Those of the operator; of "photograph" share, key, white and black, instead of what it chooses.
 
     Returns
     -------
@@ -45,10 +52,47 @@ def develop(
     ValueError
         For radiance that is not finite or negative, and for knobs out of their range.
     """
-    operator = catalogue.method("tonemap", tonemap)
-    saturation = own_saturation(operator) if saturation is None else saturation
+    return develop_and_describe(E, tonemap, **options).picture
+
+
+def develop_and_describe(
+    E: ArrayLike,
+    tonemap: Method = AUTO,
+    *,
+    saturation: float | None = None,
+    way: str = "hue",
+    **knobs: Any,
+) -> Developed:
+    """Return the picture of `develop`, and its settings in words, for a report; the parameters are the same.
+
+    Examples
+    --------
+    >>> E = np.geomspace(1, 1000, 4800, dtype=np.float32).reshape(60, 80)
+    >>> develop_and_describe(E).settings
+    'photograph, share 0.67, key 0.24, white 4.4, black 0.012, saturation 1'
+    >>> develop_and_describe(E, "reinhard", key=0.36).settings
+    'reinhard, key 0.36, saturation 1'
+    """
+    operator, settings = find_operator(tonemap), dict(knobs)
+    if operator is photograph:
+        settings = choose_settings(E) | knobs
+        own = settings.pop("saturation")
+    else:
+        own = own_saturation(operator)
+    saturation = own if saturation is None else float(saturation)
     L = colour.luminance(E)
-    return colour.render(E, L, operator(L, **knobs), saturation=saturation, way=way)
+    picture = colour.render(E, L, operator(L, **settings), saturation=saturation, way=way)
+    name = tonemap if isinstance(tonemap, str) else getattr(tonemap, "__name__", "your own operator")
+    said = (
+        f"{knob} {value:.2g}" if isinstance(value, float) else f"{knob} {value}"
+        for knob, value in (settings | {"saturation": saturation}).items()
+    )
+    return Developed(picture, ", ".join((name, *said)))
+
+
+def find_operator(tonemap: Method) -> Callable[..., Any]:
+    """Return `photograph` for its name, and else what `catalogue.method` finds."""
+    return photograph if tonemap == AUTO else catalogue.method("tonemap", tonemap)
 
 
 def own_saturation(operator: Callable[..., Any]) -> float:

@@ -9,8 +9,9 @@ N      levels of a display
 
 A curve (tone reproduction curve) treats equal luminances equally wherever they stand; an operator (TRO)
 looks at the neighbourhood too, so that one luminance may become several (`spread` shows which it is). Ld is
-light: the display's own encoding comes after it (`core.colour.encode_srgb`), so gamma here is contrast that
-the picture loses, and a logarithm of light is pale. One of the display's codes is `brush` with limit 1.
+light: the display's own encoding comes after it (`core.colour.encode_srgb`). The levels Q of a display are
+codes, and so F is taken for a code; taken for light, a gamma is contrast that the picture loses, and a
+logarithm is pale.
 """
 
 from collections.abc import Callable
@@ -20,6 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
+from hdrlab.core.colour import decode_srgb
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.types import F32, Array
 
@@ -81,6 +83,7 @@ def tonemap(
     curve: Literal["linear", "gamma", "log"] = "log",
     gamma: float = 2.2,
     cut: float = 1e-4,
+    encoded: bool = True,
 ) -> F32:
     """Return display luminance by one curve for all pixels.
 
@@ -90,6 +93,8 @@ def tonemap(
     curve : which one
     gamma : exponent 1 / gamma, for that curve
     cut : fraction of the lit pixels to leave out at either end of the scene's range; one hot pixel always is
+    encoded : F is the display's code, and Ld the light that it shows, so F as it is becomes the levels of the
+        picture; False takes F itself as light, which the display's encoding then makes pale
 
     Returns
     -------
@@ -107,8 +112,8 @@ def tonemap(
 
     Examples
     --------
-    >>> tonemap(np.array([[1.0, 10.0, 100.0, 1000.0, 10000.0]])).round(2).tolist()
-    [[0.0, 0.0, 0.5, 1.0, 1.0]]
+    >>> tonemap(np.array([[1.0, 10.0, 100.0, 1000.0, 10000.0]])).round(2)
+    array([[0.  , 0.  , 0.21, 1.  , 1.  ]], dtype=float32)
     """
     L = as_luminance(L)
     if curve not in CURVES:
@@ -117,4 +122,5 @@ def tonemap(
         raise ValueError(f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}")
     low, high = robust_minimum(L, cut=cut) or 1.0, robust_maximum(L, cut=cut) or 1.0
     own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low}}
-    return CURVES[curve](L, high=high, **own[curve])
+    F = CURVES[curve](L, high=high, **own[curve])
+    return decode_srgb(F).astype(np.float32) if encoded else F

@@ -150,7 +150,7 @@ def test_render_takes_either_way_of_colour_by_its_name():
             exact = colour.to_8bit(verb(E, L, Ld, saturation=saturation))
             assert np.abs(picture.astype(int) - exact).max() <= 1 and np.mean(picture != exact) < 1e-3
         assert np.array_equal(colour.render(L, L, Ld, way=way), colour.to_8bit(Ld))
-    with pytest.raises(ValueError, match="ratio, chroma, got 'lab'"):
+    with pytest.raises(ValueError, match="ratio, chroma, hue, got 'lab'"):
         colour.render(E, L, Ld, way="lab")
 
 

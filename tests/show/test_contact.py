@@ -68,7 +68,7 @@ def test_a_readers_own_operator_stands_beside_the_librarys_under_its_label():
     own = {"half": lambda L: np.full_like(L, 0.5), "photographic": "reinhard"}
     half, photographic = contact.entry_steps(SCENE[..., 0], own)
     assert half.name == "half" and np.all(half.picture == 188)
-    assert np.array_equal(photographic.picture, pipeline.develop(SCENE[..., 0]))
+    assert np.array_equal(photographic.picture, pipeline.develop(SCENE[..., 0], "reinhard"))
 
 
 def test_the_sheet_yields_a_picture_when_it_is_done_and_not_all_at_the_end():

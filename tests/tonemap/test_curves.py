@@ -8,6 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from hdrlab.core import colour
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.tonemap import curves, reinhard
 
@@ -52,9 +53,16 @@ def test_the_logarithm_gives_every_stop_the_same_share():
 def test_linear_scaling_loses_most_of_a_wide_scene():
     """The slide's point: below one level of 256 there is nothing, and half of this scene lies there."""
     L = np.geomspace(1e-3, 32, 4096, dtype=np.float32)[None]
-    lost = np.mean(curves.quantise(curves.tonemap(L, curve="linear")) == 0)
+    lost = np.mean(curves.quantise(curves.tonemap(L, curve="linear", encoded=False)) == 0)
     assert lost == pytest.approx(np.log(32 / 510 / 1e-3) / np.log(32 / 1e-3), abs=0.01)
-    assert np.mean(curves.quantise(curves.tonemap(L, curve="log")) == 0) < 0.01
+    assert np.mean(curves.quantise(curves.tonemap(L, curve="log", encoded=False)) == 0) < 0.01
+
+
+@pytest.mark.parametrize("name", CURVES)
+def test_an_encoded_curve_becomes_the_levels_of_the_picture_as_it_is(name):
+    L = laws.scene()
+    F, Ld = (curves.tonemap(L, curve=name, encoded=encoded) for encoded in (False, True))
+    assert np.abs(curves.quantise(F).astype(int) - colour.to_8bit(Ld)).max() <= 1
 
 
 @given(F=st.floats(0, 1), levels=st.sampled_from([2, 16, 256, 1024, 65536]))

@@ -26,7 +26,7 @@ def entry_steps(
     E: ArrayLike,
     operators: Sequence[str] | Mapping[str, Method] | None = None,
     *,
-    way: str = "ratio",
+    way: str = "hue",
     clock: Callable[[], float] = perf_counter,
 ) -> Iterator[Entry]:
     """Yield the Entry of each operator; the parameters are those of `contact_sheet`."""
@@ -44,7 +44,7 @@ def contact_sheet(
     E: ArrayLike,
     operators: Sequence[str] | Mapping[str, Method] | None = None,
     *,
-    way: str = "ratio",
+    way: str = "hue",
     title: str = "",
     columns: int | None = None,
     side: int = SIDE,
@@ -58,7 +58,7 @@ def contact_sheet(
     operators : names, or labels with an operator each; optional
         Which, and in which order: all, sorted, unless told. A label's operator is a name or your own function
         `tonemap(L) -> Ld` in [0, 1].
-    way : {"ratio", "chroma"}
+    way : {"hue", "ratio", "chroma"}
         What becomes of colours that a display does not have: see `core.colour.render`.
     title : str
         Above the sheet, and in its alt text.

@@ -1,0 +1,135 @@
+"""A picture for photographers: light compressed where it must be, exposure and contrast set from the map.
+
+L       luminance                 (H, W), any linear unit; lL its decades, log10 L
+light   large-scale light of lL   (H, W), a lL + b of a guided filter: smooth but for its edges
+x       lL - (1 - share) light    (H, W): the light's contrast is multiplied by `share`, all detail stays
+Lm      scaled luminance          key 10^(CONTRAST (x - mean of x)), 1 about where the curve bends
+Ld      (curve of Lm - black) / (1 - black), by the curve of `tonemap.reinhard` and its `white`
+
+The defaults of Reinhard's paper are flat for a photograph: black is not set, and half of the display's range
+is kept for the brightest pixels. A guided filter reverses no gradients beside soft edges, unlike a bilateral
+one; its a and b are found on a coarse grid (He and Sun, Fast guided filter, 2015).
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.ndimage import uniform_filter
+
+from hdrlab.core import colour
+from hdrlab.core.arrays import as_luminance, as_radiance
+from hdrlab.core.types import F32
+from hdrlab.fast._bands import banded
+from hdrlab.fast.reinhard import LIMIT
+from hdrlab.tonemap.durand import logarithm
+from hdrlab.tonemap.reinhard import display
+
+# half of the guided filter's window, of the longer side; nodes of the coarse grid in that half
+REACH, NODES = 0.03, 4
+# decades: a step of light that stays an edge
+EDGE = 0.35
+# decades of light that a display shows with ease, and the least share that stays of more
+RANGE, LEAST = 1.9, 0.45
+# key of a map whose log luminance lies evenly about its mean
+MIDDLE = 0.24
+# contrast of the picture over that of x
+CONTRAST = 1.25
+# shares of the pixels that are white and black, and the most that is taken off as black
+WHITE, BLACK, DEEPEST = 0.005, 0.002, 0.012
+# pixels along a side that settings are chosen by, at least
+ENOUGH = 360
+
+
+def choose_settings(E: ArrayLike) -> dict[str, float]:
+    """Return the knobs of `photograph` for a map E (H, W[, 3]), and its saturation, all from percentiles.
+
+    share : of the light's contrast that stays, 1 where it spans at most RANGE decades
+    key : MIDDLE; up to twice that where most of the map is bright for its range, half of it where dark
+    white, black : the scaled and the display luminance that WHITE and BLACK of the pixels lie beyond
+    saturation : 1.25 of grays, 0.95 where half of the pixels have the purest of colours
+
+    Examples
+    --------
+    >>> E = np.geomspace(1, 1000, 4800, dtype=np.float32).reshape(60, 80)
+    >>> {name: round(value, 2) for name, value in choose_settings(E).items()}
+    {'share': 0.67, 'key': 0.24, 'white': 4.37, 'black': 0.01, 'saturation': 1.0}
+    """
+    E = as_radiance(E)
+    step = max(1, min(E.shape[:2]) // ENOUGH)
+    E = E[::step, ::step]
+    lL, share = logarithm(L := colour.luminance(E)), 1.0
+    low, high = np.quantile(large_scale_light(lL), [0.005, 0.995])
+    if high - low > RANGE:
+        share = max(LEAST, RANGE / float(high - low))
+    low, mean, high = find_levels(x := compress_light(lL, share))
+    key = MIDDLE * 2 ** ((2 * mean - low - high) / max(high - low, 1e-6))
+    Lm = scale(x, mean, key)
+    white = max(1.0, float(np.quantile(Lm, 1 - WHITE)))
+    black = min(DEEPEST, float(np.quantile(display(Lm, Lm, white), BLACK)))
+    saturation = 1.0
+    if E.ndim == 3 and L.any():
+        colours = E[L > 0]
+        saturation = 1.25 - 0.3 * float(np.median(1 - colours.min(axis=-1) / colours.max(axis=-1)))
+    return {"share": share, "key": key, "white": white, "black": black, "saturation": saturation}
+
+
+def large_scale_light(lL: F32) -> F32:
+    """Return the light a lL + b (H, W): a is near 1 at edges of light and near 0 in detail [He15]."""
+    reach = max(1, round(REACH * max(lL.shape)))
+    step = max(1, reach // NODES)
+    few, width = lL[::step, ::step], 2 * (reach // step) + 1
+    mean = uniform_filter(few, width)
+    variance = np.maximum(uniform_filter(few * few, width) - mean * mean, 0)
+    a = variance / (variance + np.float32(EDGE**2))
+    a, b = (enlarge(uniform_filter(one, width), step, lL.shape) for one in (a, mean - a * mean))
+    return a * lL + b
+
+
+def enlarge(nodes: F32, step: int, shape: tuple[int, ...]) -> F32:
+    """Return the values of nodes on every `step`-th pixel at all pixels, by linear interpolation."""
+    weights = []
+    for n, m in zip(shape, nodes.shape, strict=True):
+        at = np.minimum(np.arange(n, dtype=np.float32) / np.float32(step), m - 1)
+        weights.append(np.maximum(1 - np.abs(at[:, None] - np.arange(m, dtype=np.float32)), 0))
+    return weights[0] @ nodes @ weights[1].T
+
+
+def compress_light(lL: F32, share: float) -> F32:
+    """Return x = lL - (1 - share) light."""
+    return lL if share == 1 else lL - np.float32(1 - share) * large_scale_light(lL)
+
+
+def find_levels(x: F32) -> tuple[float, float, float]:
+    """Return the first percentile of x, the mean of x cut at its first and its last, and the last."""
+    few = x[:: max(1, len(x) // ENOUGH), :: max(1, x.shape[1] // ENOUGH)]
+    low, high = np.quantile(few, [0.01, 0.99])
+    return float(low), float(np.clip(few, low, high).mean(dtype=np.float64)), float(high)
+
+
+def scale(x: F32, mean: float, key: float) -> F32:
+    """Return Lm = key 10^(CONTRAST (x - mean)), at most LIMIT."""
+    exponent = np.log(np.float32(key)) + np.float32(CONTRAST * np.log(10)) * (x - np.float32(mean))
+    return np.exp(np.minimum(exponent, np.log(LIMIT)))
+
+
+def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: float) -> F32:
+    """Return display luminance (H, W) in [0, 1] of luminance L (H, W); the knobs: see `choose_settings`.
+
+    Raises
+    ------
+    ValueError
+        For luminance that is not (H, W), finite and positive or zero, and knobs out of range.
+    """
+    numbers = all(isinstance(knob, int | float) for knob in (share, key, white, black))
+    if not (numbers and 0 < share <= 1 and key > 0 and white > 0 and 0 <= black < 1):
+        got = f"{share=}, {key=}, {white=}, {black=}"
+        raise ValueError(f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}")
+    L = as_luminance(L)
+    x = compress_light(logarithm(L), share)
+    _, mean, _ = find_levels(x)
+
+    def curve(x: F32, L: F32) -> F32:
+        Lm = scale(x, mean, key)
+        Ld = np.clip((display(Lm, Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
+        return np.where(L > 0, Ld, 0)
+
+    return banded(curve, x, L)

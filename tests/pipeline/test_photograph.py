@@ -1,0 +1,108 @@
+"""The default picture: settings from the map, light compressed, hue kept; and what it says of itself."""
+
+import numpy as np
+import pytest
+
+from hdrlab import scenes
+from hdrlab.core import colour
+from hdrlab.core.picture import gray, statistics
+from hdrlab.pipeline import develop, develop_and_describe
+from hdrlab.pipeline.photograph import choose_settings, compress_light, enlarge, photograph
+
+PLACES = {name: getattr(scenes, name) for name in ("chapel", "workshop", "street", "room")}
+GRAY = np.geomspace(1, 1e4, 96 * 128, dtype=np.float32).reshape(96, 128)
+
+
+@pytest.fixture(scope="module", params=PLACES)
+def E(request):
+    return PLACES[request.param]((160, 240))
+
+
+def test_a_place_comes_out_neither_dark_nor_pale_and_hardly_clipped(E):
+    found = statistics(develop(E))
+    assert 95 < found.mean < 140 and found.contrast > 35 and found.white < 0.02 and found.black < 0.02
+
+
+def test_blacks_are_black_and_whites_white(E):
+    low, high = np.quantile(gray(develop(E)), [0.005, 0.998])
+    assert low < 40 and high > 225
+
+
+def test_the_unit_of_the_map_cancels(E):
+    assert np.abs(develop(E).astype(int) - develop(1000 * E)).max() <= 1
+
+
+def test_a_smaller_copy_is_the_same_picture(E):
+    small = E.reshape(80, 2, 120, 2, 3).mean(axis=(1, 3))
+    half = develop(E).astype(float).reshape(80, 2, 120, 2, 3).mean(axis=(1, 3))
+    assert np.median(np.abs(develop(small) - half)) < 4
+
+
+def test_colours_beyond_the_display_keep_their_hue_where_a_clipped_channel_turns_it():
+    """A sky that brightens: by clipping its blue it turns to cyan, and by the default it does not."""
+    sky = np.float32([0.25, 0.5, 1.0]) * np.geomspace(0.1, 10, 60 * 80, dtype=np.float32).reshape(60, 80, 1)
+    away = {}
+    for way in ("ratio", "hue"):
+        C = colour.decode_srgb(develop(sky, "reinhard", way=way) / 255.0)[-20:]
+        hue = (C[..., 1] - C[..., 0]) / (C[..., 2] - C[..., 0])  # 1/3 in the map
+        away[way] = np.abs(hue - 1 / 3).max()
+    assert away["hue"] < 0.03 < 0.1 < away["ratio"]
+
+
+def test_the_way_of_hue_is_the_ratio_of_channels_where_the_colour_fits():
+    E = np.float32([[[3.0, 2.0, 1.0], [0.2, 0.2, 0.2]]])
+    L = colour.luminance(E)
+    assert np.array_equal(*(colour.render(E, L, [[0.2, 0.99]], way=way) for way in ("hue", "ratio")))
+
+
+def test_more_light_of_one_colour_is_never_shown_darker():
+    for shade in ([1.0, 0.3, 0.02], [0.02, 0.05, 1.0], [0.5, 1.0, 0.3]):
+        E = np.float32(shade) * np.ones((1, 256, 1), np.float32)
+        shown = colour.render(E, colour.luminance(E), np.linspace(0, 1, 256)[None], way="hue")
+        assert np.all(np.diff(gray(shown)[0]) >= -0.8)  # rounding to levels aside
+
+
+def test_light_is_compressed_and_detail_is_not():
+    stripes = 0.05 * (np.arange(200) % 2)
+    lL = (np.where(np.arange(200) < 100, 0, 4) + stripes + np.zeros((150, 1))).astype(np.float32)
+    x = compress_light(lL, 0.5)[75]
+    assert np.median(x[150:]) - np.median(x[:50]) == pytest.approx(2, abs=0.1)
+    assert np.ptp(x[20:22]) == pytest.approx(0.05, rel=0.1) and np.array_equal(compress_light(lL, 1.0), lL)
+
+
+def test_a_grid_is_enlarged_along_straight_lines_and_past_its_end_stays():
+    nodes = np.float32([[0, 3, 6], [10, 13, 16]])
+    assert np.allclose(enlarge(nodes, 3, (5, 8))[[0, 1, 3, 4]][:, [0, 1, 6, 7]].round(3)[0], [0, 1, 6, 6])
+    assert enlarge(nodes, 3, (5, 8))[4, 7] == pytest.approx(16)
+
+
+def test_the_settings_are_told_and_can_be_replaced():
+    made = develop_and_describe(GRAY)
+    assert made.settings.startswith("photograph, share 0.") and "key 0.24" in made.settings
+    assert "saturation" in made.settings and np.array_equal(made.picture, develop(GRAY))
+    brighter = develop_and_describe(GRAY, key=0.5)
+    assert "key 0.5," in brighter.settings and brighter.picture.mean() > made.picture.mean() + 10
+    assert develop_and_describe(GRAY, "durand", contrast=20).settings == "durand, contrast 20, saturation 1"
+    assert "<lambda>" in develop_and_describe(GRAY, lambda L: np.zeros_like(L)).settings
+
+
+def test_a_dim_scene_in_a_narrow_range_is_left_as_it_is():
+    even = np.float32([1, 1.1]) * np.ones((50, 40, 1), np.float32)
+    assert choose_settings(even.reshape(50, 80))["share"] == 1
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize(
+    "E", [np.zeros((4, 5, 3)), np.ones((1, 1)), np.eye(3) * 1e30, np.full((2, 300, 3), 1e-30)]
+)
+def test_any_radiance_has_a_picture_and_black_is_black(E):
+    picture = develop(E)
+    assert picture.shape == E.shape and np.all(picture[np.asarray(E) == 0] <= 13)
+
+
+@pytest.mark.parametrize("wrong", [{"share": 0}, {"key": 0}, {"white": -1}, {"black": 1}, {"key": "auto"}])
+def test_settings_out_of_range_are_refused(wrong):
+    with pytest.raises(ValueError, match="expected share"):
+        develop(GRAY, **wrong)
+    with pytest.raises(ValueError, match="negative"):
+        photograph(-GRAY, share=1, key=0.2, white=2, black=0)
