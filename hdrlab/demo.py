@@ -17,7 +17,7 @@ from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import write_radiance
 from hdrlab.show.pages.report import write_report
 
-STEPS = 9
+STEPS = 10
 OPERATOR = "reinhard"
 CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=2e-5)
 
@@ -53,6 +53,8 @@ def _summarise(assembly: pipeline.Assembly) -> str:
     match assembly.stage:
         case "align":
             return "moved by " + ", ".join(f"({dy}, {dx})" for dy, dx in assembly.offsets) + " pixels"
+        case "times":
+            return "from " + " to ".join(f"{time:.4g} s" for time in assembly.bracket.times[[0, -1]])
         case "response":
             darkest, brightest = assembly.g.reshape(256, -1)[[10, 250]].mean(axis=1)
             return f"levels 10 and 250 lie {(brightest - darkest) / np.log(2):.1f} stops apart"

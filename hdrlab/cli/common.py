@@ -77,6 +77,14 @@ def size(E: Any) -> str:
     return f"{E.shape[1]} x {E.shape[0]}, {decades(E):.1f} decades"
 
 
+def agreement(spread: float) -> str:
+    """Return how far the frames of a map agree, in words; a spread of NaN stops could not be measured."""
+    known = spread == spread
+    return (
+        f"frames agree to {spread:.3f} stops" if known else "how far the frames agree could not be measured"
+    )
+
+
 def colour(text: str | None) -> tuple[int, int, int] | None:
     """Return RRGGBB as three levels, or raise a ValueError; None passes."""
     if text is None:

@@ -157,7 +157,8 @@ def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
         raise ValueError("no method finds a response in this bracket")
     g = {name: one.g for name, one in found.items()}
     for name, one in found.items():
-        click.echo(f"{name:<12}{calibration.reach(one.g):6.2f} stops, frames agree to {one.spread:.3f} stops")
+        agree = common.agreement(one.spread)
+        click.echo(f"{name:<12}{calibration.reach(one.g):6.2f} stops, {agree}")
     well = well_exposed(state.bracket.images, state.bracket.valid)
     click.echo("\nRMSE of exposure over the levels 10 to 250, percent of the largest, worst channel")
     click.echo("\n".join(calibration.matrix(list(g), calibration.rmse(g))))

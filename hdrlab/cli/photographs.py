@@ -114,9 +114,7 @@ def assemble(
             write_report(
                 report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": tonemap}
             )
-    agree = f"frames agree to {assembly.spread:.3f} stops"
-    agree = "how far the frames agree could not be measured" if assembly.spread != assembly.spread else agree
-    click.echo(f"{out}: {common.size(assembly.E)}, {agree}")
+    click.echo(f"{out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
     if strict and assembly.doubts:
         click.get_current_context().exit(3)
 

@@ -9,6 +9,7 @@ import pytest
 
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
+from hdrlab.cli.common import agreement
 from hdrlab.io import radiance
 from hdrlab.io.photos import read_photo, write_picture
 
@@ -313,3 +314,8 @@ def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
     first = next(part for part in called[0] if part.startswith("--LabApp.default_url="))
     assert (tmp_path / "mine" / first.removeprefix("--LabApp.default_url=/lab/tree/")).is_file()
     assert called[0][-2:] == ["--port", "9000"]
+
+
+def test_an_agreement_that_cannot_be_measured_is_no_number_of_stops():
+    assert agreement(0.0123) == "frames agree to 0.012 stops"
+    assert agreement(float("nan")) == "how far the frames agree could not be measured"

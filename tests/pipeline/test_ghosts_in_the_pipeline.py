@@ -37,7 +37,7 @@ def test_without_being_asked_nothing_is_looked_for(plain):
 @pytest.mark.parametrize("way", ["regions", "reference"])
 def test_ghosts_are_a_stage_after_the_merge_with_a_note(moving, plain, way):
     states = list(pipeline.assemble_steps(moving, align="none", ghosts=way))
-    assert [state.stage for state in states] == ["align", "response", "merge", "ghosts", "compare"]
+    assert [state.stage for state in states] == ["align", "times", "response", "merge", "ghosts", "compare"]
     found = states[-1]
     inside = found.moving > 0
     assert inside.any() and np.array_equal(found.E[~inside], plain.E[~inside])

@@ -188,7 +188,7 @@ def test_a_map_that_is_measured_everywhere_needs_no_picture_of_it(tmp_path):
 def test_doubts_stand_before_the_picture_and_notes_are_told(tmp_path):
     shown = report(tmp_path, flat()._replace(doubts=("the times are wrong",), notes=("a frame is dark",)))
     assert shown.source.index("the times are wrong") < shown.source.index("<img")
-    assert "Do not trust this map yet" in shown.text and "a frame is dark" in shown.text
+    assert "What is doubtful about this map" in shown.text and "a frame is dark" in shown.text
 
 
 def test_without_doubts_none_are_raised(page):

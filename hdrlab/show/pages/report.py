@@ -83,7 +83,11 @@ def _page(
             notes=notes,
             doubts=doubts,
             picture=figures.photograph(
-                picture, 1600, "The picture: the radiance map, tone-mapped for a display"
+                picture,
+                1600,
+                "The picture: the photographs, fused without a map"
+                if assembly.fallback
+                else "The picture: the radiance map, tone-mapped for a display",
             ),
             facts=sections.facts(E, quality, medians),
             bracket=sections.bracket(bracket, offsets),

@@ -71,7 +71,8 @@ def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | No
     worst = int(np.argmax(np.abs(off)))
     lines += [
         f"range      {reach(g):.2f} stops between the levels {LOW_LEVEL} and {HIGH_LEVEL}",
-        f"spread     {spread:.3f} stops between the frames' measurements of the same light",
+        f"spread     {f'{spread:.3f} stops' if np.isfinite(spread) else 'unknown'} between the frames' "
+        "measurements of the same light",
         f"residuals  {rms(r):.3f} stops rms; furthest off is {names[worst]}, by {signed(off[worst], 2)}",
     ]
     if band is not None:
