@@ -18,7 +18,6 @@ from hdrlab.io.radiance import write_radiance
 from hdrlab.show.pages.report import write_report
 
 STEPS = 10
-OPERATOR = "reinhard"
 CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=2e-5)
 
 
@@ -34,8 +33,8 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
     for assembly in pipeline.assemble_steps(bracket):
         yield f"{assembly.stage:<10} {_summarise(assembly)}"
-    picture = pipeline.develop(assembly.E, OPERATOR)
-    yield f"picture    {OPERATOR}, {picture.shape[1]} x {picture.shape[0]}"
+    picture, settings = pipeline.develop_and_describe(assembly.E)
+    yield f"picture    {settings}"
     for suffix in (".hdr", ".exr", ".pfm"):
         write_radiance(out / f"radiance{suffix}", assembly.E)
     write_picture(out / "picture.png", picture)
@@ -43,7 +42,7 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     light = camera.views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
     truth = Truth(light, responses.true_g(CAMERA.response), shaken)
     noise = {name: getattr(CAMERA, name) for name in ("full_well", "read_noise", "hot")}
-    recipe = {"tonemap": OPERATOR, "seed": seed, "camera": CAMERA.response, **noise}
+    recipe = {"tonemap": settings, "seed": seed, "camera": CAMERA.response, **noise}
     page = write_report(out, assembly, picture, recipe=recipe, truth=truth)
     yield f"report     {page}"
 

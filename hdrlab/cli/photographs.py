@@ -54,7 +54,12 @@ FUSION = "the picture is an exposure fusion of the photographs"
     default="none",
     help="Remove veiling glare, the light that the lens scattered.",
 )
-@click.option("--tonemap", type=click.Choice(catalogue.names("tonemap")), default="reinhard")
+@click.option(
+    "--tonemap",
+    type=click.Choice(["photograph", *catalogue.names("tonemap")]),
+    default="photograph",
+    help="photograph chooses its settings by the map; the others have their papers'.",
+)
 @click.option(
     "--picture", type=common.FILE, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
 )
@@ -101,18 +106,20 @@ def assemble(
         click.echo(f"warning: {doubt}", err=True)
     radiance.write_radiance(out, assembly.E, comments=[f"doubt: {doubt}" for doubt in assembly.doubts])
     if picture or report:
-        rendered = pipeline.develop(assembly.E, tonemap)
+        rendered, settings = pipeline.develop_and_describe(assembly.E, tonemap)
         if assembly.fallback:
             click.echo(f"note: {FUSION}, for {assembly.fallback}", err=True)
             assembly = assembly._replace(notes=(*assembly.notes, f"{FUSION}, for {assembly.fallback}"))
             rendered = np.rint(255 * mertens.fuse(assembly.bracket.images).clip(0, 1)).astype(np.uint8)
+            settings = FUSION
         if picture:
             files.write_picture(picture, rendered)
+            click.echo(f"{picture}: {settings}")
         if report:
             from hdrlab.show.pages.report import write_report
 
             write_report(
-                report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": tonemap}
+                report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": settings}
             )
     click.echo(f"{out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
     if strict and assembly.doubts:
