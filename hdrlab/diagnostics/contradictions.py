@@ -2,8 +2,9 @@
 
 x        corrections   (P,), what the pixels add to ln times: see `response_steps`
 stops    errors        (P,), log2(exposure by the pixels / exposure stated), most of them 0
+colours  the same      (P,), by how much the channels differ in them
 regions  disagreement  (P - 1,), stops by which parts of the picture disagree, under the best of factors
-significance           (P - 1,), the same over the standard error of a part's median; medians
+cost     in the map    stops, RMS over the picture: what the errors change where each frame has its weight
 
 The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in the
 deviations of `consistency` as .1. Neighbours are compared here by themselves, through a response that fits
@@ -12,17 +13,12 @@ them as well as any response and one factor per frame can. The factors hold an u
 square roots, which passes through most frames and leaves the wrong ones standing out: one large error is
 likelier than several middling ones.
 
-If factors explain all, times are wrong. If parts of one picture ask for different factors, none are: each
-picture was processed by itself and by place, as phones do.
+If factors explain all, times are wrong. If each channel asks for its own, the white balance changed. If parts
+of one picture ask for different factors, none are: the corners, where the aperture changed and with it the
+vignetting; or each picture was processed by itself and by place, as phones do.
 
-How weak a local tone map is noticed? One that multiplies by L^-u, with L the mean over a 20th of the width.
-Parts that disagree by a tenth of a stop need no other proof. Down to a fiftieth they count where the patches
-within a part agree so well that the parts are off by four times their error: true times and one response stay
-below 3.2, at up to 0.06 stops, where people and clouds move and hands shake. So u = 0.3 is noticed in
-`frobisher`, 0.2 in `tripod_phone` and in rooms of five frames and more. A weaker one cannot be distinguished
-from what true brackets hold, nor one whose L follows the level, for that is a response like any other: among
-simulated photographs of six measured rooms a third of those with u = 0.4 disagreed by a tenth of a stop, half
-by less than 0.07. Where too few patches are flat in every frame (`memorial`) nothing is reported.
+An error counts by what it costs. An end frame that is nearly black measures little, and bends by a camera's
+own processing: half a stop there leaves the map sound.
 """
 
 from collections.abc import Sequence
@@ -33,7 +29,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_stack
-from hdrlab.core.types import F64, Indices, Mask
+from hdrlab.core.types import F64, Flags, Mask
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # side of a part of the picture, in patches
@@ -45,34 +41,41 @@ TRUSTED = 0.1
 # stops, the prior: here times are free, for the question is what is wrong and not what is likely
 LOOSE = 4.0
 # stops: true times of real brackets stay within 0.12
-WRONG = 0.25
+WRONG = 0.2
+# stops in the map, RMS: a smaller error leaves it sound
+COST = 0.05
+# stops between channels
+TINTED = 0.2
 # stops: real brackets of one response stay within 0.06
 LOCAL = 0.1
-# stops, and standard errors: real brackets of one response stay within 3.2
-SLIGHT, SIGNIFICANT = 0.02, 4.0
-# stops: no standard error of a part is smaller, for patches have whole levels
-SMALLEST_ERROR = 0.003
+# stops in a typical patch: what contradicts all others, and what agrees
+CONTRARY, AGREEING = 0.3, 0.1
 
 
 class Contradictions(NamedTuple):
-    """stops (P,), NaN where no flat patch connects frames; regions, significance (P - 1,), NaN: unknown."""
+    """stops, colours (P,), and regions, corners (P - 1,), NaN where nothing connects frames; cost."""
 
     stops: F64
     regions: F64
-    significance: F64 = np.zeros(0)
+    colours: F64 = np.zeros(0)
+    corners: F64 = np.zeros(0)
+    cost: float = 0.0
 
     @property
     def wrong(self) -> tuple[int, ...]:
-        """The frames whose times are wrong."""
-        return tuple(np.flatnonzero(np.abs(self.stops) > WRONG).tolist())
+        """The frames whose times are wrong, at a cost."""
+        return tuple(np.flatnonzero((np.abs(self.stops) > WRONG) & (self.cost > COST)).tolist())
+
+    @property
+    def tinted(self) -> tuple[int, ...]:
+        """The frames whose white balance is another."""
+        return tuple(np.flatnonzero(self.colours > TINTED).tolist())
 
     @property
     def local(self) -> bool:
         """Whether one response, and one factor per frame, cannot explain the bracket."""
-        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
-        if not len(by):
-            return False
-        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT))
+        by = self.regions[np.isfinite(self.regions)]
+        return bool(len(by) and np.median(by) > LOCAL)
 
 
 def find_contradictions(
@@ -89,8 +92,8 @@ def find_contradictions(
     Returns
     -------
     Contradictions
-        Of the longest run of frames that flat patches connect, if these are three or more. Of three frames
-        any one may be wrong: then the middle one is named, or an end by twice as much.
+        Of the longest run of frames that patches or histograms connect, if these are three or more. Of three
+        frames any one may be wrong: then the middle one is named, or an end by twice as much.
 
     Examples
     --------
@@ -104,18 +107,68 @@ def find_contradictions(
     stack = as_stack(images)
     B = np.log(response_steps.as_ascending_times(times, len(stack)))
     found = flat_patches.find_flat_patches(stack, valid=valid)
-    H = flat_patches.count_pairs(found.Z, found.flat)
-    stops, regions, significance = np.full(len(B), np.nan), *np.full((2, len(B) - 1), np.nan)
+    H = flat_patches.count_pairs(found.Z, found.best)
+    few = ~response_steps.find_informative(H)
+    if few.any():
+        ranks = flat_patches.rank_levels(stack, valid=valid)
+        H[few] = flat_patches.count_pairs(ranks, np.ones(ranks.shape[2:], bool))[few]
+    unknown, pairs_unknown = np.full(len(B), np.nan), np.full(len(B) - 1, np.nan)
     start, stop = find_longest_run(response_steps.find_informative(H))
     frames, pairs = slice(start, stop + 1), slice(start, stop)
     if stop - start < 2 or np.ptp(B[frames]) == 0:
-        return Contradictions(stops, regions, significance)
-    best = response_steps.fit_steps(H[pairs], B[frames], response_steps.free_directions(B[frames]), sd=LOOSE)
-    stops[frames] = remove_trend(best.x, B[frames]) / np.log(2)
-    regions[pairs], significance[pairs] = measure_disagreement(
-        found._replace(Z=found.Z[frames]), B[frames], best
-    )
-    return Contradictions(stops, regions, significance)
+        return Contradictions(unknown, pairs_unknown)
+    here, Q = B[frames], response_steps.free_directions(B[frames])
+    best = response_steps.fit_steps(H[pairs], here, Q, sd=LOOSE)
+    each = [response_steps.fit_steps(H[pairs, [c]], here, Q, sd=LOOSE).x - best.x for c in range(H.shape[1])]
+    stops, colours, regions, corners = unknown, unknown.copy(), pairs_unknown, pairs_unknown.copy()
+    stops[frames] = remove_trend(best.x, here) / np.log(2)
+    colours[frames] = np.ptp([remove_trend(one, here) / np.log(2) for one in each], axis=0)
+    regions[pairs], corners[pairs] = measure_disagreement(found.of(frames), here, best)
+    return Contradictions(stops, regions, colours, corners, measure_cost(found.Z, stops))
+
+
+def measure_cost(Z: Flags, stops: F64) -> float:
+    """Return what errors of the frames, stops (P,), change in the map, up to a factor: RMS over patches."""
+    w = response_steps.W[Z].mean(axis=1)
+    total = w.sum(axis=0)
+    off = np.tensordot(np.nan_to_num(stops), w, axes=1)[total > 0] / total[total > 0]
+    return float(off.std()) if off.size else 0.0
+
+
+def find_outlying_frames(
+    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
+) -> tuple[int, ...]:
+    """Return the frames that contradict all others, while these agree; none where more than a third would.
+
+    Frames are left out one by one, each time the one without which the others agree best.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import camera
+    >>> from hdrlab.capture.room import view
+    >>> room = view.room((140, 210))
+    >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
+    >>> find_outlying_frames(taken.images, taken.times * [1, 1, 1, 6, 6]), find_outlying_frames(*taken[:2])
+    ((), ())
+    """
+    stack = as_stack(images)
+    B = np.log(response_steps.as_ascending_times(times, len(stack)))
+    found = flat_patches.find_flat_patches(stack, valid=valid)
+    kept = list(range(len(B)))
+    error = first = measure_misfit(found, B)
+    while error > AGREEING and first > CONTRARY and len(kept) > max(3, np.ceil(2 * len(B) / 3)):
+        rests = [[k for k in kept if k != j] for j in kept]
+        errors = [measure_misfit(found.of(rest), B[rest]) for rest in rests]
+        error, kept = min(errors), rests[int(np.argmin(errors))]
+    return tuple(sorted(set(range(len(B))) - set(kept))) if error <= AGREEING else ()
+
+
+def measure_misfit(found: flat_patches.FlatPatches, B: F64) -> float:
+    """Return the most by which neighbours miss ln times B in a typical patch, stops; 0 where none connect."""
+    H = flat_patches.count_pairs(found.Z, found.best)
+    fit = response_steps.fit_steps(H, B, np.zeros((len(B), 0)))
+    errors = response_steps.measure_biases(H, B, fit, sizes=True)[response_steps.find_informative(H)]
+    return float(np.nanmax(errors, initial=0))
 
 
 def find_longest_run(informative: Mask) -> tuple[int, int]:
@@ -139,48 +192,50 @@ def remove_trend(x: F64, B: F64) -> F64:
 def measure_disagreement(
     found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit
 ) -> tuple[F64, F64]:
-    """Return each pair's disagreement by place, (P - 1,), twice.
+    """Return each pair's disagreement by place, (P - 1,): of all parts, and of the corners with the middle.
 
-    In stops, where a quarter of the tiles are off by more; and in standard errors, where half of them are.
+    In stops: where a quarter of the tiles are off by more; and the slope over the squared distance from the
+    middle, 1 in the corners.
     """
-    h, w = found.flat.shape
+    h, w = found.Z.shape[2:]
     y, x = np.indices((h, w)) // TILE
     tile = y * (w // TILE + 1) + x
+    r2 = ((2 * TILE * (y + 0.5) / h - 1) ** 2 + (2 * TILE * (x + 0.5) / w - 1) ** 2) / 2
     channel = np.arange(found.Z.shape[1])[:, None, None]
     out = np.full((2, len(B) - 1), np.nan)
-    for j, step in enumerate(np.diff(B + best.x)):
+    for j, (step, chosen) in enumerate(zip(np.diff(B + best.x), found.best, strict=True)):
         a, b = found.Z[j], found.Z[j + 1]
-        trusted = (response_steps.W[a] * response_steps.W[b] > TRUSTED).all(axis=0) & found.flat
+        trusted = (response_steps.W[a] * response_steps.W[b] > TRUSTED).all(axis=0) & chosen
         r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0)[trusted] - step
-        medians, errors = _tile_medians(r / np.log(2), tile[trusted])
+        number, counts = np.unique(tile[trusted], return_counts=True)
+        medians = np.array([np.median(r[tile[trusted] == k]) for k in number[counts >= FEWEST]]) / np.log(2)
         if len(medians):
-            out[:, j] = np.quantile(np.abs(medians), 0.75), np.median(np.abs(medians) / errors)
+            out[0, j] = np.quantile(np.abs(medians), 0.75)
+        if len(medians) > 3:
+            place = np.array([r2[tile == k].mean() for k in number[counts >= FEWEST]])
+            out[1, j] = np.polyfit(place, medians, 1)[0] if np.ptp(place) > 0.3 else np.nan
     return out[0], out[1]
-
-
-def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
-    """Return the median of r over each tile of at least FEWEST patches, and its standard error.
-
-    That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal errors.
-    """
-    order = np.argsort(tile, kind="stable")
-    groups = np.split(r[order], np.flatnonzero(np.diff(tile[order])) + 1)
-    large = [group for group in groups if len(group) >= FEWEST]
-    medians = np.array([np.median(group) for group in large])
-    sigma = np.array([1.48 * np.median(np.abs(group - np.median(group))) for group in large])
-    return medians, np.maximum(1.25 * sigma / np.sqrt([len(group) for group in large]), SMALLEST_ERROR)
 
 
 def warn_of_contradictions(found: Contradictions, names: Sequence[str]) -> str:
     """Return the sentence on what is wrong, at which frame, by how much, and what to do; "" for nothing."""
     if found.local:
-        j = int(np.nanargmax(found.regions))
+        j, by = int(np.nanargmax(found.regions)), np.nanmedian(found.regions)
+        corners = float(np.nanmedian(found.corners)) if np.isfinite(found.corners).any() else 0.0
+        said = f"{by:.2f} stops under the best factor for each, most between {names[j]} and {names[j + 1]}"
+        if abs(corners) > by:
+            return (
+                f"the corners change against the middle of the picture, by {said}: with the aperture its "
+                "vignetting changed; keep the aperture, and let the time alone change"
+            )
         return (
-            f"one response cannot explain the photographs: under the best factor for each, parts of the "
-            f"picture still disagree by {np.nanmedian(found.regions):.2f} stops, most between {names[j]} and "
-            f"{names[j + 1]} ({found.regions[j]:.2f}), as when a phone tone-maps each by place: switch HDR "
-            "and automatic enhancement off, or take RAW; other times will not help"
+            f"one response cannot explain the photographs: parts of the picture disagree by {said}; light "
+            "that changed, or a camera that brightens by place: switch HDR and automatic enhancement off, or "
+            "take RAW; other times will not help"
         )
+    if found.tinted:
+        off = ", ".join(f"{names[j]} by {found.colours[j]:.2f}" for j in found.tinted)
+        return f"the colours differ, in stops between channels, in {off}: keep the white balance fixed"
     if not found.wrong:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)

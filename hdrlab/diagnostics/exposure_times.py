@@ -110,11 +110,13 @@ def estimate_times(
     H = flat_patches.count_pairs(found.Z, found.best)
     if not response_steps.find_informative(H).any():
         return kept._replace(reason="too few patches are flat in every photograph")
-    x = response_steps.fit_steps(H, B, Q, g=g, sd=sd).x
-    before, after = (cross_validate(found, B, one, g=g, sd=sd) for one in (nothing, Q))
-    kept = kept._replace(stops=x / np.log(2), bias_before=before, bias_after=after)
+    before = cross_validate(found, B, nothing, g=g, sd=sd)
+    kept = kept._replace(bias_before=before)
     if before <= EXACT:
         return kept._replace(reason=f"the stated times agree with the pixels to {before:.3f} stops")
+    x = response_steps.fit_steps(H, B, Q, g=g, sd=sd).x
+    after = cross_validate(found, B, Q, g=g, sd=sd)
+    kept = kept._replace(stops=x / np.log(2), bias_after=after)
     change = f"from {before:.3f} to {after:.3f} stops"
     if not after <= (1 - gain) * before:
         return kept._replace(reason=f"held-out pixels would agree no better ({change})")
@@ -133,7 +135,7 @@ def _check_spread(kept: Estimate, times: F64, change: str, spread: Callable[[F64
 
 def cross_validate(found: flat_patches.FlatPatches, B: F64, Q: F64, *, g: F64 | None, sd: float) -> float:
     """Return the mean absolute bias, in stops, of the fit to each half of the flat patches in the other."""
-    half = flat_patches.checkerboard(found.flat.shape)
+    half = flat_patches.checkerboard(found.flat.shape[1:])
     H = [flat_patches.count_pairs(found.Z, found.best & part) for part in (half, ~half)]
     fits = [response_steps.fit_steps(one, B, Q, g=g, sd=sd) for one in H]
     biases = [response_steps.measure_biases(one, B, fit) for one, fit in zip(H[::-1], fits, strict=True)]

@@ -2,20 +2,24 @@
 
 images  (P, H, W[, 3]) uint8 or uint16, from short to long
 Z       levels of patches    (P, C, h, w) uint8, 0 ... 255; 0 where a pixel of it is clipped or black
-flat    patches to trust     (h, w) bool
+flat    of each frame        (P, h, w) bool
+best    of each pair         (P - 1, h, w) bool: flat in a frame and in the next, and static
 H       pair tables          (P - 1, C, 256, 256): patches of level a in frame j and of level b in frame j + 1
 
 At an edge a shift of half a pixel, sharpening and JPEG change levels; in a flat patch they change nothing.
-And a longer exposure makes nothing darker: where it seems to, something moved.
+And a longer exposure makes nothing darker: where it seems to, something moved. Each pair of neighbours has
+its own flat patches, for hardly a patch is exposed well in all frames of a long bracket. Where a pair has too
+few, equal ranks of the two histograms take their place [Grossberg03].
 """
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from functools import reduce
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hdrlab.core import sampling
 from hdrlab.core.arrays import Array, as_mask, as_stack, to_256
 from hdrlab.core.types import F64, Flags, Mask
 
@@ -29,19 +33,24 @@ BLACK, TOP = 4, 250
 PATCHES = 60_000
 # levels by which a patch may darken and still count as static
 NOISE = 1
+# of a frame's histogram, and pixels that it is made of
+RANKS, PIXELS = 2000, 100_000
 
 
 class FlatPatches(NamedTuple):
-    """Patches Z (P, C, h, w), which of them are static (h, w), and which are flat in every frame (h, w)."""
+    """Patches Z (P, C, h, w), and which are flat in each frame (P, h, w)."""
 
     Z: Flags
-    static: Mask
     flat: Mask
 
     @property
     def best(self) -> Mask:
-        """Which patches are both, (h, w)."""
-        return self.flat & self.static
+        """Which patches are flat in both frames of a pair of neighbours, and static, (P - 1, h, w)."""
+        return self.flat[:-1] & self.flat[1:] & find_static(self.Z)
+
+    def of(self, frames: Sequence[int] | slice) -> "FlatPatches":
+        """Return the patches of some of the frames."""
+        return FlatPatches(self.Z[frames], self.flat[frames])
 
 
 def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> FlatPatches:
@@ -58,8 +67,17 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
             whole = whole & _reduce_patches(np.minimum, mask[j, ..., None], apart)[..., 0]
         Z.append(np.moveaxis(np.where(whole[..., None], mean, 0), -1, 0))
         flat.append(np.all(high - low <= RANGE, axis=-1))
-    levels = np.stack(Z).astype(np.uint8)
-    return FlatPatches(levels, _find_static(levels), np.all(flat, axis=0))
+    return FlatPatches(np.stack(Z).astype(np.uint8), np.stack(flat))
+
+
+def rank_levels(images: ArrayLike, *, valid: ArrayLike | None = None) -> Flags:
+    """Return levels of equal rank as patches Z (P, C, RANKS, 1); 0 where a rank is clipped or black."""
+    stack = as_stack(images)
+    mask, step = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    few = np.s_[:, ::step, ::step]
+    shown = None if mask is None or not mask[few].all(axis=0).any() else mask[few]
+    Z = sampling.by_rank(stack[few], RANKS, valid=shown).reshape(RANKS, len(stack), -1)
+    return np.moveaxis(np.where((Z >= BLACK) & (Z <= TOP), Z, 0), 0, -1)[..., None].astype(np.uint8)
 
 
 def _reduce_patches(op: np.ufunc, frame: Array, apart: int) -> Array:
@@ -82,20 +100,25 @@ def _mean(frame: Array, apart: int) -> Array:
     return ((total + count // 2) // count).astype(frame.dtype)
 
 
-def _find_static(Z: Flags) -> Mask:
-    """Return where no frame is darker than the one before, in no channel, (h, w)."""
-    both = (Z[:-1] > 0) & (Z[1:] > 0)
-    darker = both & (Z[1:].astype(np.int16) < Z[:-1].astype(np.int16) - NOISE)
-    return ~np.any(darker, axis=(0, 1))
+def find_static(Z: Flags) -> Mask:
+    """Return which patches change as most of their pair do, brighter as a rule, (P - 1, h, w)."""
+    both, change = (Z[:-1] > 0) & (Z[1:] > 0), Z[1:].astype(np.int16) - Z[:-1].astype(np.int16)
+    against = np.stack([both & (change < -NOISE), both & (change > NOISE)])
+    count = against.sum(axis=(2, 3, 4))
+    return ~np.where((count[0] > count[1])[:, None, None], *against[::-1].any(axis=2))
 
 
 def count_pairs(Z: Flags, chosen: Mask) -> F64:
-    """Return H (P - 1, C, 256, 256): how many chosen patches have level a in one frame and b in the next."""
+    """Return H (P - 1, C, 256, 256): how many chosen patches have level a in one frame and b in the next.
+
+    chosen : of each pair (P - 1, h, w), or the same of all (h, w)
+    """
     P, C = Z.shape[:2]
-    picked = Z[..., chosen].astype(np.intp)
     H = np.empty((P - 1, C, 256, 256))
-    for j, c in np.ndindex(P - 1, C):
-        H[j, c] = np.bincount(256 * picked[j, c] + picked[j + 1, c], minlength=65536).reshape(256, 256)
+    for j, here in enumerate(np.broadcast_to(chosen, (P - 1, *Z.shape[2:]))):
+        a, b = Z[j : j + 2, :, here].astype(np.intp)
+        for c in range(C):
+            H[j, c] = np.bincount(256 * a[c] + b[c], minlength=65536).reshape(256, 256)
     H[:, :, 0], H[:, :, :, 0] = 0, 0
     return H
 

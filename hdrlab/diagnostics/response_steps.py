@@ -135,9 +135,10 @@ def fit_steps(
     return found
 
 
-def measure_biases(H: F64, B: F64, found: Fit) -> F64:
-    """Return by how many stops each step misses, (P - 1, C): weighted medians over the patches."""
+def measure_biases(H: F64, B: F64, found: Fit, *, sizes: bool = False) -> F64:
+    """Return by how many stops each step misses, (P - 1, C): weighted medians over patches, or of sizes."""
     V, r = W[:, None] * W * H, step_residuals(found, B) / np.log(2)
+    r = np.abs(r) if sizes else r
     out = np.full(H.shape[:2], np.nan)
     for j, c in np.ndindex(*out.shape):
         used = V[j, c] > 0

@@ -37,6 +37,8 @@ WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "snr": weights.snr,
 }
 WORTHLESS = 0.5  # stops of spread: the map shows what no photograph does
+# pixels that are enough to compare two maps
+FEW_PIXELS = 250_000
 CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
 
 
@@ -173,19 +175,33 @@ def remove_glare(state: Assembly) -> Assembly:
 
 
 def refine_times(
-    state: Assembly, response: Method, w: Callable[[Table], Table], merge: Callable[..., Merged]
+    state: Assembly,
+    response: Method,
+    w: Callable[[Table], Table],
+    merge: Callable[..., Merged],
+    *,
+    gain: float = 0.1,
 ) -> Assembly:
-    """Return the Assembly with times from the pixels, where these prove it, and a note on what was found."""
+    """Return the Assembly with times from the pixels, where these prove it, and a note on what was found.
+
+    `gain` is the share by which held-out pixels must agree better, see `exposure_times.estimate_times`.
+    """
     images, stated, names, valid, _ = state.bracket
     recover = recovery.find_validated_method(response)
 
+    every = max(1, int(np.sqrt(images[0, ..., :1].size / FEW_PIXELS)))
+    few = np.s_[:, ::every, ::every]
+    shown = None if valid is None else valid[few]
+
     def spread(times: NDArray[np.float64]) -> float:
-        g = recover(images, times, valid=valid)
-        E = merge(images, times, g, w(g), valid=valid).E
-        return consistency.measure_spread(consistency.measure_level_exposures(images, times, E, valid=valid))
+        g = recover(images[few], times, valid=shown)
+        E = merge(images[few], times, g, w(g), valid=shown).E
+        return consistency.measure_spread(
+            consistency.measure_level_exposures(images[few], times, E, valid=shown)
+        )
 
     known = recover(images, stated, valid=valid) if response == "linear" else None
-    found = timing.estimate_times(images, stated, spread, g=known, valid=valid)
+    found = timing.estimate_times(images, stated, spread, g=known, gain=gain, valid=valid)
     bracket = state.bracket._replace(times=found.times)
     notes, doubts = (*state.notes, timing.note(found, names)), (*state.doubts, *timing.doubts(found))
     return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
@@ -198,12 +214,17 @@ def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
     alone = "no level stands in two frames, so the times cannot be compared with the pixels"
     if np.isnan(state.spread):
         return state._replace(notes=(*state.notes, alone))
-    said = warn_of_contradictions(find_contradictions(images, times, valid=valid), names)
+    found = find_contradictions(images, times, valid=valid)
+    said = warn_of_contradictions(found, names)
     if not said and state.spread > CONTRADICTION:
         stops = zip(names, consistency.measure_deviations(medians), strict=True)
         off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
         said = (
-            f"the photographs contradict their exposure times by {state.spread:.2f} stops ({off}): "
-            "check the times, and that the camera did not change ISO, aperture or its processing"
+            f"the photographs disagree by {state.spread:.2f} stops in the map ({off}), and neither times nor "
+            "place explain it: see whether much of the scene moved, or the camera changed its processing"
         )
-    return state._replace(doubts=(*state.doubts, said)) if said else state
+    if said:
+        return state._replace(doubts=(*state.doubts, said))
+    unknown = [name for name, by in zip(names, found.stops, strict=True) if np.isnan(by)]
+    note = f"the times could not be checked by the pixels: {', '.join(unknown)}"
+    return state._replace(notes=(*state.notes, note)) if unknown else state

@@ -16,7 +16,7 @@ from laboratory import PATIENCE, changed_by
 
 NOTEBOOKS = sorted(path.stem for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 OTHERS = [
-    *("index", "photographs", "instructors", "map", "commands", "assignments/hw2"),
+    *("index", "photographs", "verdicts", "instructors", "map", "commands", "assignments/hw2"),
     *("reference/index", "reference/tonemap", "reference/tonemap.durand", "reference/show.widgets"),
 ]
 MINOR = "empty-table-header"  # the empty corner of a table with names on two sides

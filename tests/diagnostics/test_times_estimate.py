@@ -14,6 +14,7 @@ from hdrlab.diagnostics import consistency, flat_patches, response_steps
 from hdrlab.diagnostics.contradictions import (
     Contradictions,
     find_contradictions,
+    find_outlying_frames,
     remove_trend,
     warn_of_contradictions,
 )
@@ -70,8 +71,8 @@ def test_a_patch_is_the_mean_of_its_pixels_and_flat_where_these_are_alike():
     images[1, 0, 20] = 251
     found = flat_patches.find_flat_patches(images)
     assert found.Z.shape == (2, 1, 2, 3) and found.Z[0, 0, 0, 0] == np.round(images[0, :7, :7].mean())
-    assert found.flat.tolist() == [[True, True, False], [False, True, True]]
-    assert found.static.tolist() == [[True, True, True], [True, True, False]]
+    assert found.flat.all(axis=0).tolist() == [[True, True, False], [False, True, True]]
+    assert flat_patches.find_static(found.Z)[0].tolist() == [[True, True, True], [True, True, False]]
     assert found.Z[1, 0, 0, 2] == 0  # clipped: no measurement
 
 
@@ -85,6 +86,30 @@ def test_patches_of_16_bits_are_those_of_8_and_a_mask_leaves_its_own_out(dtype):
     expected = np.round(levels[:, :28, :35].reshape(3, 4, 7, 5, 7, 3).mean(axis=(2, 4)))
     expected[1, 1, 1] = 0
     assert np.abs(np.moveaxis(found.Z, 1, -1) - expected).max() <= (dtype == np.uint16)
+
+
+def test_a_pair_of_neighbours_has_its_own_flat_patches():
+    images = np.full((3, 7, 14), 100, np.uint8)
+    images[1], images[2] = 150, 200
+    images[2, :7, :7] = np.arange(49, dtype=np.uint8).reshape(7, 7) + 160  # flat in the first two alone
+    assert flat_patches.find_flat_patches(images).best[:, 0].tolist() == [[True, True], [False, True]]
+
+
+def test_where_most_of_a_pair_darkens_the_patches_that_brighten_are_those_that_moved():
+    Z = np.full((2, 1, 4, 5), 120, np.uint8)
+    Z[1], Z[1, 0, 0, :2] = 60, 180
+    assert np.array_equal(flat_patches.find_static(Z)[0], Z[1, 0] == 60)
+
+
+def test_levels_of_equal_rank_take_the_place_of_patches():
+    levels = np.random.default_rng(0).integers(20, 100, (40, 60))
+    images = np.stack([levels, 2 * levels]).astype(np.uint8)
+    Z = flat_patches.rank_levels(images)
+    assert Z.shape == (2, 1, flat_patches.RANKS, 1) and np.array_equal(Z[1], 2 * Z[0])
+    assert flat_patches.rank_levels(np.stack([images[0], images[0] // 50])).all(axis=(1, 2, 3)).tolist() == [
+        True,
+        False,
+    ]
 
 
 def test_pair_tables_count_the_patches_of_each_pair_of_levels():
@@ -225,16 +250,61 @@ def test_local_tone_mapping_of_a_real_bracket_is_noticed_where_it_is_weak(photog
     assert find_contradictions(tone_mapped(images, strength, 32), times).local == local
 
 
-@pytest.mark.parametrize("count", [5, 7])
-def test_weak_local_tone_mapping_of_a_simulated_bracket_is_noticed_from_five_frames_on(taken, count):
+@pytest.mark.parametrize("frame", [0, 2, 4])
+def test_another_white_balance_is_told_from_a_wrong_time(taken, frame):
+    images, times, names = taken(5)[:3]
+    warm = images.copy()
+    curve = [np.round(255 * (np.arange(256) / 255) ** power).astype(np.uint8) for power in (0.8, 1, 1.2)]
+    warm[frame] = np.stack([curve[c][images[frame, ..., c]] for c in range(3)], axis=-1)
+    found = find_contradictions(warm, times)
+    assert found.tinted == (frame,) and "white balance" in warn_of_contradictions(found, names)
+    assert find_contradictions(images, times * [1, 1, 2, 1, 1]).tinted == ()
+
+
+def test_corners_that_darken_with_the_aperture_are_told_from_local_tone_mapping(taken):
+    images, times, names = taken(5)[:3]
+    y, x = (np.linspace(-1, 1, n)[:, None] for n in images.shape[1:3])
+    frames = [Z * (1 - 0.12 * j * (y**2 + x.T**2))[..., None] for j, Z in enumerate(images)]
+    found = find_contradictions(np.rint(frames).astype(np.uint8), times)
+    assert "the aperture" in warn_of_contradictions(found, names)
+
+
+def test_an_error_counts_by_what_it_costs_in_the_map(taken):
+    images, times = taken(5)[:2]
+    dark = np.where(np.arange(5)[:, None, None, None] == 0, np.minimum(images, 3), images)
+    dark[0, :21, :21] = images[0, :21, :21]  # all that is left of the shortest
+    assert find_contradictions(images, times * [1.6, 1, 1, 1, 1]).wrong == (0,)
+    assert find_contradictions(dark, times * [1.6, 1, 1, 1, 1]).wrong == ()
+
+
+def test_a_bracket_without_flat_patches_is_asked_by_its_histograms():
+    E = np.exp(np.random.default_rng(0).normal(0, 1.2, (120, 160))).astype(np.float32)
+    images, times = camera.shoot(E, camera.times_around(E, 5, stops=1.5))[:2]
+    assert not flat_patches.find_flat_patches(images).best.any()
+    assert find_contradictions(images, times).wrong == ()
+    assert find_contradictions(images, times * [1, 1, 1, 2, 1]).wrong == (3,)
+
+
+# Outlying frames
+
+
+@pytest.mark.parametrize("frame", range(5))
+def test_a_frame_of_another_scene_is_named_as_the_one_to_leave_out(taken, frame):
+    images, times = taken(5)[:2]
+    other = images.copy()
+    other[frame] = np.flip(images[frame], axis=(0, 1))
+    assert find_outlying_frames(other, times) == (frame,)
+
+
+@pytest.mark.parametrize("count", [3, 5, 7])
+def test_no_frame_of_a_sound_bracket_is_to_be_left_out(taken, count):
     images, times = taken(count)[:2]
-    assert find_contradictions(tone_mapped(images, 0.2), times).local
+    assert find_outlying_frames(images, times) == ()
 
 
-def test_what_is_slight_counts_only_where_it_is_sure():
-    stops = np.zeros(3)
-    for regions, signs, local in ((0.03, 5, True), (0.06, 3.2, False), (0.01, 9, False), (0.2, 1, True)):
-        assert Contradictions(stops, np.full(2, regions), np.full(2, signs)).local == local
+def test_of_a_bracket_in_which_two_halves_contradict_each_other_none_is_left_out(taken):
+    images, times = taken(5)[:2]
+    assert find_outlying_frames(images, times * [1, 1, 5, 5, 5]) == ()
 
 
 def test_frames_that_no_patch_ties_to_others_are_left_open():

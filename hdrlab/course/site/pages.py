@@ -13,7 +13,7 @@ from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course.site import live, reference
+from hdrlab.course.site import cases, live, reference
 from hdrlab.course.site.execute import Done, library_key
 from hdrlab.io import web
 from hdrlab.show.plots.figures import fit
@@ -92,7 +92,7 @@ def _build(out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mappin
     live.write(hero, html / WIDGETS)
     texts["index.md"] = _front(hero, titles, {name: title for name, (title, _) in handouts.items()}, html)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
-    texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides}
+    texts |= {page.name: cases.illustrate(_linked(page.read_text("utf-8"), known)) for page in guides}
     texts |= more
     for name, text in texts.items():
         live.write_changed(source / name, text.encode())

@@ -1,0 +1,124 @@
+"""What `assemble` says of simulated brackets: false alarms on sound ones, misses on those with an ill.
+
+warned   a doubt is said, or the bracket is refused
+cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it)
+costly   a cost above 0.1 stops; `missed` is the share of these without a warning, %
+
+An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs no word.
+"""
+
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from skimage.registration import phase_cross_correlation
+
+from benchmarks.experiments import Experiment, along, at_most
+from benchmarks.verdicts import brackets, ills
+from hdrlab import pipeline
+from hdrlab.core.arrays import Array
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.colour import luminance
+
+# brackets of a row, of each of the sound kinds, and of those that one row distinguishes
+COUNT, SOUND = 24, 40
+# stops
+COSTLY = 0.1
+# pixels at the border that do not count, where frames were moved
+BORDER = 16
+
+
+class Verdict(NamedTuple):
+    """What was said of a bracket, its doubts in words, and what its ill costs in the map, stops."""
+
+    doubts: tuple[str, ...]
+    cost: float
+
+
+def assembled(taken: Bracket) -> tuple[Array | None, tuple[str, ...]]:
+    """Return the luminance of the map, and the doubts; no map, and the reason, where it is refused."""
+    try:
+        found = pipeline.assemble(taken)
+    except ValueError as reason:
+        return None, (f"refused: {reason}",)
+    return luminance(found.E), found.doubts
+
+
+def measure_cost(found: Array, sound: Array) -> float:
+    """Return the mean size of log2 (found / sound), up to a factor and a shift, over what both maps show."""
+    h, w = np.minimum(found.shape, sound.shape)
+    both = [np.log2(np.maximum(_middle(one, h, w), 1e-9)) for one in (sound, found)]
+    seen = np.ones((h, w), bool)
+    for one in (found, sound):
+        seen &= _middle(one, h, w) > 0
+    shift = np.rint(phase_cross_correlation(*both, normalization=None)[0]).astype(int)
+    shift = shift if np.abs(shift).max() < BORDER else np.zeros(2, int)
+    off = (np.roll(both[1], shift, (0, 1)) - both[0])[BORDER:-BORDER, BORDER:-BORDER]
+    seen = (seen & np.roll(seen, shift, (0, 1)))[BORDER:-BORDER, BORDER:-BORDER]
+    return float(np.mean(np.abs(off[seen] - np.median(off[seen]))))
+
+
+def _middle(E: Array, h: int, w: int) -> Array:
+    top, left = (E.shape[0] - h) // 2, (E.shape[1] - w) // 2
+    return E[top : top + h, left : left + w]
+
+
+def judge(i: int, folder: Path, name: str) -> Verdict:
+    """Return the Verdict on bracket i with this ill, or with none."""
+    plan = brackets.plan(folder, i, sound=name if name in brackets.SOUND else "plain")
+    if name in brackets.SOUND:
+        return Verdict(assembled(brackets.shoot(plan))[1], 0.0)
+    ill = ills.ILLS[name]
+    E, doubts = assembled(brackets.shoot(plan, ill))
+    sound = assembled(brackets.shoot(plan, ill, at_rest=True) if ill.moves else brackets.shoot(plan))[0]
+    if E is None:
+        return Verdict(doubts, np.inf)
+    return Verdict(doubts, 0.0 if sound is None else measure_cost(E, sound))
+
+
+def sound(folder: Path, *, count: int = SOUND) -> Mapping[str, ArrayLike]:
+    """Return the share of sound brackets that are warned of, %, kind by kind."""
+    found: dict[str, ArrayLike] = {}
+    alarms = []
+    for name in brackets.SOUND:
+        said = [one.doubts for one in along(partial(judge, folder=folder, name=name), range(count), name)]
+        alarms += [bool(one) for one in said]
+        found[name] = 100 * np.mean(alarms[-count:])
+        for k, one in enumerate(said):
+            if one:
+                print(f"  false alarm, {name} {k}: {'; '.join(one)}", flush=True)
+    return found | {"false alarms": 100 * np.mean(alarms)}
+
+
+def told(folder: Path, *, name: str, count: int = COUNT) -> Mapping[str, ArrayLike]:
+    """Return the share of costly brackets that nothing is said of, %, and how many there are."""
+    each = along(partial(judge, folder=folder, name=name), range(count), name)
+    cost, warned = np.array([one.cost for one in each]), np.array([bool(one.doubts) for one in each])
+    costly = cost > COSTLY
+    return {
+        "missed": 100 * np.mean(~warned[costly]) if costly.any() else 0.0,
+        "costly, warned": [costly.sum(), warned.sum()],
+        "cost, median and worst": [np.median(cost), np.max(cost[np.isfinite(cost)], initial=0)],
+    }
+
+
+ROWS = (
+    Experiment(
+        "verdicts-sound",
+        f"sound brackets, {SOUND} of each kind: warned of, %",
+        sound,
+        (at_most("false alarms", 2),),
+    ),
+    *(
+        Experiment(
+            f"verdicts-{name}",
+            f"{ills.ILLS[name].title}: of {COUNT} brackets, those it costs more than {COSTLY} stops",
+            partial(told, name=name),
+            (at_most("missed", 10),),
+        )
+        for name in ills.ILLS
+    ),
+)

@@ -1,0 +1,147 @@
+"""Brackets as cameras take them: measured responses, noise, sharpening, JPEG.
+
+E        radiance       (H, W, 3) float32 of an embedded scene, 0.18 MP
+t        times          (P,) s
+Z        photographs    (P, H, W, 3) uint8, through the camera and its JPEG
+
+Bracket i is the same in every run: scene, response, number of frames, steps, quality are drawn with seed i.
+An ill takes part at three places: in the light that a frame sees, in its levels, and in the times stated.
+"""
+
+import io
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.ndimage import gaussian_filter
+
+from benchmarks.experiments import Skipped, real
+from hdrlab import scenes
+from hdrlab.capture import camera
+from hdrlab.core.arrays import Array
+from hdrlab.core.bracket import Bracket, bracket
+from hdrlab.io.emor import read_curves
+
+SHAPE = (344, 516)
+SCENES = (*scenes.PLACES, "room")
+SOUND = ("plain", "noise reduction", "black and white ends", "somebody far away")
+# of the photographs' exposure, that the scene's middle is moved by, stops
+OFF_CENTRE = 1.5
+# electrons at ISO 100
+FULL_WELL, READ_NOISE = 40_000.0, 4.0
+Float = NDArray[np.float64]
+
+
+class Plan(NamedTuple):
+    """How bracket i is taken."""
+
+    i: int
+    scene: str
+    curve: tuple[Float, Float] | str
+    times: Float
+    quality: int
+    sharpness: float
+    sound: str
+
+    @property
+    def count(self) -> int:
+        """The number of frames."""
+        return len(self.times)
+
+    @property
+    def one(self) -> int:
+        """The frame that an ill of one frame has: in the middle for even i, at an end for odd i."""
+        return self.count // 2 if self.i % 2 == 0 else (0, self.count - 1)[self.i // 2 % 2]
+
+
+class Ill(NamedTuple):
+    """What goes wrong: functions of the Plan, the frame, a generator, and light, levels, or stated times.
+
+    What moves is compared with its photographs at rest, as the middle frame sees it.
+    """
+
+    title: str
+    moves: bool = False
+    light: Callable[[Plan, int, np.random.Generator, Array], Array] = lambda plan, j, rng, E: E
+    levels: Callable[[Plan, int, np.random.Generator, Array], Array] = lambda plan, j, rng, Z: Z
+    times: Callable[[Plan, Float], Float] = lambda plan, t: t
+
+
+NONE = Ill("nothing")
+
+
+@cache
+def radiance(name: str) -> NDArray[np.float32]:
+    """Return E of a scene."""
+    return np.asarray(getattr(scenes, name)(SHAPE), np.float32)
+
+
+@cache
+def curves(folder: Path) -> tuple[Float, Float] | None:
+    """Return the exposures and brightnesses of the measured responses, (201, n) each, or None."""
+    try:
+        return read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+    except Skipped:
+        return None
+
+
+def plan(folder: Path, i: int, *, sound: str = "plain") -> Plan:
+    """Return the Plan of bracket i."""
+    rng, measured = np.random.default_rng((15, i)), curves(folder)
+    scene = SCENES[i % len(SCENES)]
+    count, stops = int(rng.integers(3, 8)), rng.uniform(1, 2.3)
+    if count < 5:
+        stops = max(stops, 1.5)
+    ends = sound == "black and white ends"
+    middle = 0.1 * 2 ** (rng.choice([-1, 1]) * OFF_CENTRE * (2 if ends else rng.uniform(0, 1)))
+    k = int(rng.integers(201))
+    curve = (measured[0][k], measured[1][k]) if measured else ("film", "srgb", "gamma")[k % 3]
+    times = camera.times_around(radiance(scene), count, stops=stops, middle=middle)
+    return Plan(i, scene, curve, times, int(rng.integers(75, 96)), rng.uniform(0, 1), sound)
+
+
+def shoot(plan: Plan, ill: Ill = NONE, *, at_rest: bool = False) -> Bracket:
+    """Return the photographs of a plan with an ill, or of what moves in it at rest."""
+    response = plan.curve if isinstance(plan.curve, str) else (lambda X: np.interp(X, *plan.curve))
+    images = []
+    for j, t in enumerate(plan.times):
+        k = plan.count // 2 if at_rest else j
+        noise, own = (np.random.default_rng((16, plan.i, *which)) for which in ((0, j), (1, k)))
+        E = ill.light(plan, k, own, still(plan, j))
+        iso = (
+            2.0**j if plan.sound == "noise reduction" else 1.0
+        )  # where time stays and ISO makes the exposure
+        model = camera.Camera(response=response, full_well=FULL_WELL / iso, read_noise=READ_NOISE)
+        Z = camera.shoot(E, [t], model, rng=noise).images[0]
+        if plan.sound == "noise reduction":
+            Z = np.rint(gaussian_filter(Z.astype(np.float32), (0.25 * j, 0.25 * j, 0))).astype(np.uint8)
+        images.append(finish(plan, ill.levels(plan, k, own, Z)))
+    stated = ill.times(plan, plan.times)
+    order = np.argsort(stated, kind="stable")
+    return bracket(np.stack(images)[order], stated[order])
+
+
+def still(plan: Plan, j: int) -> Array:
+    """Return the light of the scene, in which somebody may walk far away."""
+    E = radiance(plan.scene)
+    if plan.sound != "somebody far away":
+        return E
+    h, w = SHAPE
+    y, x = h // 2 + plan.i % 40, w // 4 + 12 * j + plan.i % 90
+    walked = E.copy()
+    walked[y : y + 18, x : x + 6] = np.median(E) / 3
+    return walked
+
+
+def finish(plan: Plan, Z: Array) -> Array:
+    """Return a photograph sharpened and through a JPEG of 4:2:0."""
+    soft = Z.astype(np.float32)
+    sharp = soft + plan.sharpness * (soft - gaussian_filter(soft, (1, 1, 0)))
+    file = io.BytesIO()
+    picture = Image.fromarray(np.clip(np.rint(sharp), 0, 255).astype(np.uint8))
+    picture.save(file, "JPEG", quality=plan.quality, subsampling=2)
+    return np.asarray(Image.open(file))
