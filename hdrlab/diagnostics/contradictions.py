@@ -28,38 +28,45 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_stack
-from hdrlab.core.types import F64, Flags, Mask
+from hdrlab.core.arrays import Array, as_stack, to_256
+from hdrlab.core.types import F64, Indices, Mask
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # side of a part of the picture, in patches
 TILE = 12
 # patches that make the median of a part
 FEWEST = 10
-# of w(a) w(b): a patch that is neither dark nor bright in both frames
-TRUSTED = 0.1
+# of a frame, on an even grid, that stand for the whole
+PIXELS = 30_000
 # stops, the prior: here times are free, for the question is what is wrong and not what is likely
 LOOSE = 4.0
 # stops: true times of real brackets stay within 0.12
 WRONG = 0.2
 # stops in the map, RMS: a smaller error leaves it sound
 COST = 0.05
-# stops between channels
-TINTED = 0.2
+# stops between channels: sound brackets, whose channels bend apart at the ends, stay within 0.4
+TINTED = 0.4
 # stops: real brackets of one response stay within 0.06
 LOCAL = 0.1
+# stops, and standard errors: real brackets of one response stay within 3.2
+SLIGHT, SIGNIFICANT = 0.02, 4.0
+# stops: no standard error of a part is smaller, for patches have whole levels
+SMALLEST_ERROR = 0.003
+# stops of the map's spread: below, the map explains its photographs, and what is slight needs no word
+SOUND = 0.1
 # stops in a typical patch: what contradicts all others, and what agrees
 CONTRARY, AGREEING = 0.3, 0.1
 
 
 class Contradictions(NamedTuple):
-    """stops, colours (P,), and regions, corners (P - 1,), NaN where nothing connects frames; cost."""
+    """stops, colours (P,); regions, significance, corners (P - 1,), NaN where nothing connects frames; cost."""
 
     stops: F64
     regions: F64
+    significance: F64 = np.zeros(0)
     colours: F64 = np.zeros(0)
     corners: F64 = np.zeros(0)
-    cost: float = 0.0
+    cost: float = np.inf
 
     @property
     def wrong(self) -> tuple[int, ...]:
@@ -74,8 +81,10 @@ class Contradictions(NamedTuple):
     @property
     def local(self) -> bool:
         """Whether one response, and one factor per frame, cannot explain the bracket."""
-        by = self.regions[np.isfinite(self.regions)]
-        return bool(len(by) and np.median(by) > LOCAL)
+        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
+        if not len(by):
+            return False
+        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT))
 
 
 def find_contradictions(
@@ -120,18 +129,21 @@ def find_contradictions(
     here, Q = B[frames], response_steps.free_directions(B[frames])
     best = response_steps.fit_steps(H[pairs], here, Q, sd=LOOSE)
     each = [response_steps.fit_steps(H[pairs, [c]], here, Q, sd=LOOSE).x - best.x for c in range(H.shape[1])]
-    stops, colours, regions, corners = unknown, unknown.copy(), pairs_unknown, pairs_unknown.copy()
+    stops, colours = unknown, unknown.copy()
     stops[frames] = remove_trend(best.x, here) / np.log(2)
     colours[frames] = np.ptp([remove_trend(one, here) / np.log(2) for one in each], axis=0)
-    regions[pairs], corners[pairs] = measure_disagreement(found.of(frames), here, best)
-    return Contradictions(stops, regions, colours, corners, measure_cost(found.Z, stops))
+    places = np.tile(pairs_unknown, (3, 1))
+    places[:, pairs] = measure_disagreement(found.of(frames), here, best)
+    return Contradictions(stops, places[0], places[1], colours, places[2], measure_cost(stack, stops))
 
 
-def measure_cost(Z: Flags, stops: F64) -> float:
-    """Return what errors of the frames, stops (P,), change in the map, up to a factor: RMS over patches."""
-    w = response_steps.W[Z].mean(axis=1)
+def measure_cost(stack: Array, stops: F64) -> float:
+    """Return what errors of the frames, stops (P,), change in the map, up to a factor: RMS over its pixels."""
+    every = max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    Z = to_256(stack[:, ::every, ::every])
+    w = response_steps.W[Z.reshape(len(Z), Z[0, ..., :1].size, -1)].mean(axis=-1)
     total = w.sum(axis=0)
-    off = np.tensordot(np.nan_to_num(stops), w, axes=1)[total > 0] / total[total > 0]
+    off = (np.nan_to_num(stops) @ w)[total > 0] / total[total > 0]
     return float(off.std()) if off.size else 0.0
 
 
@@ -164,8 +176,8 @@ def find_outlying_frames(
 
 
 def measure_misfit(found: flat_patches.FlatPatches, B: F64) -> float:
-    """Return the most by which neighbours miss ln times B in a typical patch, stops; 0 where none connect."""
-    H = flat_patches.count_pairs(found.Z, found.best)
+    """Return the most by which neighbours miss ln times B in a typical patch, flat or not, in stops."""
+    H = flat_patches.count_pairs(found.Z, np.ones(found.Z.shape[2:], bool))
     fit = response_steps.fit_steps(H, B, np.zeros((len(B), 0)))
     errors = response_steps.measure_biases(H, B, fit, sizes=True)[response_steps.find_informative(H)]
     return float(np.nanmax(errors, initial=0))
@@ -189,37 +201,51 @@ def remove_trend(x: F64, B: F64) -> F64:
     return min(left, key=lambda r: float(np.round(np.sqrt(np.abs(r)).sum(), 6)))
 
 
-def measure_disagreement(
-    found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit
-) -> tuple[F64, F64]:
-    """Return each pair's disagreement by place, (P - 1,): of all parts, and of the corners with the middle.
+def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:
+    """Return each pair's disagreement by place, (3, P - 1).
 
-    In stops: where a quarter of the tiles are off by more; and the slope over the squared distance from the
-    middle, 1 in the corners.
+    In stops, where a quarter of the tiles are off by more; in standard errors, where half of them are; and in
+    stops from the middle to the corners. Of patches that are flat in all frames, or else in the pair.
     """
     h, w = found.Z.shape[2:]
     y, x = np.indices((h, w)) // TILE
     tile = y * (w // TILE + 1) + x
-    r2 = ((2 * TILE * (y + 0.5) / h - 1) ** 2 + (2 * TILE * (x + 0.5) / w - 1) ** 2) / 2
-    channel = np.arange(found.Z.shape[1])[:, None, None]
-    out = np.full((2, len(B) - 1), np.nan)
+    r2 = ((2 * np.arange(h) / h - 1)[:, None] ** 2 + (2 * np.arange(w) / w - 1) ** 2) / 2
+    channel, always = np.arange(found.Z.shape[1])[:, None, None], found.best.all(axis=0)
+    out = np.full((3, len(B) - 1), np.nan)
     for j, (step, chosen) in enumerate(zip(np.diff(B + best.x), found.best, strict=True)):
         a, b = found.Z[j], found.Z[j + 1]
-        trusted = (response_steps.W[a] * response_steps.W[b] > TRUSTED).all(axis=0) & chosen
+        trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
+        trusted &= always if np.count_nonzero(always & trusted) >= FEWEST else chosen
         r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0)[trusted] - step
-        number, counts = np.unique(tile[trusted], return_counts=True)
-        medians = np.array([np.median(r[tile[trusted] == k]) for k in number[counts >= FEWEST]]) / np.log(2)
+        medians, errors = _tile_medians(r / np.log(2), tile[trusted])
         if len(medians):
-            out[0, j] = np.quantile(np.abs(medians), 0.75)
-        if len(medians) > 3:
-            place = np.array([r2[tile == k].mean() for k in number[counts >= FEWEST]])
-            out[1, j] = np.polyfit(place, medians, 1)[0] if np.ptp(place) > 0.3 else np.nan
-    return out[0], out[1]
+            out[:2, j] = np.quantile(np.abs(medians), 0.75), np.median(np.abs(medians) / errors)
+        if np.ptp(r2[trusted], initial=0) > 0.3:
+            out[2, j] = np.polyfit(r2[trusted], r / np.log(2), 1)[0]
+    return out
 
 
-def warn_of_contradictions(found: Contradictions, names: Sequence[str]) -> str:
-    """Return the sentence on what is wrong, at which frame, by how much, and what to do; "" for nothing."""
-    if found.local:
+def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
+    """Return the median of r over each tile of at least FEWEST patches, and its standard error.
+
+    That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal errors.
+    """
+    order = np.argsort(tile, kind="stable")
+    groups = np.split(r[order], np.flatnonzero(np.diff(tile[order])) + 1)
+    large = [group for group in groups if len(group) >= FEWEST]
+    medians = np.array([np.median(group) for group in large])
+    sigma = np.array([1.48 * np.median(np.abs(group - np.median(group))) for group in large])
+    return medians, np.maximum(1.25 * sigma / np.sqrt([len(group) for group in large]), SMALLEST_ERROR)
+
+
+def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: float = np.inf) -> str:
+    """Return the sentence on what is wrong, at which frame, by how much, and what to do; "" for nothing.
+
+    Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
+    """
+    sound = spread <= SOUND
+    if found.local and not (sound and np.nanmedian(found.regions) <= LOCAL):
         j, by = int(np.nanargmax(found.regions)), np.nanmedian(found.regions)
         corners = float(np.nanmedian(found.corners)) if np.isfinite(found.corners).any() else 0.0
         said = f"{by:.2f} stops under the best factor for each, most between {names[j]} and {names[j + 1]}"
@@ -233,7 +259,7 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str]) -> str:
             "that changed, or a camera that brightens by place: switch HDR and automatic enhancement off, or "
             "take RAW; other times will not help"
         )
-    if found.tinted:
+    if found.tinted and not found.wrong and not sound:
         off = ", ".join(f"{names[j]} by {found.colours[j]:.2f}" for j in found.tinted)
         return f"the colours differ, in stops between channels, in {off}: keep the white balance fixed"
     if not found.wrong:

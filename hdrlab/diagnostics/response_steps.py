@@ -30,6 +30,10 @@ from hdrlab.core.types import F64, Mask
 from hdrlab.core.weights import second_differences
 
 W = weights.cut(weights.hat(), below=0.02)
+# of w(a) w(b): below, a level is of the response's ends, where the floor of a scan stays when light grows
+TRUSTED = 0.1
+# trust in a patch of level a that becomes b, (256, 256)
+PAIR = np.where(W[:, None] * W > TRUSTED, W[:, None] * W, 0)
 # ln: error of a patch's step, by noise, but above all by flare and a camera's processing
 SIGMA = 0.15 * np.log(2)
 # ln: patches that miss by less are no outliers, however well the others fit
@@ -70,15 +74,15 @@ def free_directions(B: F64, *, known: bool = False) -> F64:
 
 
 def weight_pairs(H: F64) -> F64:
-    """Return V = w(a) w(b) H / SIGMA^2, no pair with more than MOST patches."""
-    V = W[:, None] * W * H
+    """Return V = w(a) w(b) H / SIGMA^2 of trusted pairs, no pair with more than MOST patches."""
+    V = PAIR * H
     total = V.sum(axis=(1, 2, 3), keepdims=True)
     return V * np.minimum(1, MOST / np.maximum(total, 1)) / SIGMA**2
 
 
 def find_informative(H: F64) -> Mask:
     """Return which pairs of frames have at least FEWEST patches, (P - 1,)."""
-    return np.asarray((W[:, None] * W * H).sum(axis=(2, 3)).mean(axis=1) >= FEWEST)
+    return np.asarray((PAIR * H).sum(axis=(2, 3)).mean(axis=1) >= FEWEST)
 
 
 def solve_steps(V: F64, B: F64, Q: F64, *, g: F64 | None = None, sd: float, smoothness: float) -> Fit:
@@ -137,7 +141,7 @@ def fit_steps(
 
 def measure_biases(H: F64, B: F64, found: Fit, *, sizes: bool = False) -> F64:
     """Return by how many stops each step misses, (P - 1, C): weighted medians over patches, or of sizes."""
-    V, r = W[:, None] * W * H, step_residuals(found, B) / np.log(2)
+    V, r = PAIR * H, step_residuals(found, B) / np.log(2)
     r = np.abs(r) if sizes else r
     out = np.full(H.shape[:2], np.nan)
     for j, c in np.ndindex(*out.shape):

@@ -215,7 +215,7 @@ def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
     if np.isnan(state.spread):
         return state._replace(notes=(*state.notes, alone))
     found = find_contradictions(images, times, valid=valid)
-    said = warn_of_contradictions(found, names)
+    said = warn_of_contradictions(found, names, state.spread)
     if not said and state.spread > CONTRADICTION:
         stops = zip(names, consistency.measure_deviations(medians), strict=True)
         off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
