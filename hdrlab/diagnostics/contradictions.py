@@ -52,6 +52,8 @@ LOCAL = 0.1
 SLIGHT, SIGNIFICANT = 0.02, 4.0
 # stops: no standard error of a part is smaller, for patches have whole levels
 SMALLEST_ERROR = 0.003
+# of the variance by place, that the distance from the middle explains
+CORNERS = 0.5
 # stops of the map's spread: below, the map explains its photographs, and what is slight needs no word
 SOUND = 0.1
 # stops in a typical patch: what contradicts all others, and what agrees
@@ -59,7 +61,7 @@ CONTRARY, AGREEING = 0.3, 0.1
 
 
 class Contradictions(NamedTuple):
-    """stops, colours (P,); regions, significance, corners (P - 1,), NaN where nothing connects frames; cost."""
+    """stops, colours (P,); regions, significance, corners (P - 1,), NaN where not known; cost."""
 
     stops: F64
     regions: F64
@@ -81,10 +83,17 @@ class Contradictions(NamedTuple):
     @property
     def local(self) -> bool:
         """Whether one response, and one factor per frame, cannot explain the bracket."""
-        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
+        by = self.regions[np.isfinite(self.regions)]
         if not len(by):
             return False
-        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT))
+        sure = self.vignetted or np.nanmedian(self.significance) > SIGNIFICANT
+        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and sure))
+
+    @property
+    def vignetted(self) -> bool:
+        """Whether it is the corners that change against the middle."""
+        by = self.corners[np.isfinite(self.corners)]
+        return bool(len(by) and np.median(by) > CORNERS)
 
 
 def find_contradictions(
@@ -138,10 +147,10 @@ def find_contradictions(
 
 
 def measure_cost(stack: Array, stops: F64) -> float:
-    """Return what errors of the frames, stops (P,), change in the map, up to a factor: RMS over its pixels."""
-    every = max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    """Return what errors of the frames, stops (P,), change in the map, up to a factor: RMS over pixels."""
+    every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     Z = to_256(stack[:, ::every, ::every])
-    w = response_steps.W[Z.reshape(len(Z), Z[0, ..., :1].size, -1)].mean(axis=-1)
+    w = response_steps.W[Z.reshape(len(Z), Z.shape[1] * Z.shape[2], -1)].mean(axis=-1)
     total = w.sum(axis=0)
     off = (np.nan_to_num(stops) @ w)[total > 0] / total[total > 0]
     return float(off.std()) if off.size else 0.0
@@ -204,25 +213,29 @@ def remove_trend(x: F64, B: F64) -> F64:
 def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:
     """Return each pair's disagreement by place, (3, P - 1).
 
-    In stops, where a quarter of the tiles are off by more; in standard errors, where half of them are; and in
-    stops from the middle to the corners. Of patches that are flat in all frames, or else in the pair.
+    In stops, where a quarter of the tiles are off by more; in standard errors, where half of them are; and
+    the share of its variance that the distance from the middle explains. Of patches flat in all frames,
+    under the response that fits these best; or else, in the pair.
     """
     h, w = found.Z.shape[2:]
     y, x = np.indices((h, w)) // TILE
     tile = y * (w // TILE + 1) + x
-    r2 = ((2 * np.arange(h) / h - 1)[:, None] ** 2 + (2 * np.arange(w) / w - 1) ** 2) / 2
-    channel, always = np.arange(found.Z.shape[1])[:, None, None], found.best.all(axis=0)
+    r2 = (2 * np.arange(h) / h - 1)[:, None] ** 2 + (2 * np.arange(w) / w - 1) ** 2
+    channel, chosen = np.arange(found.Z.shape[1])[:, None, None], found.best
+    H = flat_patches.count_pairs(found.Z, found.flat.all(axis=0))
+    if response_steps.find_informative(H).all():
+        best = response_steps.fit_steps(H, B, response_steps.free_directions(B), sd=LOOSE)
+        chosen = np.broadcast_to(found.flat.all(axis=0), chosen.shape)
     out = np.full((3, len(B) - 1), np.nan)
-    for j, (step, chosen) in enumerate(zip(np.diff(B + best.x), found.best, strict=True)):
+    for j, step in enumerate(np.diff(B + best.x)):
         a, b = found.Z[j], found.Z[j + 1]
-        trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
-        trusted &= always if np.count_nonzero(always & trusted) >= FEWEST else chosen
+        trusted = (response_steps.PAIR[a, b] > 0).all(axis=0) & chosen[j]
         r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0)[trusted] - step
         medians, errors = _tile_medians(r / np.log(2), tile[trusted])
         if len(medians):
             out[:2, j] = np.quantile(np.abs(medians), 0.75), np.median(np.abs(medians) / errors)
-        if np.ptp(r2[trusted], initial=0) > 0.3:
-            out[2, j] = np.polyfit(r2[trusted], r / np.log(2), 1)[0]
+        if len(r) and np.ptp(r) > 0 and np.ptp(r2[trusted]) > 0:
+            out[2, j] = np.corrcoef(r, r2[trusted])[0, 1] ** 2
     return out
 
 
@@ -247,9 +260,8 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
     sound = spread <= SOUND
     if found.local and not (sound and np.nanmedian(found.regions) <= LOCAL):
         j, by = int(np.nanargmax(found.regions)), np.nanmedian(found.regions)
-        corners = float(np.nanmedian(found.corners)) if np.isfinite(found.corners).any() else 0.0
         said = f"{by:.2f} stops under the best factor for each, most between {names[j]} and {names[j + 1]}"
-        if abs(corners) > by:
+        if found.vignetted:
             return (
                 f"the corners change against the middle of the picture, by {said}: with the aperture its "
                 "vignetting changed; keep the aperture, and let the time alone change"

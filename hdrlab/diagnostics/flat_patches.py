@@ -73,7 +73,7 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
 def rank_levels(images: ArrayLike, *, valid: ArrayLike | None = None) -> Flags:
     """Return levels of equal rank as patches Z (P, C, RANKS, 1); 0 where a rank is clipped or black."""
     stack = as_stack(images)
-    mask, step = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    mask, step = as_mask(valid, stack), max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     few = np.s_[:, ::step, ::step]
     shown = None if mask is None or not mask[few].all(axis=0).any() else mask[few]
     Z = sampling.by_rank(stack[few], RANKS, valid=shown).reshape(RANKS, len(stack), -1)

@@ -189,7 +189,7 @@ def refine_times(
     images, stated, names, valid, _ = state.bracket
     recover = recovery.find_validated_method(response)
 
-    every = max(1, int(np.sqrt(images[0, ..., :1].size / FEW_PIXELS)))
+    every = max(1, int(np.sqrt(images.shape[1] * images.shape[2] / FEW_PIXELS)))
     few = np.s_[:, ::every, ::every]
     shown = None if valid is None else valid[few]
 
