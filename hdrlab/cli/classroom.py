@@ -44,7 +44,7 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> N
     wanted = classroom.select_handins(found.handins, course.roster, asked.only, since)
     with journal.lock_folder(out):
         done = _graded([piece for piece in everything if piece.owner in wanted], out, course, asked)
-        lost = [f"{one.piece.owner}: {one.why}" for one in done if one.result is None]
+        lost = [f"{one.piece.owner}: {one.why}" for one in done if one.why]
         for said in lost:
             click.echo(f"warning: {said}", err=True)
         counted = overview.tally(classroom.read(out, everything))

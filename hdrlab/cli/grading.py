@@ -66,7 +66,12 @@ def check(
 @click.option("-o", "--out", type=common.FILE, default="results", help="Folder for the results.")
 @click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
 @SECRET
-@click.option("--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for one answer.")
+@click.option(
+    "--timeout",
+    type=click.FloatRange(0.1),
+    default=10.0,
+    help="Seconds for one answer; a check has 3 times, a submission 20 times as many.",
+)
 @click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
 @click.option(
     "--received", type=FILE, help="Of a class: CSV with file and received, instead of files' times."
@@ -99,6 +104,7 @@ def grade(
     """
     from hdrlab.course.grading import Conditions
     from hdrlab.course.reports import feedback, gradebook
+    from hdrlab.course.scratch import temporary_folder
 
     if student and secret_file is None:
         raise ValueError(
@@ -115,7 +121,8 @@ def grade(
                 "note: for practice: without --secret-file the inputs are public, for credit they are not",
                 err=True,
             )
-        classroom.grade_folder(submission, out, course, options)
+        with temporary_folder():
+            classroom.grade_folder(submission, out, course, options)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))
@@ -258,12 +265,14 @@ def _graded(submission: Path, homework: "Homework", conditions: "Conditions") ->
     from hdrlab.core.steps import last
     from hdrlab.course import grading
     from hdrlab.course.sandbox.running import Unavailable
+    from hdrlab.course.scratch import temporary_folder
 
     if not submission.exists():
         raise FileNotFoundError(2, "no such file", str(submission))
     try:
-        steps: Any = grading.grade_steps(submission, homework, conditions)
-        return last(common.progress(steps, homework.name))
+        with temporary_folder():
+            steps: Any = grading.grade_steps(submission, homework, conditions)
+            return last(common.progress(steps, homework.name))
     except Unavailable as error:
         raise common.no_tier(str(error)) from None
 

@@ -28,9 +28,11 @@ from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.submission import Submission
+from hdrlab.course.wording import lines
 
 PATIENCE = 10.0  # seconds for one answer
-WHOLE = 900.0  # seconds for all checks of a homework
+WHOLE = 280.0  # seconds for all checks of a homework: its calls have 200, see `subject`
+MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
 
 
 class Conditions(NamedTuple):
@@ -75,7 +77,7 @@ def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT)
 def grade_steps(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Iterator[Result]:
     """Yield the Result as it grows: first with all checks unanswered, then after each."""
     tasks = [task.id for task in homework.tasks]
-    read = submission.tasks_of(path, tasks, handouts.given_cells(homework.name))
+    read = submission.read(Path(path), homework.name, tasks, handouts.given_cells(homework.name))
     yield from check_steps(read, homework, conditions)
 
 
@@ -88,14 +90,14 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
         job = _job(folder, read, homework, conditions)
-        lines: list[dict[str, Any]] = []
+        heard: list[dict[str, Any]] = []
         for line in running.run(folder, job, files, conditions.whole):
             if "unavailable" in line:
                 raise Unavailable(line["unavailable"])
-            lines.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
+            heard.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
             if "ended" in line:
-                yield _result(lines, read, homework, conditions, files)
-    yield _result(lines, read, homework, conditions, files)
+                yield _result(heard, read, homework, conditions, files)
+    yield _result(heard, read, homework, conditions, files)
 
 
 def _files(homework: Homework, hidden: Path | None) -> list[Path]:
@@ -111,6 +113,7 @@ def _files(homework: Homework, hidden: Path | None) -> list[Path]:
 def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions) -> Path:
     job = {
         "sources": read.sources,
+        "modules": read.modules,
         "tier": conditions.tier,
         "seeds": _seeds(homework, conditions),
         "timeout": conditions.timeout,
@@ -141,7 +144,7 @@ def _seed_id(homework: Homework, conditions: Conditions) -> str:
 
 
 def _result(
-    lines: Sequence[dict[str, Any]],
+    heard: Sequence[dict[str, Any]],
     read: Submission,
     homework: Homework,
     conditions: Conditions,
@@ -152,8 +155,8 @@ def _result(
         homework=homework.name,
         title=homework.title,
         tier=conditions.tier,
-        checks=tuple(_checks(lines, homework)),
-        misconceptions={line["recognised"]: line["sentence"] for line in lines if "recognised" in line},
+        checks=tuple(_checks(heard, homework)),
+        misconceptions={line["recognised"]: line["sentence"] for line in heard if "recognised" in line},
         problems=read.problems,
         submission=read.hash,
         specification=specification(files),
@@ -191,18 +194,18 @@ def specification(files: Sequence[Path]) -> str:
     return digest.hexdigest()
 
 
-def _checks(lines: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Check]:
+def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Check]:
     """Yield each promise: it holds where it holds for all of its cases.
 
     A promise about shape, identity or invariance, which a constant may keep, names the promise about the
     substance that it `needs`: without that one it earns nothing.
     """
     cases: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
-    for line in lines:
+    for line in heard:
         if "check" in line:
             cases.setdefault((line["task"], line["name"], line["hidden"]), []).append(line)
-    ended = {line["ended"]: line for line in lines if "ended" in line and line["outcome"] == "holds"}
-    ended |= {line["ended"]: line for line in lines if "ended" in line and line["outcome"] != "holds"}
+    ended = {line["ended"]: line for line in heard if "ended" in line and line["outcome"] == "holds"}
+    ended |= {line["ended"]: line for line in heard if "ended" in line and line["outcome"] != "holds"}
     worth = {task.id: Fraction(str(task.points)) for task in homework.tasks}
     shares = {
         task: sum(Fraction(one[0]["points"]) for key, one in cases.items() if key[0] == task)
@@ -223,9 +226,10 @@ def _checks(lines: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
             points=Fraction() if broken or missing else whole,
             max_points=whole,
             outcome=broken[0]["outcome"] if broken else "holds",
-            message=broken[0]["message"] if broken else needs,
+            message=lines(broken[0]["message"], MESSAGE) if broken else needs,
             hints=tuple(each[0]["hints"]),
             drawing=broken[0].get("drawing", Drawing()) if broken else Drawing(),
-            said=(broken or endings[task, name, hidden])[0]["said"],
+            said=lines((broken or endings[task, name, hidden])[0]["said"], SAID),
             hidden=hidden,
+            kind=broken[0].get("kind", "") if broken else "",
         )

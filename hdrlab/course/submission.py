@@ -1,28 +1,90 @@
 """What a student handed in, read and never run: the cells of the tasks, with what they need of other cells.
 
-A notebook or a Python file is text. Its cells are found, and `closure` finds in them what each task needs.
+A notebook or a Python file is text. Its cells are found, and `closure` finds in them what each task needs. An
+archive is opened for the one file in it. `read` does so in a process with limits: whatever is handed in costs
+the grader a few seconds at most.
 """
 
 import hashlib
+import io
 import json
 import re
+import tempfile
+import tokenize
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.course.archives import unpack
+from hdrlab.course.archives.members import Limits, Refused
+from hdrlab.course.classroom.executors import alone
+from hdrlab.course.code import names
 from hdrlab.course.code.closure import Cell, closed
+from hdrlab.course.wording import plain
 
+READ, PACKED = (".ipynb", ".py"), (".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
 LARGEST = 50_000_000  # bytes: a notebook with pictures has a few
 MOST_CODE = 1_000_000  # characters in all cells
+MOST_SOURCE = 900_000  # bytes of a task with all that it needs, on its way to the sandbox
+UNPACKED = Limits(total=1 << 28)  # of an archive: a notebook, and the photographs that it reads
+SECONDS, MEMORY = 2, 500 << 20  # of a processor, and bytes, to read a file in; a worked homework takes 0.1 s
+UNPACKING = 12  # seconds more for an archive
+PATIENCE = 120.0  # seconds by the clock, on a machine however busy
+TOLD = 12  # problems that are told
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 
 
 class Submission(NamedTuple):
-    """The text of each task's function with all that it needs, what is wrong, and a digest of the file."""
+    """The text of each task's function with all that it needs, what is wrong, a digest, and the imports."""
 
     sources: dict[str, str]
     problems: tuple[str, ...]
     hash: str
+    modules: tuple[str, ...] = ()
+
+
+def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] = ()) -> Submission:
+    """Return what a notebook, a Python file or an archive of one holds, read in a process with limits.
+
+    Raises
+    ------
+    ValueError
+        Where that process was ended from outside, of which nothing can be said.
+    """
+    limits = {"CPU": SECONDS + UNPACKING * (path.suffix.lower() in PACKED), "AS": MEMORY}
+    try:
+        with tempfile.TemporaryDirectory(prefix="hdrlab-read-", ignore_cleanup_errors=True) as scratch:
+            order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
+            said = json.loads(alone.run(_read, order, patience=PATIENCE, limits=limits))
+    except alone.Failed as error:
+        if not error.own:
+            raise ValueError(f"it could not be read: {error}") from None
+        what = f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, which no homework does"
+        return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
+    return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]))
+
+
+def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[Cell]]) -> bytes:
+    path, scratch, homework, tasks, given = order
+    opened_path, refused = opened(path, scratch, homework)
+    found = Submission({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
+    return json.dumps(found._replace(modules=tuple(names.imported(found.sources.values())))).encode()
+
+
+def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
+    """Return the notebook or Python file of a submission, and why its archive was refused, or ""."""
+    if path.suffix.lower() not in PACKED or not path.is_file():
+        return path, ""
+    try:
+        members = unpack.unpack(path, scratch / "files", UNPACKED)
+    except Refused as reason:
+        return path, f"The archive is refused: {reason}."
+    fitting = [member for member, _ in members if member.suffix.lower() in READ]
+    named = [member for member in fitting if homework in member.name.lower()] or fitting
+    if len(named) != 1:
+        told = ", ".join(plain(member.name, 80) for member in named[:5]) or "none"
+        return path, f"Expected one notebook or Python file in the archive, got {told}."
+    return scratch / "files" / named[0], ""
 
 
 def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[Cell] = ()) -> Submission:
@@ -39,8 +101,14 @@ def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[Cell] = ())
     """
     data, problems = _bytes_of(Path(path))
     cells, told = cells_of(data, Path(path).name) if data else ([], [])
-    sources, said = closed(cells, tasks, given) if cells else ({}, [])
-    return Submission(sources, (*problems, *told, *said), hashlib.sha256(data).hexdigest())
+    sources, said = closed(cells, tasks, given) if cells or not (problems or told) else ({}, [])
+    for task in [task for task, text in sources.items() if len(json.dumps(text)) > MOST_SOURCE]:
+        del sources[task]
+        said.append(f"{task} needs more than {MOST_SOURCE:,} characters of code")
+    problems = [plain(one, 300) for one in [*problems, *told, *said]]
+    if len(problems) > TOLD:
+        problems[TOLD:] = [f"... and {len(problems) - TOLD} more of the kind"]
+    return Submission(sources, tuple(problems), hashlib.sha256(data).hexdigest())
 
 
 def _bytes_of(path: Path) -> tuple[bytes, list[str]]:
@@ -55,18 +123,27 @@ def _bytes_of(path: Path) -> tuple[bytes, list[str]]:
 def cells_of(data: bytes, name: str) -> tuple[list[Cell], list[str]]:
     """Return the code cells of a file's bytes, and what is wrong with it, in words."""
     try:
-        text = data.decode("utf8")
-    except UnicodeDecodeError:
-        return [], [f"{name} is neither a notebook nor Python text"]
+        text = _decoded(data)
+    except (UnicodeError, LookupError, SyntaxError):
+        return [], [f"{name} is neither a notebook nor Python text; save it in UTF-8"]
     looks_like = text.lstrip()[:1] == "{"
     if not looks_like and len(text) > MOST_CODE:
         return [], [f"{name} holds more than {MOST_CODE:,} characters of code"]
     cells, problems = _notebook(text, name) if looks_like else (_percent(text), [])
-    if name.endswith(".ipynb") and not looks_like:
+    if name.lower().endswith(".ipynb") and not looks_like:
         problems = [f"{name} is not a notebook, and was read as Python text"]
     if sum(len(cell.text) for cell in cells) > MOST_CODE:
         return [], [f"{name} holds more than {MOST_CODE:,} characters of code"]
     return cells, problems
+
+
+def _decoded(data: bytes) -> str:
+    """Return a file's text as its author meant it: by its byte order mark, as Python does, or UTF-8."""
+    if data.startswith((b"\xff\xfe", b"\xfe\xff")):
+        return data.decode("utf-16")
+    if data.lstrip()[:1] == b"{":  # JSON, where a comment about coding would be something else
+        return data.decode("utf-8")
+    return data.decode(tokenize.detect_encoding(io.BytesIO(data).readline)[0])
 
 
 def _notebook(text: str, name: str) -> tuple[list[Cell], list[str]]:
@@ -74,16 +151,19 @@ def _notebook(text: str, name: str) -> tuple[list[Cell], list[str]]:
         read = json.loads(text)
     except (ValueError, RecursionError):
         return [], [f"{name} cannot be read as a notebook: it is cut short or damaged"]
-    listed = read.get("cells") if isinstance(read, dict) else None
+    listed = read.get("cells", read.get("worksheets")) if isinstance(read, dict) else None
     if not isinstance(listed, list):
         return [], [f"{name} has no cells; a notebook of version 4 is expected"]
+    if "cells" not in read:  # version 3 has sheets of cells
+        sheets = [one.get("cells") for one in listed if isinstance(one, dict)]
+        listed = [cell for sheet in sheets if isinstance(sheet, list) for cell in sheet]
     code = [(n, one) for n, one in enumerate(listed, 1) if isinstance(one, dict)]
     return [_cell(n, one) for n, one in code if one.get("cell_type") == "code"], []
 
 
 def _cell(n: int, read: dict[str, Any]) -> Cell:
     """Return a cell out of JSON, of which nothing is believed."""
-    source = read.get("source", "")
+    source = read.get("source", read.get("input", ""))  # the latter in version 3
     lines = source if isinstance(source, list) else [source]
     text = "".join(one for one in lines if isinstance(one, str))
     metadata = read.get("metadata")

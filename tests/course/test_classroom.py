@@ -11,6 +11,7 @@ import pytest
 from hats import GOOD, PLAN
 
 from hdrlab import cli
+from hdrlab.course import submission
 from hdrlab.course.classroom import marks, overview
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.handins import Handin
@@ -140,9 +141,9 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
         for name, data in members.items():
             archive.writestr(name, data)
     (tmp_path / "scratch").mkdir()
-    path, refused = classroom.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
+    path, refused = submission.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
     assert said in refused and bool(refused) == bool(said) and "\n" not in refused
-    assert path.read_bytes() == (b"" if said else b"x")
+    assert said or path.read_bytes() == b"x"
 
 
 def test_a_grader_can_be_sent_to_another_process():
@@ -190,6 +191,11 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     assert float(rows["b1"]["work"]) > 0 and rows["b1"]["score"] == rows["b2"]["score"] == rows["b1"]["work"]
     assert (rows["b3"]["late"], rows["b3"]["grace left"], float(rows["b3"]["work"])) == ("3", "7", 0)
     assert rows["b4"]["note"] == "not handed in"
+    page = (folder / "out" / "class.html").read_text()
+    links = [dict(attrs)["href"] for tag, attrs in tags(page) if tag == "a"]
+    assert links == ["feedback/t/feedback.html"] * 2 + ["feedback/b3/feedback.html"]
+    assert all((folder / "out" / link).is_file() for link in links)
+    assert "<h2>Not handed in</h2><p>b4 (Di)</p>" in page and "<li>b3 (Cy): 3 days, 3 excused" in page
     assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
     names = {"gradebook.csv", "canvas.csv", "what_if.csv", "class.html"}
     assert names <= {path.name for path in whole}
@@ -214,7 +220,9 @@ def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, gr
     told = grade("--regrade", "--cluster", "tcp://127.0.0.1:1", code=2)  # nothing is forgotten for nothing
     assert "expected a Dask cluster at tcp://127.0.0.1:1" in told and result.read_bytes() == before[1]
     rows = {row["student"]: row for row in sheets.read_csv(folder / "out" / "gradebook.csv")}
-    assert not rows["b1"]["note"] and not rows["b3"]["note"]
+    assert not rows["b1"]["note"] and "The archive is refused" in rows["b3"]["note"]
+    handed = marks.read([folder / "out" / "gradebook.csv"])  # what is refused has come, and took its days
+    assert [(one.students, one.late) for one in handed] == [(("b1",), 0), (("b2",), 0), (("b3",), 3)]
 
 
 @pytest.mark.parametrize(

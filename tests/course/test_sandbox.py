@@ -15,7 +15,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.subject import NoAnswer, Subject, modules_of
+from hdrlab.course.checks.subject import NoAnswer, Subject
+from hdrlab.course.code.names import imported
 from hdrlab.course.sandbox import contents, doctor, filters, practice, running, strict, tiers, users
 from hdrlab.course.sandbox.inside import channel, supervisor
 
@@ -563,7 +564,7 @@ def test_a_source_that_is_no_python_or_lacks_its_function_is_told():
 
 
 def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks():
-    assert modules_of(["def f():\n    from scipy.sparse import linalg", "import hdrlab, os"]) == [
+    assert imported(["def f():\n    from scipy.sparse import linalg", "import hdrlab, os"]) == [
         "scipy.sparse",
         "scipy.sparse.linalg",
     ]

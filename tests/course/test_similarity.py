@@ -168,8 +168,8 @@ def test_a_passage_that_stands_twice_counts_twice():
         ("none of the tasks can be read", "def gsolve():\n    return " + "+".join("a" * 40_000) + "\n"),
         ("neither a notebook nor Python", b"\xff\xfe\x00"),
         ("cut short or damaged", '{"cells": ' + "[" * 50_000),
-        ("100,000 characters", "x = 1\n" * 350_000),  # two megabytes
-        ("lines of code", "x=1\n" * 20_000),
+        ("1,000,000 characters", "x = 1\n" * 350_000),  # two megabytes
+        ("none of the tasks can be read", "x=1\n" * 20_000),
         ("gsolve has more than 30,000", "a = []\n" + "a.append(a)\n" * 3_900 + "def gsolve(): return a\n"),
         ("gsolve has more than 30,000", "def gsolve():\n    return [" + "1," * 20_000 + "]\n"),
     ],

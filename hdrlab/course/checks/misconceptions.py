@@ -103,6 +103,8 @@ def difference(a: Any, b: Any) -> float:
         return max((difference(one, other) for one, other in zip(a, b, strict=True)), default=0.0)
     if a is None or b is None or isinstance(b, bytes | str):
         return 0.0 if type(a) is type(b) and a == b else MOST
+    if isinstance(a, tuple | list | dict):  # which may be ragged
+        return MOST
     a, b = np.asarray(a), np.asarray(b)
     if a.shape != b.shape or a.dtype.kind not in "biuf" or b.dtype.kind not in "biuf":
         return MOST

@@ -11,7 +11,7 @@ import json
 import os
 import re
 import signal
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
 from typing import Any
@@ -55,7 +55,7 @@ class Missing:
     said = ""
 
     def __getattr__(self, name: str) -> Any:
-        raise NoAnswer(f"{name} is not in what was handed in", "missing")
+        raise NoAnswer("", "missing")  # which is said once, above all of its checks
 
 
 class Checking:
@@ -74,7 +74,8 @@ class Checking:
         if os.getppid() != self.job["grader"]:
             pytest.exit("the grader has ended")
         sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])
-        self.submission = self.open.enter_context(Subject(sources, {}, sandbox, self.job["timeout"]))
+        subject = Subject(sources, {}, sandbox, self.job["timeout"], self.job["modules"])
+        self.submission = self.open.enter_context(subject)
 
     @pytest.fixture
     def subject(self, request: pytest.FixtureRequest) -> Subject | Missing:
@@ -117,7 +118,7 @@ class Checking:
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
-        said = ADDRESS.sub("", subject.said)[:SAID]
+        said = ADDRESS.sub("", subject.said[:SAID])
         if not self._is_hidden(item) and isinstance(subject, Subject):
             kept = self.calls.setdefault(_task(item), [])
             kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
@@ -129,14 +130,17 @@ class Checking:
             return
         if not self._is_hidden(item):
             self.failed.add(_task(item))
-        outcome = "no answer" if isinstance(raised, NoAnswer) else "fails"
+        silent = isinstance(raised, NoAnswer)
+        told = {"outcome": "no answer" if silent else "fails", "kind": raised.kind if silent else ""}
         differs = _differs(raised) if self.job["draw"] else None
-        self._write(ended=_id(item), outcome=outcome, message=_message(raised), differs=differs, said=said)
+        self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
 
     def pytest_sessionfinish(self) -> None:
         """Write down which well-known mistakes the answers show."""
         for task in sorted(self.failed):
-            sentence = misconceptions.recognise(task, self.calls.get(task, []))
+            sentence = None
+            with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
+                sentence = misconceptions.recognise(task, self.calls.get(task, []))
             if sentence:
                 self._write(recognised=task, sentence=sentence)
 

@@ -5,25 +5,28 @@ student's function, and returns what came back: plain numbers, text, lists, tupl
 side from raw bytes. Nothing of the student's is ever an object here, so no operator of theirs is called.
 """
 
-import ast
 import contextlib
-import re
+import math
 import secrets
 import socket
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from types import TracebackType
 from typing import Any, NamedTuple, NoReturn, Self
 
+from hdrlab.course import wording
 from hdrlab.course.checks import compare
+from hdrlab.course.code.names import imported
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.running import Running, Sandbox
 
 TIMEOUT = 10.0  # seconds of a call
 OUTPUT = 1 << 16  # characters of a check that are kept of what was printed
 REMEMBERED = 1 << 23  # bytes of a check's answers that are kept in `calls`
-LOST = ("ended its process, and gave no answer", "sent what is no answer")  # or was killed by somebody else
-CONTROLS = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]|[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+CHECK, WHOLE = 3, 20  # how much longer than a call one check may take, and all of a submission's
+PROCESSOR = 4.5  # the same, of a processor's time for all of a submission's calls
+SETTLE = 1.0  # seconds for a process to end that has closed its link
+KILLED = 9  # the signal that ends a process from outside; no tier for credit lets a function send it
 
 
 class NoAnswer(AssertionError):
@@ -31,7 +34,7 @@ class NoAnswer(AssertionError):
 
     Attributes
     ----------
-    kind : "missing", "raised", "late", "died", "refused" or "damaged"
+    kind : "missing", "raised", "late", "died", "refused", "damaged", or "killed" from outside
     error : the class of what was raised, such as "ValueError"
     line, text : where in the submission it was raised, and the line itself; None and "" where nobody knows
     """
@@ -64,7 +67,10 @@ class Subject:
     sandbox : Sandbox
         Where they run, from `hdrlab.course.sandbox.tiers.choose`.
     timeout : float
-        Seconds that a call may take, with the first one's running of the source.
+        Seconds that a call may take, with the first one's running of the source. All calls of a check may
+        take three times as long, and all of a submission twenty times, of a processor 4.5 times.
+    modules : sequence of str
+        What the sources import of numpy and scipy.
 
     Attributes
     ----------
@@ -87,16 +93,20 @@ class Subject:
         names: Mapping[str, str],
         sandbox: Sandbox,
         timeout: float = TIMEOUT,
+        modules: Sequence[str] | None = None,
     ) -> None:
         self._sources, self._names, self._sandbox = dict(sources), dict(names), sandbox
         self._timeout = timeout
+        self._modules = imported(self._sources.values()) if modules is None else modules
+        self._left_of_check, self._left_of_all = CHECK * timeout, WHOLE * timeout
         self._running: Running | None = None
         self._link: socket.socket | None = None
         self.calls: list[Call] = []
-        self.said = ""
+        self.said, self._kept = "", 0
 
     def __enter__(self) -> Self:
-        self._running = Running(self._sandbox, modules_of(self._sources.values()))
+        seconds = CHECK * self._timeout, PROCESSOR * self._timeout
+        self._running = Running(self._sandbox, self._modules, seconds)
         return self
 
     def __exit__(
@@ -110,7 +120,8 @@ class Subject:
     def fresh(self) -> None:
         """Begin a new check: a new process, which knows nothing of the calls before."""
         self._drop()
-        self.calls, self.said = [], ""
+        self.calls, self.said, self._kept = [], "", 0
+        self._left_of_check = CHECK * self._timeout
 
     def _drop(self) -> None:
         """Let go of the check's process; it is ended before the next one begins, and with the sandbox."""
@@ -141,7 +152,8 @@ class Subject:
         kind, value = self._exchange(task, order)
         if kind == "answer":
             value = compare.plain(value)  # as the library's answers are, where the specification asks it
-            if sum(_size(one.answer) for one in self.calls) + _size(value) <= REMEMBERED:
+            if self._kept + (size := _size(value)) <= REMEMBERED:
+                self._kept += size
                 self.calls[-1] = Call(task, args, kwargs, value)
             return value
         _explain(task, kind, value)
@@ -150,23 +162,63 @@ class Subject:
         """Send an order and return the kind and value of its answer; without one, the process is dropped."""
         if self._running is None:
             raise RuntimeError("a Subject is used in a with statement")
+        if self._running.left <= 0:
+            raise NoAnswer(f"{task}: {self._used_up()}", "late")
         if self._link is None:
             self._link = self._running.check()
-        call, deadline = secrets.randbits(60), time.monotonic() + self._timeout
+        begun, call = time.monotonic(), secrets.randbits(60)
+        patience = min(self._timeout, self._left_of_check, self._left_of_all)
         try:
+            if patience <= 0:
+                raise TimeoutError
             if _has_spoken(self._link):
                 raise channel.Damaged("something before it was asked")
-            self._link.settimeout(self._timeout)
+            self._link.settimeout(patience)
             channel.send(self._link, "call", order, call)
-            kind, echo, value = channel.receive(self._link, deadline)
+            kind, echo, value = channel.receive(self._link, begun + patience)
             if echo != call:
                 raise channel.Damaged("an answer to what was not asked")
             output, value = _checked(kind, value)
         except (OSError, EOFError, channel.Damaged) as error:
             self._drop()
-            _no_answer(task, error, self._timeout)
-        self.said = (self.said + readable(output))[:OUTPUT]
+            self._spend(time.monotonic() - begun)
+            self._explain_silence(task, error)
+        self._spend(time.monotonic() - begun)
+        self.said += wording.lines(output, OUTPUT - len(self.said))
         return kind, value
+
+    def _spend(self, seconds: float) -> None:
+        self._left_of_check -= seconds
+        self._left_of_all -= seconds
+
+    def _used_up(self) -> str:
+        """Return which time is used up, in words; "" where there is some."""
+        if self._running is not None and self._running.left <= 0:
+            return f"the {PROCESSOR * self._timeout:g} s of a processor for a whole submission are used up"
+        if self._left_of_all <= 0:
+            return f"the {WHOLE * self._timeout:g} s for a whole submission are used up"
+        return (
+            f"the {CHECK * self._timeout:g} s for one check are used up" if self._left_of_check <= 0 else ""
+        )
+
+    def _explain_silence(self, task: str, error: Exception) -> NoReturn:
+        """Raise the NoAnswer of a call whose process is late, gone, or wrote what is no answer."""
+        if isinstance(error, TimeoutError):
+            over = self._used_up()
+            says = f": {over}" if over else f" took longer than {self._timeout:g} s"
+            raise NoAnswer(f"{task}{says}", "late") from None
+        ended, used, granted = KILLED, 0.0, math.inf  # where the supervisor is gone, too
+        with contextlib.suppress(OSError, EOFError, ValueError):
+            if self._running is not None:
+                granted = self._running.granted if self._running.sandbox.forks else math.inf
+                ended, used = self._running.clear(SETTLE)
+        if used >= granted - 0.5 and ended == KILLED:
+            raise NoAnswer(f"{task} took longer than {granted} s of a processor", "late") from None
+        if isinstance(error, channel.Damaged):
+            kind = "killed" if ended == KILLED else "damaged"
+            raise NoAnswer(f"{task} sent what is no answer: {error}", kind) from None
+        kind = "killed" if ended == KILLED else "died"
+        raise NoAnswer(f"{task} ended its process, and gave no answer", kind) from None
 
 
 def _size(answer: Any) -> int:
@@ -204,42 +256,10 @@ def _explain(task: str, kind: str, value: Any) -> NoReturn:
     """Raise the NoAnswer of a call that raised, or whose answer cannot travel."""
     if kind == "refused":
         raise NoAnswer(
-            f"{task} answered with something that is no array: it contains {readable(value)[:300]}", "refused"
+            f"{task} answered with something that is no array: it contains {wording.lines(value, 300)}",
+            "refused",
         )
-    error, message, text = (readable(value[word])[:2000] for word in ("error", "message", "text"))
+    error, message, text = (wording.lines(value[word], 2000) for word in ("error", "message", "text"))
     where = f" (line {value['line']}: {text})" if value["line"] is not None else ""
     says = f"{task} raised {error}{': ' if message else ''}{message}{where}"
     raise NoAnswer(says, "raised", error, value["line"], text) from None
-
-
-def _no_answer(task: str, error: Exception, timeout: float) -> NoReturn:
-    """Raise the NoAnswer of a call whose process is late, gone, or wrote what is no answer."""
-    if isinstance(error, TimeoutError):
-        raise NoAnswer(f"{task} took longer than {timeout:g} s", "late") from None
-    if isinstance(error, channel.Damaged):
-        raise NoAnswer(f"{task} {LOST[1]}: {error}", "damaged") from None
-    raise NoAnswer(f"{task} {LOST[0]}", "died") from None
-
-
-def readable(text: str) -> str:
-    """Return text without the codes that move a cursor, colour it, or turn its direction."""
-    return CONTROLS.sub("", text)
-
-
-def modules_of(sources: Any) -> list[str]:
-    """Return the parts of numpy and scipy that some sources import, so that they are imported once.
-
-    Examples
-    --------
-    >>> modules_of(["from scipy import ndimage", "import scipy.sparse.linalg as la, os", "not Python"])
-    ['scipy', 'scipy.ndimage', 'scipy.sparse.linalg']
-    """
-    found = set()
-    for source in sources:
-        with contextlib.suppress(SyntaxError, ValueError, RecursionError, MemoryError):
-            for node in ast.walk(ast.parse(source)):
-                if isinstance(node, ast.Import):
-                    found |= {alias.name for alias in node.names}
-                elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-                    found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
-    return sorted(one for one in found if one.split(".")[0] in ("numpy", "scipy"))

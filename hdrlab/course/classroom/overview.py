@@ -3,17 +3,19 @@
 gradebook.csv   a row for each student: points, days late, penalty, score
 canvas.csv      the scores, as Canvas imports them
 what_if.csv     what each student's score would be, had the work come so many days late
-class.html      how many hold each promise, and which misconceptions were met: what to teach again
+class.html      how many hold each promise, which misconceptions were met, and where each student stands
 """
 
 import statistics
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
+from urllib.parse import quote
 
 from hdrlab.course.classroom import journal, marks
 from hdrlab.course.classroom.handins import Found
+from hdrlab.course.classroom.marks import Mark
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
@@ -32,11 +34,13 @@ class Tally(NamedTuple):
     points : of each team's work
     outcomes : of each promise, by task and its words: how often it holds, fails, or was not answered
     met : how often each misconception was met, by task and sentence
+    refused : why nothing of a team's work could be checked, in words
     """
 
     points: dict[str, float]
     outcomes: dict[tuple[str, str], Counter[Outcome]]
     met: Counter[tuple[str, str]]
+    refused: Mapping[str, str] = {}
 
 
 def tally(each: Iterable[Result]) -> Tally:
@@ -44,12 +48,15 @@ def tally(each: Iterable[Result]) -> Tally:
     points: dict[str, float] = {}
     outcomes: dict[tuple[str, str], Counter[Outcome]] = {}
     met: Counter[tuple[str, str]] = Counter()
+    refused: dict[str, str] = {}
     for result in each:
         points[result.student] = result.score
+        if result.problems and all(one.kind == "missing" for one in result.checks):
+            refused[result.student] = result.problems[0]
         met.update(result.misconceptions.items())
         for one in result.checks:
             outcomes.setdefault((one.task, one.promise), Counter())[one.outcome] += 1
-    return Tally(points, outcomes, met)
+    return Tally(points, outcomes, met, refused)
 
 
 def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequence[str] = ()) -> list[Path]:
@@ -61,19 +68,20 @@ def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequenc
     course, found, counted : by what, what was handed in, and what came of it
     lost : what could not be graded
     """
-    rows = marks.marks(course, found.handins, counted.points, found.refused)
+    rows = marks.marks(course, found.handins, counted.points, {**counted.refused, **found.refused})
     tables: dict[str, tuple[Sequence[str], Sequence[Sequence[sheets.Cell]]]] = {
         "gradebook.csv": (marks.COLUMNS, rows),
         "canvas.csv": marks.canvas(rows, course.homework),
         "what_if.csv": marks.what_if(course, counted.points),
     }
     files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]
-    journal.write(out / "class.html", page(course.homework, counted, [*found.notes, *lost]).encode())
+    text = page(course.homework, counted, [*found.notes, *lost], rows)
+    journal.write(out / "class.html", text.encode())
     return [*files, out / "class.html"]
 
 
-def page(homework: Homework, counted: Tally, notes: Iterable[str] = ()) -> str:
-    """Return the class page: how many hold each promise, and which misconceptions were met."""
+def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Sequence[Mark] = ()) -> str:
+    """Return the class page; each row of the gradebook leads to what its student reads."""
     scores = counted.points.values()
     whole = max(homework.points, 1e-9)
     bins = Counter(min(BINS - 1, int(BINS * score / whole)) for score in scores)
@@ -91,5 +99,8 @@ def page(homework: Homework, counted: Tally, notes: Iterable[str] = ()) -> str:
             ],
             met=counted.met.most_common(),
             notes=list(notes),
+            students=[(row, f"feedback/{quote(row.team)}/feedback.html") for row in rows],
+            nothing=[row for row in rows if not row.received],
+            late=[row for row in rows if row.late],
         )
     )

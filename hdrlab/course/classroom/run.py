@@ -8,16 +8,14 @@ RESULTS/
 
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course import grading
-from hdrlab.course.archives import unpack
-from hdrlab.course.archives.members import Refused
 from hdrlab.course.checks import SPECIFICATION
-from hdrlab.course.checks.subject import LOST
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.journal import Done, Piece
@@ -29,8 +27,8 @@ from hdrlab.course.reports import gradebook, results
 from hdrlab.course.reports.results import Result
 from hdrlab.course.sandbox import doctor
 from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.wording import plain
 
-READ = (".ipynb", ".py")
 MOST = 1 << 26  # bytes of hidden checks, which travel with each submission
 
 
@@ -72,8 +70,8 @@ class Grader(NamedTuple):
     def result(self, piece: Piece) -> bytes:
         """Return the result of a submission as JSON.
 
-        Where a function's process ended without an answer, that may have been its own doing, or somebody else
-        has killed it. So such a result is believed when it comes twice.
+        A function whose process was killed is asked again: a tier for credit lets none kill itself, so it was
+        somebody else, or a system out of memory. Such a result is believed when it comes twice.
 
         Raises
         ------
@@ -83,21 +81,19 @@ class Grader(NamedTuple):
         before = None
         for _ in range(journal.TRIES):
             result = self._result(piece)
-            if result == before or not any(said in one.message for one in result.checks for said in LOST):
+            if result == before or all(one.kind != "killed" for one in result.checks):
                 return results.to_json(result)
             before = result
         raise ValueError("its functions' process ended without an answer, each time at another check")
 
     def _result(self, piece: Piece) -> Result:
-        """Grade a submission; an archive is unpacked for it, or refused in a line."""
+        """Grade a submission."""
         student = piece.owner if self.conditions.secret else ""
         with tempfile.TemporaryDirectory(prefix="hdrlab-class-") as scratch:
             hidden = _laid(self.hidden, Path(scratch) / "hidden") if self.hidden else None
-            path, refused = opened(piece.path, Path(scratch), self.homework.name)
             conditions = self.conditions._replace(student=student, hidden=hidden)
-            result = grading.grade(path, self.homework, conditions)
-        said = (refused,) if refused else result.problems  # what follows from a refusal is no news
-        return result._replace(student=piece.owner, problems=said)
+            result = grading.grade(piece.path, self.homework, conditions)
+        return result._replace(student=piece.owner)
 
 
 @cache
@@ -134,31 +130,16 @@ def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
     return folder
 
 
-def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
-    """Return the notebook or Python file of a submission, and why its archive was refused, or ""."""
-    if path.suffix.lower() in READ:
-        return path, ""
-    nothing = scratch / f"{homework}.py"
-    nothing.write_text("")
-    try:
-        members = unpack.unpack(path, scratch / "files")
-    except Refused as reason:
-        return nothing, f"The archive is refused: {reason}."
-    fitting = [member for member, _ in members if member.suffix.lower() in READ]
-    named = [member for member in fitting if homework in member.name.lower()] or fitting
-    if len(named) != 1:
-        names = ", ".join(member.name for member in named[:5]) or "none"
-        return nothing, f"Expected one notebook or Python file in the archive, got {names}."
-    return scratch / "files" / named[0], ""
-
-
 def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
     folders = [SPECIFICATION, *([conditions.hidden] if conditions.hidden else [])]
     checks = [folder / f"test_{task.id}.py" for folder in folders for task in homework.tasks]
     files = grading.specification([check for check in checks if check.is_file()])
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
-    return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
+    return [
+        Piece(team, one.path, journal.key(one.digest, files, asked), one.refused)
+        for team, one in handins.items()
+    ]
 
 
 def select_handins(
@@ -184,9 +165,11 @@ def select_handins(
 def write_feedback(out: Path, done: Done) -> Done:
     """Write a team's feedback, unless all of it is there and of this result; return what was `done`.
 
-    It is of this result where its JSON is, which is removed first and written last.
+    It is of this result where its JSON is, which is removed first and written last. What fails is `why`.
     """
-    if done.result is not None:
+    if done.result is None:
+        return done
+    try:
         folder, data = out / "feedback" / done.piece.owner, done.result.read_bytes()
         whole, shown = folder / "result.json", results.for_team(data)
         missing = [name for name in gradebook.FILES if not (folder / name).is_file()]
@@ -195,6 +178,9 @@ def write_feedback(out: Path, done: Done) -> Done:
                 journal.make_private(one)
             whole.unlink(missing_ok=True)
             gradebook.write_results(folder, results.from_json(data), shown)
+    except Exception as error:  # whatever it is: the others are to be told theirs
+        why = plain(f"{type(error).__name__}: {error}", 200)
+        return done._replace(why=f"its feedback could not be written: {why}")
     return done
 
 
@@ -203,4 +189,5 @@ def read(out: Path, everything: Sequence[Piece]) -> Iterator[Result]:
     for piece in everything:
         path = journal.place(out / "results", piece)
         if path.is_file():
-            yield results.from_json(path.read_bytes())
+            with suppress(ValueError):  # a damaged one is not graded, of which write_feedback tells
+                yield results.from_json(path.read_bytes())

@@ -8,11 +8,21 @@ import ast
 import re
 import textwrap
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
 from hdrlab.course.code import names
 
+STARRED = (
+    "numpy",
+    "scipy",
+    "math",
+    "cmath",
+    "random",
+    "itertools",
+    "functools",
+    "typing",
+)  # from ... import *
 TIMED = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")  # magics over plain Python
 
 
@@ -48,14 +58,14 @@ def closed(
     for cell in [*given, *(one for one in cells if not (one.given and given))]:
         try:
             statements += _statements(cell, len(statements))
-        except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
+        except names.BROKEN as error:
             line = f", line {error.lineno}" if isinstance(error, SyntaxError) and error.lineno else ""
             said = error.msg if isinstance(error, SyntaxError) else str(error)
             mine = f", which holds {cell.task}," if cell.task in tasks else ""
             problems.append(f"{cell.where}{mine} is no Python{line}: {said}")
-    sources = {}
+    sources, binding = {}, _binding(statements)
     for task in tasks:
-        found = [one for one in statements if task in one.binds and not one.cell.given]
+        found = [one for one in binding.get(task, ()) if not one.cell.given]
         marked = [one for one in found if one.cell.task == task]
         if not found:
             problems.append(f"{task} was not found: no cell defines a function of this name")
@@ -64,65 +74,89 @@ def closed(
             which = "that of its own cell" if len({one.cell for one in marked}) == 1 else "the last one"
             problems.append(f"{task} is defined in several cells; {which} counts")
         last = (marked or found)[-1]
-        sources[task] = "\n\n".join(one.text for one in _needed(last, task, statements)) + "\n"
+        sources[task] = "\n\n".join(one.text for one in _needed(last, task, binding)) + "\n"
     return sources, problems
 
 
-def _needed(task: Statement, name: str, statements: Sequence[Statement]) -> list[Statement]:
+def _binding(statements: Sequence[Statement]) -> dict[str, list[Statement]]:
+    """Return the statements that bind each name, in order; those that import every name bind "*"."""
+    binding: dict[str, list[Statement]] = {}
+    for one in statements:
+        for name in one.binds:
+            binding.setdefault(name, []).append(one)
+    return binding
+
+
+def _needed(task: Statement, name: str, binding: Mapping[str, Sequence[Statement]]) -> list[Statement]:
     """Return a statement and all that it needs, each after what it needs to be run.
 
     A name that is bound several times counts with all of its bindings by plain statements, which build on
     each other, but of functions, classes and imports the last one alone.
     """
-    givers: dict[str, list[Statement]] = {name: [task]}
-    chosen, wanted = {task.place: task}, sorted(task.needs)
+    every = [one for one in binding.get("*", ()) if one.text.split(maxsplit=2)[1].split(".")[0] in STARRED]
+    givers: dict[str, Sequence[Statement]] = {name: [task]}
+    chosen, wanted = {one.place: one for one in [task, *every]}, sorted(task.needs)
     while wanted:
         one = wanted.pop()
         if one not in givers:
-            givers[one] = _givers(one, task.cell, statements)
-            chosen |= {giver.place: giver for giver in givers[one]}
-            wanted += sorted({need for giver in givers[one] for need in giver.needs} - set(givers))
-    order: dict[int, Statement] = {}
-    begun: set[tuple[int, bool]] = set()
-    for place in sorted(chosen, key=lambda place: (not _is_import(chosen[place]), place)):
-        _run_after(chosen[place], givers, order, begun, deep=False)
-    return list(order.values())
+            givers[one] = _givers(task.cell, binding.get(one, ()))
+            fresh = [giver for giver in givers[one] if giver.place not in chosen]
+            chosen |= {giver.place: giver for giver in fresh}
+            wanted += sorted({need for giver in fresh for need in giver.needs if need not in givers})
+    first = sorted(chosen.values(), key=lambda one: (not _is_import(one), one.place))
+    return _ordered(first, givers)
 
 
-def _givers(name: str, cell: Cell, statements: Sequence[Statement]) -> list[Statement]:
-    """Return the statements that make what a name stands for; those of the task's own cell come first."""
-    near = [one for one in statements if name in one.binds]
-    whole = [one for one in near if one.cell == cell and _is_whole(one)] or [
+def _givers(cell: Cell, near: Sequence[Statement]) -> Sequence[Statement]:
+    """Return which of a name's bindings make what it stands for; those of the task's own cell come first."""
+    whole = [one for one in near if one.cell is cell and _is_whole(one)] or [
         one for one in near if _is_whole(one)
     ]
     if not whole:
         return near
     if _is_import(whole[-1]):  # what is done to numpy is not part of a function
         return [whole[-1]]
-    return [one for one in near if one == whole[-1] or (one.place > whole[-1].place and not _is_whole(one))]
+    return [one for one in near if one is whole[-1] or (one.place > whole[-1].place and not _is_whole(one))]
 
 
-def _run_after(
-    one: Statement,
-    givers: dict[str, list[Statement]],
-    order: dict[int, Statement],
-    begun: set[tuple[int, bool]],
-    *,
-    deep: bool,
-) -> None:
-    """Put a statement into the order after what it needs to be run: of a function that is its head alone.
+def _ordered(first: Sequence[Statement], givers: Mapping[str, Sequence[Statement]]) -> list[Statement]:
+    """Return statements in this order, but each after what it needs to be run: of a function its head alone.
 
     What runs at once, and a function that such a statement may call, needs all of its names: deep.
     """
-    deep = deep or not one.text.startswith(("def ", "async def "))
-    if (one.place, deep) in begun:
-        return
-    begun.add((one.place, deep))
+    order: dict[int, Statement] = {}
+    begun: set[tuple[int, bool]] = set()
+    come: dict[tuple[str, bool], int] = {}  # how many of a name's givers are begun, deep and else
+    for start in first:
+        waiting = [(start, False)]
+        running: list[tuple[Statement, Iterator[tuple[Statement, bool]]]] = []
+        while waiting or running:
+            if waiting:
+                one, deep = waiting.pop()
+                deep = deep or not one.text.startswith(("def ", "async def "))
+                if (one.place, deep) not in begun:
+                    begun.add((one.place, deep))
+                    running.append((one, _before(one, deep, givers, come)))
+                continue
+            one, before = running[-1]
+            waiting += [step] if (step := next(before, None)) else []
+            if not waiting:
+                running.pop()
+                order.setdefault(one.place, one)
+    return list(order.values())
+
+
+def _before(
+    one: Statement, deep: bool, givers: Mapping[str, Sequence[Statement]], come: dict[tuple[str, bool], int]
+) -> Iterator[tuple[Statement, bool]]:
+    """Yield what is to be run before a statement, and was not begun for the same name."""
     for name in sorted(one.needs if deep else one.head):
-        for giver in givers.get(name, ()):
-            if giver.place != one.place and not (name in one.binds and giver.place > one.place):
-                _run_after(giver, givers, order, begun, deep=deep)
-    order.setdefault(one.place, one)
+        each, key = givers.get(name, ()), (name, deep)
+        while (n := come.get(key, 0)) < len(each):
+            if name in one.binds and each[n].place >= one.place:
+                break
+            come[key] = n + 1
+            yield each[n], deep
 
 
 def _is_whole(one: Statement) -> bool:
@@ -139,7 +173,7 @@ def _statements(cell: Cell, first: int) -> list[Statement]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of odd escapes, which are the student's own business
         body = ast.parse(text).body
-    lines = text.split("\n")  # as the parser counts them: a form feed ends no line
+    lines = text.encode().split(b"\n")  # as the parser counts them: a form feed ends no line
     found: list[Statement] = []
     for node in body:
         binds = frozenset(names.bound(node))
@@ -158,22 +192,24 @@ def _statements(cell: Cell, first: int) -> list[Statement]:
     return found
 
 
-def _part(lines: Sequence[str], start: int, node: ast.stmt) -> str:
+def _part(lines: Sequence[bytes], start: int, node: ast.stmt) -> str:
     """Return the text of a statement; of two on one line, separated by a semicolon, its own part."""
-    assert node.end_lineno is not None
-    own = [line.encode() for line in lines[start - 1 : node.end_lineno]]
-    own[-1] = own[-1][: node.end_col_offset]  # counted in bytes of UTF-8
-    if start == node.lineno:
-        own[0] = own[0][node.col_offset :]
-    return b"\n".join(own).decode()
+    last, end = node.end_lineno or node.lineno, node.end_col_offset  # counted in bytes of UTF-8
+    begin = node.col_offset if start == node.lineno else 0
+    if start == last:
+        return lines[start - 1][begin:end].decode()
+    inner = lines[start : last - 1]
+    return b"\n".join([lines[start - 1][begin:], *inner, lines[last - 1][:end]]).decode()
 
 
 def _shallow(node: ast.AST) -> Iterable[ast.AST]:
     """Yield a node and what is in it, without going into functions and classes."""
-    yield node
-    if not isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda):
-        for child in ast.iter_child_nodes(node):
-            yield from _shallow(child)
+    waiting = [node]
+    while waiting:
+        one = waiting.pop()
+        yield one
+        if not isinstance(one, (*names.INNER, ast.Lambda)):
+            waiting += ast.iter_child_nodes(one)
 
 
 def _changed(node: ast.AST) -> Iterable[str]:
@@ -205,10 +241,19 @@ def plain(text: str) -> str:
         if not head.startswith(TIMED):
             return ""
         text = head.partition("\n")[2]
-    if not re.search(r"^\s*[%!?]|\?\s*$", text, re.MULTILINE):
+    lines = text.split("\n")
+    if not any(map(_is_notebooks, lines)):
         return text
     try:
         ast.parse(text)
         return text  # such lines stand in a string
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return re.sub(r"^([ \t]*)(?:[%!?].*|.*\?[ \t]*)$", r"\1pass", text, flags=re.MULTILINE)
+    except names.BROKEN:
+        return "\n".join(
+            line[: len(line) - len(line.lstrip(" \t"))] + "pass" if _is_notebooks(line) else line
+            for line in lines
+        )
+
+
+def _is_notebooks(line: str) -> bool:
+    """Return whether a line is one that only a notebook understands."""
+    return line.lstrip(" \t")[:1] in {"%", "!", "?"} or line.rstrip(" \t\r").endswith("?")

@@ -1,11 +1,13 @@
 """Which names a piece of Python binds, and which it takes from outside: read from its tree, never run."""
 
 import ast
-from collections.abc import Iterable, Iterator, Sequence
+import contextlib
+from collections.abc import Iterable, Iterator
 from typing import NamedTuple
 
 Function = ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
 INNER = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+BROKEN = (SyntaxError, ValueError, RecursionError, MemoryError)  # what text may do to a parser
 COMPREHENSIONS = (ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
@@ -28,7 +30,19 @@ def free(node: ast.AST) -> list[Use]:
     >>> [use.node.id for use in free(ast.parse("def f(x, y=a): return [x * b for z in y]").body[0])]
     ['a', 'b']
     """
-    return list(_uses(node, frozenset()))
+    found: list[Use] = []
+    waiting: list[tuple[ast.AST, frozenset[str]]] = [(node, frozenset())]
+    while waiting:  # by hand: what a student wrote may be nested deeper than calls go
+        one, around = waiting.pop()
+        if isinstance(one, ast.Name):
+            if isinstance(one.ctx, ast.Load) and one.id not in around:
+                found.append(Use(one, one, ""))
+        elif isinstance(one, ast.Attribute) and isinstance(one.value, ast.Name):
+            if one.value.id not in around:
+                found.append(Use(one.value, one, one.attr))
+        else:
+            waiting += reversed(list(_parts(one, around)))
+    return found
 
 
 def bound(node: ast.AST) -> list[str]:
@@ -39,56 +53,47 @@ def bound(node: ast.AST) -> list[str]:
     >>> bound(ast.parse("for i, (j, k) in pairs: n = i").body[0])
     ['i', 'j', 'k', 'n']
     """
-    return list(dict.fromkeys(_bound(node)))
+    found: list[str] = []
+    waiting = [node]
+    while waiting:
+        one = waiting.pop()
+        if isinstance(one, ast.Name):
+            found += [one.id] if isinstance(one.ctx, ast.Store) else []
+        elif isinstance(one, INNER):
+            found.append(one.name)
+        elif isinstance(one, ast.Import | ast.ImportFrom):
+            found += [alias.asname or alias.name.split(".")[0] for alias in one.names]
+        elif isinstance(one, COMPREHENSIONS):  # its targets are its own
+            inner = [part for part in ast.walk(one) if isinstance(part, ast.NamedExpr)]
+            found += [part.target.id for part in inner]
+        elif not isinstance(one, ast.Lambda):
+            if isinstance(one, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and one.name:
+                found.append(one.name)
+            waiting += reversed(list(ast.iter_child_nodes(one)))
+    return list(dict.fromkeys(found))
 
 
-def _bound(node: ast.AST) -> Iterator[str]:
-    if isinstance(node, ast.Name):
-        yield from [node.id] if isinstance(node.ctx, ast.Store) else []
-    elif isinstance(node, INNER):
-        yield node.name
-    elif isinstance(node, ast.Import | ast.ImportFrom):
-        yield from (alias.asname or alias.name.split(".")[0] for alias in node.names)
-    elif not isinstance(node, ast.Lambda):
-        if isinstance(node, ast.ExceptHandler | ast.MatchAs | ast.MatchStar) and node.name:
-            yield node.name
-        yield from (name for one in _inside(node) for name in _bound(one))
+def _parts(node: ast.AST, around: frozenset[str]) -> Iterator[tuple[ast.AST, frozenset[str]]]:
+    """Yield the parts of a node in the order of reading, each with the names that are bound around it."""
+    if isinstance(node, Function):
+        yield from ((one, around) for one in head(node))
+        own = _inside(node, around)
+        yield from ((one, own) for one in (node.body if isinstance(node.body, list) else [node.body]))
+        return
+    parts: Iterable[ast.AST] = ast.iter_child_nodes(node)
+    if isinstance(node, COMPREHENSIONS):
+        around = around.union(*(bound(one.target) for one in node.generators))
+        parts = sorted(parts, key=lambda one: isinstance(one, ast.comprehension))
+    yield from ((one, around) for one in parts)
 
 
-def _inside(node: ast.AST) -> Iterable[ast.AST]:
-    """Return the parts of a node in which it binds: the targets of a comprehension are its own."""
-    if not isinstance(node, COMPREHENSIONS):
-        return ast.iter_child_nodes(node)
-    return [one for one in ast.walk(node) if isinstance(one, ast.NamedExpr)]
-
-
-def _uses(node: ast.AST, around: frozenset[str]) -> Iterator[Use]:
-    if isinstance(node, ast.Name):
-        if isinstance(node.ctx, ast.Load) and node.id not in around:
-            yield Use(node, node, "")
-    elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
-        if node.value.id not in around:
-            yield Use(node.value, node, node.attr)
-    elif isinstance(node, Function):
-        yield from _of_function(node, around)
-    elif isinstance(node, COMPREHENSIONS):
-        generators = node.generators
-        own = around.union(*(bound(one.target) for one in generators))
-        yield from _each([one for one in ast.iter_child_nodes(node) if one not in generators], own)
-        yield from _each(generators, own)
-    else:
-        yield from _each(ast.iter_child_nodes(node), around)
-
-
-def _of_function(node: Function, around: frozenset[str]) -> Iterator[Use]:
-    """Yield the uses of a function: its head is outside of it, its body knows its arguments."""
-    yield from _each(head(node), around)
-    body: Sequence[ast.AST] = node.body if isinstance(node.body, list) else [node.body]
-    arguments = {one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg)}
-    parts = (part for one in body for part in ast.walk(one) if isinstance(part, ast.Global))
-    outside = {name for part in parts for name in part.names}
-    own = around.union(arguments, *map(bound, body)) - outside
-    yield from _each(body, own)
+def _inside(node: Function, around: frozenset[str]) -> frozenset[str]:
+    """Return the names that are bound around what is inside a function."""
+    own = around.union(one.arg for one in ast.walk(node.args) if isinstance(one, ast.arg))
+    if isinstance(node, ast.Lambda):
+        return own.union(bound(node.body))
+    inner = (part for one in node.body for part in ast.walk(one) if isinstance(part, ast.Global))
+    return own.union(*map(bound, node.body)).difference(*(part.names for part in inner))
 
 
 def head(node: ast.AST) -> list[ast.AST]:
@@ -97,5 +102,20 @@ def head(node: ast.AST) -> list[ast.AST]:
     return [*getattr(node, "decorator_list", ()), *(one for one in parts if isinstance(one, ast.AST))]
 
 
-def _each(nodes: Iterable[ast.AST], around: frozenset[str]) -> Iterator[Use]:
-    return (use for one in nodes for use in _uses(one, around))
+def imported(sources: Iterable[str]) -> list[str]:
+    """Return the parts of numpy and scipy that some sources import, so that they are imported once.
+
+    Examples
+    --------
+    >>> imported(["from scipy import ndimage", "import scipy.sparse.linalg as la, os", "not Python"])
+    ['scipy', 'scipy.ndimage', 'scipy.sparse.linalg']
+    """
+    found = set()
+    for source in sources:
+        with contextlib.suppress(*BROKEN):
+            for node in ast.walk(ast.parse(source)):
+                if isinstance(node, ast.Import):
+                    found |= {alias.name for alias in node.names}
+                elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+                    found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return sorted(one for one in found if one.split(".")[0] in ("numpy", "scipy"))

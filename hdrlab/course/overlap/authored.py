@@ -11,16 +11,13 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
+from hdrlab.course import submission
 from hdrlab.course.code import names
-from hdrlab.course.code.closure import closed
 from hdrlab.course.material import handouts, materials
-from hdrlab.course.submission import LARGEST, cells_of
+from hdrlab.course.submission import cells_of
 
-CODE = 100_000  # characters in all cells; a worked homework has some 40,000, docstrings and all
-LINES = 4_000  # of code in all cells
 TASK = 30_000  # characters of one task
 WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
-BROKEN = (SyntaxError, ValueError, RecursionError, MemoryError)  # what text may do to a parser
 
 
 class Work(NamedTuple):
@@ -37,7 +34,7 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
     Parameters
     ----------
     team : whose it is
-    path : the file, which may hold anything
+    path : the file, which may hold anything, or an archive of it
     homework : its handout is given
     tasks : the names of their functions
 
@@ -52,41 +49,20 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
         return tent(n)
     """
     try:
-        sources = _sources(path, homework, tasks)
-    except BROKEN as error:
-        return Work(team, {}, (f"cannot be read: {error}" if str(error) else "cannot be read",))
-    texts, notes = {}, []
-    for task, text in sources.items():
+        found = submission.read(path, homework, tasks, handouts.given_cells(homework))
+    except ValueError as error:
+        return Work(team, {}, (str(error),))
+    texts: dict[str, str] = {}
+    notes = [] if found.sources else [*found.problems, "none of the tasks can be read in it"]
+    for task, text in found.sources.items():
         if len(text) > TASK:
             notes.append(f"{task} has more than {TASK:,} characters and is not compared")
             continue
         try:
             texts[task] = own(text, homework, {*tasks} - {task})
-        except BROKEN:
+        except names.BROKEN:
             notes.append(f"{task} is nested too deep and is not compared")
-    if not sources:
-        notes.append("none of the tasks can be read in it")
     return Work(team, texts, tuple(notes))
-
-
-def _sources(path: Path, homework: str, tasks: Sequence[str]) -> dict[str, str]:
-    """Return each task with all that it needs, or raise a ValueError for what is no homework."""
-    if not path.is_file() or path.stat().st_size > LARGEST:
-        raise ValueError(f"it is no file of at most {LARGEST // 1_000_000} MB")
-    data = path.read_bytes()
-    if len(data) > 4 * CODE and data.lstrip()[:1] != b"{":  # a notebook may be long by its pictures
-        raise ValueError(f"it has more than {CODE:,} characters of code")
-    cells, problems = cells_of(data, path.name)
-    if not cells:
-        raise ValueError("; ".join(problems) or "it holds no code")
-    if sum(len(cell.text) for cell in cells) > CODE:
-        raise ValueError(f"it has more than {CODE:,} characters of code")
-    if sum(len(re.findall(r"[\n\r;]", cell.text)) for cell in cells) > LINES:
-        raise ValueError(f"it has more than {LINES:,} lines of code")
-    try:
-        return closed(cells, tasks, handouts.given_cells(homework))[0]
-    except RecursionError:
-        raise ValueError("what its functions need is nested too deep") from None
 
 
 def own(text: str, homework: str, others: Collection[str]) -> str:

@@ -41,6 +41,7 @@ class Check(NamedTuple):
     drawing : expected, came, difference
     said : what the function printed meanwhile
     hidden : whether it is one of the instructor's own, of which a student sees the outcome alone
+    kind : of no answer: "missing", "raised", "late", "died", "refused", "damaged", or "killed" from outside
     """
 
     task: str
@@ -54,6 +55,7 @@ class Check(NamedTuple):
     drawing: Drawing = Drawing()
     said: str = ""
     hidden: bool = False
+    kind: str = ""
 
 
 class Result(NamedTuple):
@@ -200,6 +202,6 @@ def from_json(data: bytes) -> Result:
 
 
 def _check_from_json(read: dict[str, Any]) -> Check:
-    own = {name: read[name] for name in Check._fields}
+    own = {"kind": "", **{name: read[name] for name in Check._fields if name != "kind" or name in read}}
     own |= {name: Fraction(read["exact"][name]) for name in ("points", "max_points")}
     return Check(**{**own, "hints": tuple(read["hints"]), "drawing": drawing_from_json(read["drawing"])})

@@ -9,6 +9,7 @@ started anew.
 """
 
 import contextlib
+import math
 import socket
 import subprocess
 import time
@@ -82,10 +83,21 @@ class Sandbox(NamedTuple):
 
 
 class Running:
-    """A sandbox that was started for one submission; `modules` are imported once, before the first check."""
+    """A sandbox that was started for one submission.
 
-    def __init__(self, sandbox: Sandbox, modules: Sequence[str] = ()) -> None:
+    Parameters
+    ----------
+    sandbox : of which tier
+    modules : imported once, before the first check
+    seconds : of a processor for one check, and for all; enforced where processes can fork
+    """
+
+    def __init__(
+        self, sandbox: Sandbox, modules: Sequence[str] = (), seconds: tuple[float, float] = (60.0, math.inf)
+    ) -> None:
         self.sandbox, self.modules = sandbox, list(modules)
+        self._each, self.left = seconds  # of a processor
+        self.granted = 0  # to the check that runs
         self._start()
 
     def _start(self) -> None:
@@ -98,6 +110,7 @@ class Running:
                 self._control.close()
                 raise
         self._ready, self._checks = False, 0  # how many checks it has begun
+        self._busy = False  # with one that is not cleared away
         order = {
             "modules": self.modules,
             "alone": self.sandbox.alone,
@@ -140,20 +153,33 @@ class Running:
                 raise ConnectionError("one process serves one check")
             self._checks = 1
             return self._control.dup()
-        if self._checks:
-            channel.send(self._control, "end", call=self._checks)
-            self._hear("clean", CLEAR)
+        self.clear()
+        self.granted = max(1, math.ceil(min(self._each, self.left)))
         ours, theirs = socket.socketpair()
         try:
             with theirs:
                 self._checks += 1
-                channel.send(self._control, "check", call=self._checks)
+                self._busy = True
+                channel.send(self._control, "check", self.granted, self._checks)
                 socket.send_fds(self._control, [b"c"], [theirs.fileno()])
             self._hear("begun", CLEAR)
         except BaseException:
             ours.close()
             raise
         return ours
+
+    def clear(self, patience: float = 0.0) -> tuple[int, float]:
+        """Clear the last check away; return the signal that ended it, or 0, and what it used of a processor.
+
+        It may end by itself within `patience` seconds, and is ended then.
+        """
+        if not self._busy:
+            return 0, 0.0
+        channel.send(self._control, "end", patience, self._checks)
+        ended, seconds = self._hear("clean", CLEAR)
+        self._busy = False
+        self.left -= seconds
+        return ended, seconds
 
     def _hear(self, kind: str, seconds: float) -> Any:
         """Return the value of the next word from the supervisor, which must be of this kind."""

@@ -9,7 +9,6 @@ several are not, and each is tried again alone.
 import contextlib
 import hashlib
 import secrets
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
@@ -24,6 +23,7 @@ from distributed import Client, Future, KilledWorker
 from distributed.comm import resolve_address
 
 import hdrlab
+from hdrlab.course import scratch
 from hdrlab.course.classroom.executors import alone as process
 from hdrlab.course.classroom.executors.processes import LOOK, PATIENCE
 from hdrlab.course.classroom.journal import Ending, Piece
@@ -72,8 +72,8 @@ def do(task: Task) -> bytes:
     if version() != task.version:
         raise ValueError(f"its hdrlab is {version()}, expected {task.version}")
     task.ready()
-    with tempfile.TemporaryDirectory(prefix="hdrlab-task-", ignore_cleanup_errors=True) as folder:
-        path = Path(folder) / task.piece.path.name
+    with scratch.locked_folder() as folder:
+        path = folder / task.piece.path.name
         path.write_bytes(task.data)
         piece = task.piece._replace(path=path)
         try:

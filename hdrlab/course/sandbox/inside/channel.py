@@ -21,7 +21,8 @@ from typing import Any
 
 import numpy as np
 
-HEADER = 1 << 20  # bytes of a header: a list of 50 000 numbers passes, a million are sent as an array
+HEADER = 1 << 20  # bytes of a header: the text of a submission passes
+VALUES = 1 << 14  # numbers and texts outside of arrays: each costs the reader more than one in an array
 BODY = 1 << 26  # bytes of all arrays of a frame, 64 MiB: twenty photographs of a megapixel in RGB
 DEPTH = 16  # lists in lists
 DIMENSIONS = 8
@@ -82,6 +83,20 @@ def _plain(array: np.ndarray) -> np.ndarray:
     return np.array(array, dtype=array.dtype.newbyteorder("<"), order="C", copy=None)
 
 
+def _is_large(tree: Any) -> bool:
+    """Return whether a tree has more values outside of arrays than VALUES."""
+    waiting, count = [tree], 0
+    while waiting and count <= VALUES:
+        one = waiting.pop()
+        if isinstance(one, dict):
+            waiting += [] if "array" in one else one.values()
+        elif isinstance(one, list):
+            waiting += one
+        else:
+            count += 1
+    return count > VALUES
+
+
 def _label(name: int, array: np.ndarray | bytes) -> dict[str, Any]:
     """Return what the header says of the raw bytes that follow it."""
     if isinstance(array, bytes):
@@ -98,6 +113,8 @@ def send(to: socket.socket, kind: str, value: Any = None, call: int = 0) -> None
     """Send one frame; Refused, and nothing sent, where the value does not travel."""
     arrays: list[np.ndarray | bytes] = []
     tree = pack(value, arrays)
+    if _is_large(tree):
+        raise Refused(f"more than {VALUES} values outside of arrays")
     labels = [_label(j, array) for j, array in enumerate(arrays)]
     header = json.dumps(
         {"kind": kind, "call": call, "value": tree, "arrays": labels}, allow_nan=False
@@ -133,6 +150,8 @@ def receive(source: socket.socket, deadline: float | None = None) -> tuple[str, 
     if sum(nbytes for *_, nbytes in labels) > BODY:
         raise Damaged(f"arrays that claim more than {BODY} bytes in all")
     arrays = [_build(dtype, shape, _exactly(source, n, deadline)) for dtype, shape, n in labels]
+    if _is_large(head["value"]):
+        raise Damaged(f"more than {VALUES} values outside of arrays")
     waiting = deque((str(j), array) for j, array in enumerate(arrays))
     return head["kind"], head["call"], _unpack(head["value"], waiting)
 

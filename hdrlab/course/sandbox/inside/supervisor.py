@@ -113,6 +113,29 @@ def children() -> list[int]:
     return found
 
 
+def used() -> float:
+    """Return the seconds of a processor that checks have used so far, as far as the system tells."""
+    with contextlib.suppress(ImportError):
+        resource = importlib.import_module("resource")
+        told = resource.getrusage(resource.RUSAGE_CHILDREN)
+        return float(told.ru_utime + told.ru_stime)
+    return 0.0
+
+
+def signal_of(pid: int, seconds: float) -> int:
+    """Return the signal that has ended a process, or ends it within some seconds; 0 where none does."""
+    until = time.monotonic() + seconds
+    while hasattr(os, "waitid"):
+        with contextlib.suppress(ChildProcessError):
+            found = os.waitid(os.P_PID, pid, os.WEXITED | os.WNOHANG | os.WNOWAIT)
+            if found is not None:
+                return found.si_status if found.si_code in (os.CLD_KILLED, os.CLD_DUMPED) else 0
+        if time.monotonic() >= until:
+            break
+        time.sleep(0.002)
+    return 0
+
+
 def sweep(pid: int, alone: bool) -> None:
     """End a check's process and all that it started, and wait until they are gone.
 
@@ -142,19 +165,24 @@ def sweep(pid: int, alone: bool) -> None:
 def tend(control: socket.socket, channel: Any, order: dict[str, Any]) -> None:
     """Fork a process for each check that is ordered, until the other end closes.
 
-    "check" comes with a descriptor, the new process's link, and is answered by "begun". "end" is answered by
-    "clean" when nothing of the check is left.
+    "check" comes with the seconds of a processor that it may use and a descriptor, the new process's link,
+    and is answered by "begun". "end" comes with the seconds in which it is expected to end by itself, and is
+    answered, when nothing of the check is left, by "clean" with the signal that has ended it, or 0, and the
+    seconds it has used.
     """
-    pid = 0
+    pid, before = 0, 0.0
     try:
         while True:
-            kind, call, _ = channel.receive(control)
+            kind, call, seconds = channel.receive(control)
             if kind == "check":
-                pid = fork(control, order)
+                before = used()
+                limits = order["limits"] | {"CPU": min(seconds, order["limits"]["CPU"])}
+                pid = fork(control, order | {"limits": limits})
                 channel.send(control, "begun", call=call)
             else:
+                ended = signal_of(pid, seconds)
                 sweep(pid, order["alone"])
-                channel.send(control, "clean", call=call)
+                channel.send(control, "clean", (ended, used() - before), call)
                 pid = 0
     except EOFError:
         if pid:

@@ -1,0 +1,68 @@
+"""A folder for all that a command writes on its way, which is gone when it ends, however it ended.
+
+A command that was killed cannot clear up. So its folder is locked as long as it lives, and the next one
+removes the folders that nobody holds any more.
+"""
+
+import contextlib
+import os
+import shutil
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+
+PREFIX = "hdrlab-run-"
+
+
+@contextlib.contextmanager
+def temporary_folder() -> Iterator[Path]:
+    """Make a folder in which this process writes all that is temporary.
+
+    Examples
+    --------
+    >>> with temporary_folder() as folder:
+    ...     tempfile.gettempdir() == str(folder)
+    True
+    >>> folder.exists()
+    False
+    """
+    with locked_folder() as folder:
+        before, tempfile.tempdir = tempfile.tempdir, str(folder)
+        try:
+            yield folder
+        finally:
+            tempfile.tempdir = before
+
+
+@contextlib.contextmanager
+def locked_folder() -> Iterator[Path]:
+    """Make a new folder, and remove those that killed processes have left."""
+    for old in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
+        with contextlib.suppress(OSError), _locked(old, wait=False):
+            shutil.rmtree(old, ignore_errors=True)
+    with contextlib.ExitStack() as stack:
+        name = ""
+        while not os.path.exists(name):  # another may have removed it before it was locked
+            made = tempfile.TemporaryDirectory(prefix=PREFIX, ignore_cleanup_errors=True)
+            name = stack.enter_context(made)
+            with contextlib.suppress(FileNotFoundError):
+                stack.enter_context(_locked(Path(name)))
+        yield Path(name)
+
+
+@contextlib.contextmanager
+def _locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
+    """Lock a folder, or raise an OSError where another process holds it."""
+    try:
+        import fcntl
+    except ImportError:  # on Windows, nothing is removed but by the one who made it
+        if not wait:
+            raise OSError("no locks here") from None
+        yield
+        return
+    handle = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        yield
+    finally:
+        os.close(handle)

@@ -1,0 +1,201 @@
+"""Functions that take time, memory or patience, and texts that break what shows them: in the strict tier."""
+
+import json
+import re
+import socket
+import unicodedata
+from fractions import Fraction
+from xml.etree import ElementTree
+
+import hostile
+import pytest
+
+from hdrlab.course import grading
+from hdrlab.course.checks.subject import NoAnswer, Subject
+from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom.journal import Done, Piece
+from hdrlab.course.reports import feedback, gradebook, results
+from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.inside import channel
+from hdrlab.course.wording import lines, plain
+
+KINDS = {  # of no answer; the others answer with something that is compared
+    "computes in each call": ("late",),
+    "computes in threads": ("late",),
+    "computes at import": ("late",),
+    "a list of 340,000 integers": ("refused",),
+    "a dictionary of 100,000": ("refused",),
+    "lists of lists": ("refused", "damaged"),
+    "a frame that lies": ("damaged", "raised", "late", "died"),
+    "a number of many digits": ("refused",),
+    "ends by itself": ("died",),
+    "ends otherwise each time": ("died",),
+    "kills itself": ("died", "raised"),
+    "closes its link": ("died",),
+    "fills the memory": ("raised",),
+    "crashes": ("died", "raised"),
+    "calls itself": ("died", "late", "raised"),
+    "prints without end": ("late",),
+}
+
+
+@pytest.fixture(scope="module")
+def strict():
+    """The strict tier, or the machine's reason why there is none."""
+    try:
+        with Subject({"hat": hostile.HAT}, {}, tiers.choose("strict")) as subject:
+            subject.hat(3)
+        return tiers.choose("strict")
+    except tiers.Unavailable as reason:
+        pytest.skip(str(reason))
+
+
+@pytest.mark.parametrize("name", hostile.CODE)
+def test_a_function_costs_its_call_and_no_more(name, strict):
+    late = KINDS.get(name, ()) == ("late",)
+    with Subject({"hat": hostile.CODE[name]}, {}, strict, 0.3 if late else 20.0) as subject:
+        try:
+            kind = bool(subject.hat(8) is None)
+        except NoAnswer as error:
+            kind = error.kind
+        subject.fresh()
+        assert subject._running.clear()[1] <= 20 and subject._running.left > 0 or late
+    assert kind in KINDS.get(name, (False, True))
+
+
+def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict):
+    source = "import time\ndef hat(n):\n    time.sleep(0.08)\n    return n\n"
+    said = []
+    with Subject({"hat": source}, {}, strict, 0.1) as subject:
+        for _ in range(12):
+            subject.fresh()
+            for _ in range(6):
+                try:
+                    subject.hat(8)
+                except NoAnswer as error:
+                    said.append(str(error))
+    assert "hat: the 0.3 s for one check are used up" in said
+    assert said[-1] == "hat: the 2 s for a whole submission are used up"
+
+
+def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
+    with Subject({"hat": hostile.CODE["computes in each call"]}, {}, strict, 0.3) as subject:
+        subject._running.left = 0.1
+        said = []
+        for _ in range(2):
+            subject.fresh()
+            with pytest.raises(NoAnswer) as raised:
+                subject.hat(8)
+            said.append(str(raised.value))
+            subject._drop()
+            subject._running.clear()
+            subject._running.left = min(subject._running.left, 0.0)  # a busy machine may not have used it
+    assert said[0] == "hat took longer than 0.3 s"
+    assert said[1] == "hat: the 1.35 s of a processor for a whole submission are used up"
+
+
+def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_killed(strict):
+    with Subject({"hat": hostile.CODE["computes in each call"]}, {}, strict, 20.0) as subject:
+        subject._running.left = 0.5
+        with pytest.raises(NoAnswer, match="hat took longer than 1 s of a processor") as raised:
+            subject.hat(8)
+        assert raised.value.kind == "late"
+
+
+def test_a_function_whose_process_is_killed_from_outside_is_told_from_one_that_ends_itself(strict):
+    with Subject({"hat": hostile.CODE["ends by itself"]}, {}, strict, 5.0) as subject:
+        with pytest.raises(NoAnswer) as raised:
+            subject.hat(8)
+        assert raised.value.kind == "died"
+    source = "import time\ndef hat(n):\n    time.sleep(30)\n"
+    with Subject({"hat": source}, {}, strict, 20.0) as subject:
+        subject._running.wait()
+        subject._running._launched.process.kill()  # as a system that is out of memory does
+        subject._running._launched.process.wait()
+        subject._running.check = _silent(subject._running)
+        with pytest.raises(NoAnswer) as raised:
+            subject.hat(8)
+        assert raised.value.kind == "killed"
+
+
+def _silent(running):
+    """Return what gives a link whose other end has closed."""
+
+    def check():
+        ours, theirs = socket.socketpair()
+        theirs.close()
+        return ours
+
+    return check
+
+
+def test_the_words_of_the_grader_in_an_exception_buy_no_second_try(tmp_path, monkeypatch):
+    tries = []
+
+    def graded(path, homework, conditions):
+        tries.append(path)
+        message = f"hat raised ValueError: hat ended its process, and gave no answer {len(tries)}"
+        return result(message=message, kind="raised" if len(tries) < 9 else "")
+
+    monkeypatch.setattr(grading, "grade", graded)
+    grader = classroom.Grader(None, grading.Conditions("practice"))
+    grader.result(Piece("b1", tmp_path / "b1.py", "key"))
+    assert len(tries) == 1
+
+
+def result(**told):
+    """Return a result of one check that does not hold, as grading makes one."""
+    check = Check("hat", "test_a", "A promise", Fraction(), Fraction(1), "no answer", **told)
+    return Result("b1", "hw2", "T", "strict", (check,), {}, (), "", "", "", {})
+
+
+def shown(text):
+    """Return whether text has nothing in it that breaks a page, a terminal or a table."""
+    categories = [unicodedata.category(one) for one in text if one not in "\n\t"]
+    stacked = re.search("(?:[\u0300-\u036f\u20d0-\u20ff]){5}", unicodedata.normalize("NFD", text))
+    return not stacked and not {"Cc", "Cf", "Cs", "Co"} & set(categories)
+
+
+@pytest.mark.parametrize("name", hostile.TEXTS)
+def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, strict, tmp_path):
+    with Subject({"hat": hostile.TEXTS[name]}, {}, strict, 10.0) as subject:
+        message = ""
+        try:
+            subject.hat()
+        except NoAnswer as error:
+            message = str(error)
+        assert shown(message) and shown(subject.said)
+        each = gradebook.write_results(tmp_path, result(message=message, said=subject.said, kind="raised"))
+    told = {path.name: path.read_bytes().decode() for path in each}
+    assert "<script>alert" not in told["feedback.html"] and "<svg onload" not in told["feedback.html"]
+    assert shown(told["feedback.html"]) and json.loads(told["gradescope.json"])
+    ElementTree.fromstring(told["junit.xml"])
+
+
+@pytest.mark.parametrize("name", hostile.NASTY)
+def test_the_one_gate_takes_out_what_escaping_does_not_mend(name):
+    text = hostile.NASTY[name]
+    for once in (lines(text, 4000), plain(text, 80), plain("a" + text + "b", 80)):
+        assert shown(once) and once.encode().decode() == once
+        assert lines(once, 4000) == once
+    assert len(plain(text * 100, 80)) <= 80
+
+
+def test_what_fails_while_one_result_is_told_is_a_note_of_that_student(tmp_path, monkeypatch):
+    monkeypatch.setattr(feedback, "page", lambda _: "\ud800")
+    (tmp_path / "b1.json").write_bytes(results.to_json(result()))
+    done = classroom.write_feedback(tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json"))
+    assert done.result and done.why.startswith("its feedback could not be written: UnicodeEncodeError")
+    (tmp_path / "b1.json").write_text("half a res")
+    done = classroom.write_feedback(tmp_path, Done(Piece("b1", tmp_path, "key"), tmp_path / "b1.json"))
+    assert "its feedback could not be written" in done.why
+
+
+def test_values_outside_of_arrays_are_counted_on_both_sides():
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        with pytest.raises(channel.Refused, match="more than 16384 values outside of arrays"):
+            channel.send(ours, "answer", [0] * 20_000)
+        channel.send(ours, "answer", [0] * 16_000)
+        assert len(channel.receive(theirs)[2]) == 16_000

@@ -1,0 +1,141 @@
+"""Files that are hard to read, or no files at all: each costs a few seconds at most, and is told in words."""
+
+import codecs
+import json
+import os
+import re
+import resource
+import zipfile
+from pathlib import Path
+
+import hostile
+import pytest
+from hats import GOOD
+from traps import TRAPS
+
+from hdrlab.course import submission
+from hdrlab.course.classroom import handins
+from hdrlab.course.classroom.roster import Roster, Student
+
+LOST = {  # what can not be read; of the others the right function at the end is found
+    *("empty dictionaries", "deep lists", "deep dictionaries", "a long number"),
+    *("many cells that are no Python", "sheets that are no lists", "a cell's source that is a number"),
+    *("names of cells", "NUL", "an unknown coding", "a coding that is slow", "UTF-16 cut short"),
+    *("brackets in brackets", "signs in a row", "too much code", "a task that is too long", "a long sum"),
+    "a long chain of attributes",
+}
+HAT = re.compile(r"import numpy as np\n.*", re.DOTALL)
+
+
+def spent():
+    """Return what the processes that this one has waited for have used of a processor, in seconds."""
+    told = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return told.ru_utime + told.ru_stime
+
+
+@pytest.mark.parametrize("name", hostile.FILES)
+def test_a_file_that_is_hard_to_read_costs_three_seconds_at_most_and_is_told(name, tmp_path):
+    ending, made = hostile.FILES[name]
+    file = tmp_path / f"hat{ending}"
+    file.write_bytes(made())
+    before = spent()
+    found = submission.read(file, "hw2", ["hat"])
+    assert spent() - before < submission.SECONDS + 1.5
+    assert all(one.isprintable() and len(one) <= 300 for one in found.problems)
+    assert len(found.problems) <= submission.TOLD + 1
+    assert found.sources or found.problems
+    assert not (name in LOST and found.sources)
+    if found.sources:  # the right function at the end, whatever stands before it
+        scope = {}
+        exec(HAT.search(found.sources["hat"])[0], scope)
+        assert scope["hat"](3).tolist() == [0, 2, 0]
+
+
+RIGHT = {  # an honest file, as its author's editor has saved it
+    "a byte order mark": (".py", codecs.BOM_UTF8 + GOOD.encode()),
+    "a byte order mark, notebook": (".ipynb", codecs.BOM_UTF8 + hostile.notebook(GOOD)),
+    "UTF-16": (".py", GOOD.encode("utf-16")),
+    "UTF-16, notebook": (".ipynb", hostile.notebook(GOOD).decode().encode("utf-16")),
+    "Latin-1 with its coding": (
+        ".py",
+        ("# -*- coding: latin-1 -*-\n# für Müller\n" + GOOD).encode("latin-1"),
+    ),
+    "version 3": (
+        ".ipynb",
+        json.dumps(
+            {"worksheets": [{"cells": [{"cell_type": "code", "input": [GOOD]}]}], "nbformat": 3}
+        ).encode(),
+    ),
+    "all of numpy": (
+        ".py",
+        b"from numpy import *\ndef hat(n=256):\n    return n - 1 - abs(2 * arange(n) - n + 1)\n",
+    ),
+    "pictures that are not there": (".py", b"from pylab import *\n" + GOOD.encode()),
+    "capitals": (".IPYNB", hostile.notebook(GOOD)),
+    "lines of a Macintosh": (".py", GOOD.replace("\n", "\r").encode()),
+}
+
+
+@pytest.mark.parametrize("name", RIGHT)
+def test_an_honest_file_is_read_as_its_author_meant_it(name, tmp_path):
+    ending, data = RIGHT[name]
+    (tmp_path / f"hw2{ending}").write_bytes(data)
+    found = submission.tasks_of(tmp_path / f"hw2{ending}", ["hat"])
+    scope = {}
+    exec(found.sources["hat"], scope)
+    assert scope["hat"](3).tolist() == [0, 2, 0] and not found.problems
+
+
+def test_an_archive_is_read_within_the_same_limits(tmp_path):
+    ending, made = hostile.FILES["blank lines"]
+    with zipfile.ZipFile(tmp_path / "b1.zip", "w") as archive:
+        archive.writestr("hw2.py", made())
+    assert set(submission.read(tmp_path / "b1.zip", "hw2", ["hat"]).sources) == {"hat"}
+    (problem,) = submission.read(TRAPS["a bomb in a tar.bz2"](tmp_path / "b2.tar"), "hw2", ["hat"]).problems
+    assert problem.startswith("The archive is refused: ")
+
+
+def test_a_reader_that_is_killed_from_outside_says_nothing_of_the_file(tmp_path, monkeypatch):
+    monkeypatch.setattr(submission, "_read", _killed)
+    (tmp_path / "hw2.py").write_text(GOOD)
+    with pytest.raises(ValueError, match="could not be read: its process was ended"):
+        submission.read(tmp_path / "hw2.py", "hw2", ["hat"])
+
+
+def _killed(order):
+    os.kill(os.getpid(), 9)
+
+
+ROSTER = Roster((Student("b1", "Ada", "b1"), Student("b2", "Bo", "b2")))
+
+
+@pytest.mark.parametrize("name", hostile.ODD)
+def test_what_is_no_file_to_grade_is_told_and_nobody_else_is_harmed(name, tmp_path):
+    ending, made = hostile.ODD[name]
+    made(tmp_path / f"b1_hw2{ending}")
+    (tmp_path / "b2_hw2.py").write_text(GOOD)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_utime
+    found = handins.find(tmp_path, ROSTER)
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_utime - before < 1
+    assert "b2" in found.handins and all(note.isprintable() and len(note) < 250 for note in found.notes)
+    if name in ("an empty file", "a notebook of 60 MB"):
+        read = submission.tasks_of(found.handins["b1"].path, ["hat"])
+        assert "is empty" in read.problems[0] or "has more than 50 MB" in read.problems[0]
+    else:
+        assert "b1" not in found.handins and found.refused["b1"] in found.notes
+
+
+def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
+    (tmp_path / "b1_hw2.py").write_text(GOOD)
+    os.utime(tmp_path / "b1_hw2.py", (1, 1))
+    hostile.sparse(tmp_path / "b1_later.ipynb")
+    found = handins.find(tmp_path, ROSTER)
+    assert found.handins["b1"].path.name == "b1_hw2.py"
+    assert "b1_later.ipynb: expected at most 1024 MB, got 204800" in found.notes
+
+
+def test_a_time_beyond_the_year_9999_is_told(tmp_path, monkeypatch):
+    (tmp_path / "b1_hw2.py").write_text(GOOD)
+    real = Path.lstat(tmp_path / "b1_hw2.py")
+    monkeypatch.setattr(Path, "lstat", lambda path: os.stat_result(real[:7] + (0, 1 << 38, 0)))
+    assert "before the year 10000" in handins.find(tmp_path, ROSTER).refused["b1"]
