@@ -116,13 +116,13 @@ def grade(
 
         options = classroom.Options(**of_class)
         course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
+        with temporary_folder():
+            classroom.grade_folder(submission, out, course, options)
         if secret_file is None:
             click.echo(
                 "note: for practice: without --secret-file the inputs are public, for credit they are not",
                 err=True,
             )
-        with temporary_folder():
-            classroom.grade_folder(submission, out, course, options)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))

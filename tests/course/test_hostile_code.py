@@ -113,7 +113,7 @@ def test_a_function_whose_process_is_killed_from_outside_is_told_from_one_that_e
         subject._running.wait()
         subject._running._launched.process.kill()  # as a system that is out of memory does
         subject._running._launched.process.wait()
-        subject._running.check = _silent(subject._running)
+        subject._running.check, subject._running._busy = _silent(subject._running), True
         with pytest.raises(NoAnswer) as raised:
             subject.hat(8)
         assert raised.value.kind == "killed"

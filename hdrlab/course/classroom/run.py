@@ -136,10 +136,7 @@ def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Condit
     checks = [folder / f"test_{task.id}.py" for folder in folders for task in homework.tasks]
     files = grading.specification([check for check in checks if check.is_file()])
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
-    return [
-        Piece(team, one.path, journal.key(one.digest, files, asked), one.refused)
-        for team, one in handins.items()
-    ]
+    return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
 
 
 def select_handins(
