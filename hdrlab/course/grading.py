@@ -198,7 +198,7 @@ def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
     """Yield each promise: it holds where it holds for all of its cases.
 
     A promise about shape, identity or invariance, which a constant may keep, names the promise about the
-    substance that it `needs`: without that one it earns nothing.
+    substance that it `needs`: where that one fails it earns nothing.
     """
     cases: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
     for line in heard:

@@ -4,6 +4,8 @@ import warnings
 
 import numpy as np
 
+from hdrlab.capture.responses import Response, bisect, film
+
 
 def scene(shape=(96, 128), seed=0):
     """Return a luminance of about five decades: soft light, a bright window, fine texture."""
@@ -68,6 +70,17 @@ def shrugs_off_a_hot_pixel(tonemap):
         assert abs(np.median(tonemap(hot_pixel(L))) - np.median(tonemap(L))) < 0.02
 
 
+def shows_the_scene(tonemap):
+    """Half the pixels are neither black nor white, and regions that differ in light differ in the picture."""
+    L = scene()
+    Ld = np.clip(tonemap(L), 0, 1)
+    assert np.mean((Ld > 0.01) & (Ld < 0.99)) >= 0.5, "more than half of the picture is black or white"
+    means = [A.reshape(6, 16, 8, 16).mean(axis=(1, 3)).ravel() for A in (np.log(L), Ld)]
+    assert np.ptp(means[1]) > 0.05, "all regions of the picture are alike"
+    ranks = [np.argsort(np.argsort(m)) for m in means]
+    assert abs(np.corrcoef(ranks)[0, 1]) > 0.5, "the picture has little to do with the scene"
+
+
 def keeps_the_light_the_right_way_up(tonemap):
     """Brighter regions come out brighter: the ranks of coarse averages hardly change."""
     L = scene()
@@ -81,6 +94,19 @@ def exposure(tonemap):
     for L in (scene(), RADIANCES["zeros among it"]):
         for factor, atol in ((2.0**-20, 1e-5), (2.0**20, 1e-5), (3.7e-6, 2e-4), (5.1e7, 2e-4)):
             assert np.allclose(tonemap(L * np.float32(factor)), tonemap(L), atol=atol), factor
+
+
+def drawn_response(rng):
+    """Return the response of a camera that nobody has seen, of a gamma and a film curve, mixed.
+
+    f(X) = (1 - s) X^(1 / gamma) + s film(X; a, t), with gamma, shoulder a, toe t and share s drawn.
+    """
+    gamma, a, toe, s = rng.uniform((1.4, 0.5, 1.05, 0.2), (2.4, 1.2, 1.4, 0.42))
+
+    def f(X):
+        return (1 - s) * X ** (1 / gamma) + s * film(X, a=a, gamma=toe)
+
+    return Response(f, bisect(f))
 
 
 def curve_error(g, truth):

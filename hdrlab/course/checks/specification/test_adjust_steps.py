@@ -18,8 +18,14 @@ def drawn(rng, bins=50):
 def asked(subject, h, db, D, **knobs):
     """Return h after each trim."""
     came = states(subject.adjust_steps(h, db, D, **knobs))
-    found = [one[0] if isinstance(one, tuple | list) else one for one in came]
-    return [finite(one, h.shape, what="h").astype(float) for one in found]
+    each = [one[0] if isinstance(one, tuple | list) else one for one in came]
+    found = [finite(one, h.shape, what="h").astype(float) for one in each]
+    low = h < 10  # far below every ceiling
+    if not np.all(found[-1][low] >= 0.9 * h[low]):
+        raise Different(
+            "h: expected bins below the ceiling to stay, got less", expected=h, came=found[-1], kind="curve"
+        )
+    return found
 
 
 @pytest.mark.points(4)

@@ -38,7 +38,7 @@ def drawn(rng, least, most):
     )
 
 
-@pytest.mark.points(1)
+@pytest.mark.points(1, needs="test_photographs_a_pixel_apart_are_told_apart")
 def test_identical_photographs_stay_where_they_are(subject, rng):
     """What is there to be moved?
 
@@ -48,6 +48,19 @@ def test_identical_photographs_stay_where_they_are(subject, rng):
     """
     images = photographs(rng, scene(rng), [(0, 0)], [1])
     same(subject.align(np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
+
+
+@pytest.mark.points(1)
+def test_photographs_a_pixel_apart_are_told_apart(subject, rng):
+    """Is anything found at all, whatever its sign?
+
+    At the finest level an offset is at most a pixel either way.
+
+    Of the nine candidates, the one with the fewest differing pixels is the offset.
+    """
+    images = photographs(rng, scene(rng), [(0, 0), drawn(rng, 1, 1)], (1, 1))
+    came = finite(subject.align(images), (2, 2), what="the offsets").astype(float)
+    same(np.abs(came[1] - came[0]), [1, 1], 0, what="the offset's size in y and in x")
 
 
 @pytest.mark.points(6)
@@ -65,7 +78,7 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
         same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(4, needs="test_photographs_a_pixel_apart_are_told_apart")
 def test_in_a_tie_nothing_moves(subject, rng):
     """Which candidate wins where all nine are equally good?
 

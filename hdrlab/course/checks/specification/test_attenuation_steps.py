@@ -41,7 +41,7 @@ def test_there_is_a_state_for_each_level(subject, rng):
     same(rows, [32, 64, 128], 0, what="rows of phi, state by state")
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(3, needs="test_phi_of_the_picture_gathers_all_levels")
 def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
     """On a ramp every slope is the mean slope.
 

@@ -25,7 +25,7 @@ def test_a_scene_of_a_stop_takes_one_photograph(subject, rng):
     same(subject.count(0.4, usable, overlap), 1, 0, what="photographs for 0.4 stops")
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(3, needs="test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many")
 def test_a_scene_that_one_photograph_holds_takes_one(subject, rng):
     """What does one photograph hold, if the scene has no more stops than that?
 

@@ -21,7 +21,7 @@ def test_a_scene_has_one_average(subject, rng):
     finite(subject.log_average(drawn(rng) + np.float32(1)), (), what="Lav")
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(6)
 def test_it_is_the_geometric_mean(subject, rng):
     """One lamp must not decide how bright the whole scene is.
 
@@ -39,7 +39,7 @@ def test_it_is_the_geometric_mean(subject, rng):
     )
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_it_is_the_geometric_mean")
 def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
     """What is log 0?
 
@@ -54,7 +54,7 @@ def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
         raise Different(f"Lav: expected above 0, and less than without the black pixels, got {came:.4g}")
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_it_is_the_geometric_mean")
 def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
     """Ten times the light: which number should come?
 

@@ -6,6 +6,7 @@ from scipy.ndimage import gaussian_filter1d
 
 from hdrlab.capture import responses
 from hdrlab.core import weights
+from hdrlab.course.checks import laws
 from hdrlab.course.checks.compare import Different, finite, same, states
 from hdrlab.response import robertson
 
@@ -17,7 +18,7 @@ def samples(rng, response, N=900, P=6):
     """Return Z (N, P) and t (P,) of a camera, frames a stop apart, without noise but for the rounding."""
     E = 2.0 ** (10 * (np.arange(N) + rng.random(N)) / N - 5)  # even over ten stops
     t = 2.0 ** (np.arange(P) - P // 2)
-    M = responses.RESPONSES[response].f(np.clip(0.2 * E[:, None] * t, 0, 1))
+    M = response.f(np.clip(0.2 * E[:, None] * t, 0, 1))
     return np.clip(np.round(255 * M), 0, 255).astype(int), t
 
 
@@ -47,7 +48,7 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
 
     Let them go on until f^-1 hardly changes; about thirty are enough.
     """
-    for response in ("gamma", "film"):
+    for response in (laws.drawn_response(rng), laws.drawn_response(rng)):
         Z, t = samples(rng, response)
         f = asked(subject, Z, t, max_iterations=25)[-1]
         truth = np.exp(responses.true_g(response))
@@ -74,7 +75,7 @@ def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     )
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
 def test_the_truth_is_where_the_iterations_rest(subject, rng):
     """A linear camera is the initial guess: what should the iterations change?
 
@@ -90,7 +91,7 @@ def test_the_truth_is_where_the_iterations_rest(subject, rng):
         same(f, truth, 2e-3, what="f^-1 of a linear camera", kind="curve", where=~np.isnan(truth))
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
 def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng):
     """Some levels no pixel has. What is their mean?
 
@@ -98,7 +99,7 @@ def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng)
 
     Fill empty levels from their neighbours: np.interp over those that have pixels.
     """
-    Z, t = samples(rng, "gamma")
+    Z, t = samples(rng, laws.drawn_response(rng))
     whole, even = (asked(subject, z, t, max_iterations=12)[-1] for z in (Z, Z // 2 * 2))
     same_curve(even, whole, 0.03)
 
@@ -111,14 +112,14 @@ def test_each_iteration_is_a_state_and_moves_the_curve_less(subject, rng):
 
     The changes from one to the next become smaller.
     """
-    Z, t = samples(rng, "gamma")
+    Z, t = samples(rng, laws.drawn_response(rng))
     found = asked(subject, Z, t, max_iterations=8, tolerance=0.0)
     moved = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(found, found[1:], strict=False)]
     if len(found) < 8 or not 0 < moved[-1] < 0.5 * moved[0]:
         raise Different(f"expected 9 states that change less and less, got {len(found)} that move by {moved}")
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_the_iterations_end_at_the_curve_of_the_camera")
 def test_the_unit_of_time_does_not_matter(subject, rng):
     """Seconds or milliseconds: who could tell from the photographs?
 
@@ -126,6 +127,6 @@ def test_the_unit_of_time_does_not_matter(subject, rng):
 
     Divide f^-1 by its value at 128 at the end of every iteration.
     """
-    Z, t = samples(rng, "film")
+    Z, t = samples(rng, laws.drawn_response(rng))
     one, other = (asked(subject, Z, factor * t, max_iterations=6)[-1] for factor in (1.0, 1000.0))
     same_curve(other, one, 0.005)

@@ -30,7 +30,7 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
         raise Different(f"s: expected scales above 0, got {float(s.min()):.3g}", came=s, kind="image")
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(2)
 def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
     """An even wall of luminance L: how bright should it be shown?
 
@@ -45,7 +45,7 @@ def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
         same(s * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(6)
 def test_it_is_one_over_k_times_the_blur(subject, rng):
     """Blur first, and divide then: the mean of 1 / L is another thing.
 
@@ -59,7 +59,7 @@ def test_it_is_one_over_k_times_the_blur(subject, rng):
     same((s / truth)[INNER], np.ones(truth[INNER].shape), 0.08, what="s k blur(L)", picture=True)
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(2, needs="test_it_is_one_over_k_times_the_blur")
 def test_the_unit_of_luminance_cancels_in_the_picture(subject, rng):
     """Ten times the light in the whole scene: what becomes of s, and what of s L?
 

@@ -67,7 +67,7 @@ def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
         same(one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure)
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(1)
 def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
     """What does an even wall say at any width?
 

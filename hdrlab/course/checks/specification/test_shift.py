@@ -55,7 +55,7 @@ def test_colour_moves_like_gray(subject, rng):
     same(subject.shift(images, offsets), np.stack([common] * 3), 0, what="the moved images")
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(1)
 def test_images_that_need_not_move_stay_whole(subject, rng):
     """What is to be done where all offsets are the same?
 

@@ -43,7 +43,7 @@ def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
     same(m / 256 * 2.0 ** (e - 128) / brightest, E / brightest, 1 / 127, what="E per its brightest channel")
 
 
-@pytest.mark.points(3)
+@pytest.mark.points(3, needs="test_decoding_gives_the_radiance_back_to_a_part_in_128")
 def test_the_largest_mantissa_is_128_or_more(subject, rng):
     """How many of the mantissa's 256 values do you use?
 

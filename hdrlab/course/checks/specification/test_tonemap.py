@@ -16,7 +16,18 @@ def asked(subject):
     return tonemap
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(2)
+def test_it_shows_the_scene_within_what_a_display_has(subject):
+    """Look at the picture: can more than half of the scene be seen?
+
+    A display has two decades at most; what is below or above them is black or white.
+
+    Half the pixels, or more, belong between 0.01 and 0.99, and what differs in light differs in the picture.
+    """
+    laws.shows_the_scene(asked(subject))
+
+
+@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
 def test_it_stays_in_range_whatever_the_scene(subject):
     """Try your operator on black, on one lamp in the dark, on a single pixel.
 
@@ -27,7 +38,7 @@ def test_it_stays_in_range_whatever_the_scene(subject):
     laws.stays_in_range(asked(subject))
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_it_shows_the_scene_within_what_a_display_has")
 def test_it_answers_the_same_twice(subject):
     """Does your operator remember anything?
 
@@ -38,7 +49,7 @@ def test_it_answers_the_same_twice(subject):
     laws.answers_the_same_twice(asked(subject))
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
 def test_it_shrugs_off_a_hot_pixel(subject):
     """One pixel of a million times the light: what happens to all the others?
 
@@ -49,7 +60,7 @@ def test_it_shrugs_off_a_hot_pixel(subject):
     laws.shrugs_off_a_hot_pixel(asked(subject))
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
 def test_it_keeps_the_light_the_right_way_up(subject):
     """Is what was bright still bright?
 
@@ -60,7 +71,7 @@ def test_it_keeps_the_light_the_right_way_up(subject):
     laws.keeps_the_light_the_right_way_up(asked(subject))
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
 def test_the_unit_of_luminance_cancels(subject):
     """Radiance has no unit that is sacred: watts or candelas show the same scene.
 
@@ -71,7 +82,7 @@ def test_the_unit_of_luminance_cancels(subject):
     laws.exposure(asked(subject))
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_it_shows_the_scene_within_what_a_display_has")
 def test_it_takes_any_memory_layout(subject):
     """Which orders in memory does your code count on?
 

@@ -1,0 +1,150 @@
+"""Marks without the work: constants, the input given back, curves learnt by heart earn next to nothing."""
+
+from functools import cache
+
+import numpy as np
+import pytest
+import scoring
+
+from hdrlab.capture import responses
+from hdrlab.course import grading, plan
+from hdrlab.course.checks import inprocess
+from hdrlab.course.grading import Conditions
+
+PLAN = plan.read()
+IDS = [task.id for homework in PLAN.homeworks.values() for task in homework.tasks]
+pytestmark = pytest.mark.filterwarnings("ignore")  # a constant may well divide by 0
+
+
+def filled(answer, value):
+    """Return an answer of the right form in which every number is another one; bytes have no form."""
+    if isinstance(answer, tuple | list):
+        return type(answer)(filled(one, value) for one in answer)
+    return b"" if isinstance(answer, bytes) else value(np.asarray(answer))
+
+
+def of_the_right_form(value):
+    def cheat(task):
+        right = plan.function(PLAN.task(task))
+        return lambda *given, **named: filled(inprocess.plain(right(*given, **named)), value)
+
+    return cheat
+
+
+CHEATS = {
+    "zeros": of_the_right_form(np.zeros_like),
+    "ones": of_the_right_form(np.ones_like),
+    "halves": of_the_right_form(
+        lambda x: np.full(x.shape, 0.5 if x.dtype.kind == "f" else 128).astype(x.dtype)
+    ),
+    "a ramp": of_the_right_form(lambda x: np.linspace(0, 1, x.size).reshape(x.shape)),
+    "the input": lambda task: lambda first, *given, **named: first,
+    "the input and nothing": lambda task: lambda first, *given, **named: (first, np.zeros_like(first)),
+    "the input as a state": lambda task: lambda first, *given, **named: [first] * 3,
+}
+
+
+@pytest.mark.parametrize("task", IDS)
+@pytest.mark.parametrize("cheat", CHEATS)
+def test_an_answer_without_the_work_earns_a_tenth_at_most(task, cheat):
+    subject = inprocess.Subject({task: CHEATS[cheat](task)})
+    assert scoring.score(task, subject, plan.seed("secret", "ada", task))[0] <= 0.1
+
+
+@pytest.mark.parametrize(
+    ("task", "cheat", "most"),
+    [
+        ("layers", lambda lL, **named: (lL / 2, lL - lL / 2), 0.2),
+        ("layers", lambda lL, **named: (lL - lL.mean(), lL * 0 + lL.mean()), 0.0),
+        ("scale", lambda L, headroom, sigma: 1 / (headroom * L), 0.3),
+        ("scale", lambda L, headroom, sigma: 1 / (headroom * np.full_like(L, L.mean())), 0.3),
+        ("align", lambda images, bits=6: np.zeros((len(images), 2)), 0.0),
+        ("align", lambda images, bits=6: np.cumsum(np.ones((len(images), 2)), axis=0), 0.1),
+        ("tonemap", lambda L: np.full(np.shape(L), 0.5, np.float32), 0.0),
+        ("adjust_steps", lambda h, db, D, **named: [np.minimum(h, 1.0)], 0.0),
+        ("count", lambda *given, **named: 1, 0.1),
+    ],
+)
+def test_the_form_of_an_answer_without_its_substance_earns_little(task, cheat, most):
+    for student in ("ada", "grace"):
+        assert (
+            scoring.score(task, inprocess.Subject({task: cheat}), plan.seed("secret", student, task))[0]
+            <= most
+        )
+
+
+# hw2 by heart: of the public curves, the one that fits the data best
+
+
+@cache
+def known():
+    return np.stack([responses.true_g(name) for name in responses.RESPONSES])
+
+
+def best(Z, B):
+    """Return the public g that contradicts the samples Z (N, P) least."""
+    seen = np.where((Z > 20) & (Z < 235), 1.0, np.nan)
+    each = [np.nanmean(np.nanstd((g[Z] - B) * seen, axis=1)) for g in known()]
+    return known()[int(np.argmin(each))]
+
+
+def gsolve(Z, B, smoothness, w):
+    Z, n = np.asarray(Z), len(w)
+    g = best(Z * (256 // n), B)[:: 256 // n]
+    mass = w[Z] + 1e-9
+    return g, (mass * (g[Z] - B)).sum(axis=1) / mass.sum(axis=1)
+
+
+def recover(images, times, **named):
+    Z = images.reshape(len(images), -1, *images.shape[3:])
+    if Z.ndim == 3:
+        return np.stack([best(Z[..., c].T, np.log(times)) for c in range(Z.shape[2])], axis=1)
+    return best(Z.T, np.log(times))
+
+
+def recover_steps(Z, times, w=None, max_iterations=30, **named):
+    f = np.exp(best(Z, np.log(times)))
+    return [f * (1 + 0.5**k * np.linspace(0, 0.1, 256)) for k in range(max_iterations + 1)]
+
+
+@pytest.mark.parametrize("student", ["ada", "grace", "hedy", "b01", "b02"])
+def test_curves_that_are_learnt_by_heart_earn_little(student):
+    earned = {}
+    for cheat in (gsolve, recover, recover_steps):
+        task = PLAN.task(cheat.__name__)
+        subject = inprocess.Subject({task.id: cheat})
+        earned[task.id] = (
+            task.points * scoring.score(task.id, subject, plan.seed("secret", student, task.id))[0]
+        )
+    assert sum(earned.values()) <= 15, earned  # of 70
+
+
+@pytest.mark.parametrize("task", ["gsolve", "recover", "recover_steps"])
+def test_the_library_finds_the_curve_of_any_students_camera(task):
+    for student in range(6):
+        share, said = scoring.score(task, inprocess.library(), plan.seed("secret", f"b{student}", task))
+        assert share == 1, (student, said)
+
+
+def test_a_table_of_public_inputs_is_not_for_credit(tmp_path):
+    homework = PLAN.homeworks["hw2"]._replace(tasks=(PLAN.task("hat"),))
+    for student, secret in (("", ""), ("ada", ""), ("", "salt")):
+        assert grading._seed_id(homework, Conditions("strict", student, secret)) == ""
+    assert grading._seed_id(homework, Conditions("strict", "ada", "salt"))
+    (tmp_path / "hw2.py").write_text("def hat(n):\n    return [0.0] * n\n")
+    result = grading.grade(tmp_path / "hw2.py", homework, Conditions("practice", "ada", draw=False))
+    strict = result._replace(tier="strict")
+    assert not strict.for_credit and "without a secret" in strict.why_practice
+
+
+def test_a_promise_earns_nothing_where_the_one_it_needs_fails(tmp_path):
+    homework = PLAN.homeworks["hw4"]._replace(tasks=(PLAN.task("scale"),))
+    (tmp_path / "hw4.py").write_text(
+        "def scale(L, headroom=8.0, sigma=1.0):\n    return 1 / (headroom * L)\n"
+    )
+    result = grading.grade(tmp_path / "hw4.py", homework, Conditions("practice", "ada", "salt", draw=False))
+    of = {one.name: one for one in result.checks}
+    unit = of["test_the_unit_of_luminance_cancels_in_the_picture"]
+    assert unit.outcome == "holds" and unit.points == 0 and "1" not in unit.message
+    assert "where this holds, too: It is one over k times the blur" in unit.message
+    assert 0 < result.score < 3
