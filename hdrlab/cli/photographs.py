@@ -44,9 +44,10 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @click.option("--merge", type=click.Choice(["log", "likelihood", "mean", "shot"]), default="log")
 @click.option(
     "--ghosts",
-    type=click.Choice(["none", "regions", "reference"]),
+    type=click.Choice(["none", "auto", "regions", "reference"]),
     default="none",
-    help="What moved: as it is; each region by its best exposure; all of them by the middle photograph.",
+    help="What moved: as it is; each region by its best exposure, if motion is found (auto) or always; "
+    "all of them by the middle photograph.",
 )
 @click.option(
     "--flare",

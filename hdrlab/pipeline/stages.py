@@ -28,7 +28,7 @@ from hdrlab.radiance.merge import METHODS, Merged
 
 STAGES = ("align", "times", "response", "merge", "compare")
 TIMES = ("correct", "stated", "estimate")
-GHOSTS = ("none", "regions", "reference")
+GHOSTS = ("none", "auto", "regions", "reference")
 FLARE = ("none", "glare")
 WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "hat": lambda g: weights.hat(len(g)),
@@ -67,9 +67,10 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         "correct" corrects rough times by the pixels, where held-out pixels prove it, see
         `diagnostics.exposure_times`; and times that are all the same give way to `relative_times`. "stated"
         leaves them as they are. "estimate" also replaces times that fall while the photographs get brighter.
-    ghosts : {"none", "regions", "reference"}
+    ghosts : {"none", "auto", "regions", "reference"}
         What becomes of what moved: it stays half transparent; or the map shows it as in a reference frame,
         the best exposure of each region, or the middle photograph in all: see `radiance.deghosting.ghosts`.
+        "auto" is "regions" where it finds motion, and leaves a map that contradicts itself nearly everywhere.
     flare : {"none", "glare"}
         Whether veiling glare, the light that the lens scattered, is removed: see `radiance.flare`.
 
@@ -163,6 +164,8 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
         merge=merge,
     )
     notes = (*state.notes, moving.note(found, names))
+    if way == "auto" and 100 * np.mean(found.labels > 0) >= moving.WIDESPREAD:
+        return state._replace(stage="ghosts", notes=(*notes, "the map stays as it is (--ghosts regions)"))
     return state._replace(stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes)
 
 

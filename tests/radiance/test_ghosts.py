@@ -148,6 +148,22 @@ def test_in_the_region_the_error_is_ten_times_smaller_and_outside_nothing_change
         assert np.array_equal(found.quality[outside], plain.quality[outside]) and found.used[:, outside].all()
 
 
+def test_who_stands_in_the_only_frame_that_measures_a_bright_place_is_found_and_not_cut_in_two():
+    """Before a bright sky, which the longer frames clip; below it the wall, which all of them measure."""
+    sky = np.where(np.arange(90)[:, None] < 50, 100.0, 2.0) * np.ones((1, 140))
+    ball, times = movers.ball(SHAPE, (50, 70), 15, 8.0, stripes=0), [0.004, 0.03, 0.12, 0.5]
+    images = camera.shoot(sky, times, camera.Camera(response="film"), rng=1).images.copy()
+    seen, _ = movers.compose_moment(np.float32(sky), ball, (0, 0))
+    images[0] = camera.shoot(seen, times, camera.Camera(response="film"), rng=1).images[0]
+    found = ghosts.remove_ghosts(images, times, FILM, W)
+    whole = ball.mask > 0.5
+    assert found.labels.max() == 1 and np.all(found.labels[whole] == 1)
+    upper, lower = (np.median(np.log2(found.E / seen)[whole & half]) for half in (sky > 50, sky < 50))
+    assert abs(upper - lower) < 0.3
+    still = camera.shoot(sky, times, camera.Camera(response="film"), rng=1).images
+    assert ghosts.remove_ghosts(still, times, FILM, W).labels.max() == 0
+
+
 def test_a_reference_leads_in_every_region_and_the_map_shows_its_moment(moving):
     for j in range(5):
         found = found_in(moving.bracket, reference=j)

@@ -16,11 +16,15 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
+from scipy.ndimage import maximum_filter
 
 from hdrlab.core.arrays import as_table
-from hdrlab.core.types import F32, Array
+from hdrlab.core.types import F32, Array, Mask
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import ROWS
+
+# ln E that a measurement may lie below the bound of a clipped frame
+FAR = 0.7
 
 
 class Deviation(NamedTuple):
@@ -76,6 +80,21 @@ def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:
         mean, square, s2 = sums[0].imag / total, sums[1].real / total, sums[1].imag / total
         out[:, rows] = [one.mean(axis=-1) for one in (np.maximum(square - mean**2, 0), s2, spans / total)]
     return Deviation(*out)
+
+
+def find_clipped_elsewhere(taken: Calibrated, E: F32) -> Mask:
+    """Return where the plain map E (H, W, C) is far darker than a frame that clips shows it to be, (H, W).
+
+    So it is where somebody dark stood before a bright place in the only frame that measures it, and v is 0.
+    An edge that is off by a pixel does not count, and neither does the light around a lamp: see FAR.
+    """
+    brightest = maximum_filter(E, (3, 3, 1))
+    out = np.zeros(E.shape[:2], bool)
+    for j, Z in enumerate(taken.images):
+        bound = np.exp(taken.x[j, :, taken.top] - FAR).astype(np.float32)
+        darker = ((Z >= taken.top) & (brightest < bound)).all(axis=-1)
+        out |= darker if taken.valid is None else darker & taken.valid[j]
+    return out
 
 
 def moment_tables(taken: Calibrated, w: ArrayLike) -> Array:

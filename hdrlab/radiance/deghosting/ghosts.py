@@ -28,7 +28,12 @@ from hdrlab.core.arrays import as_mask, as_stack, levels
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, Flags, Indices, Labels, Mask
 from hdrlab.radiance.deghosting import reference, regions
-from hdrlab.radiance.deghosting.deviation import Deviation, measure_deviation, score_contradiction
+from hdrlab.radiance.deghosting.deviation import (
+    Deviation,
+    find_clipped_elsewhere,
+    measure_deviation,
+    score_contradiction,
+)
 from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
 
@@ -207,13 +212,14 @@ def remove_ghosts(
     merged = merged or merge(stack, times, g, w, valid=mask)
     E, quality = merged.E.copy(), merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
+    plain = merged.E.reshape(taken.images.shape[1:])
     deviation = measure_deviation(taken, w)
+    deviation.v[find_clipped_elsewhere(taken, plain)] = np.inf  # no edge and no noise explains that
     score, moved = detect_motion(deviation, tau=settings.tau, edge=settings.edge, margin=margin)
 
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
 
-    plain = merged.E.reshape(taken.images.shape[1:])
     labels, chosen = last(region_steps(taken, plain, moved, margin, choose=choose))
     alpha = regions.feather(labels, margin // 2)
     used = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
