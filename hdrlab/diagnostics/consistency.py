@@ -66,17 +66,22 @@ def measure_level_exposures(
     if mask is not None:
         whole &= mask[:, few, few].reshape(len(stack), -1)
     medians = np.empty((len(Z), Z.shape[-1], 256))
-    for j, c in np.ndindex(*medians.shape[:2]):
-        medians[j, c] = _median_per_level(Z[j, whole[j], c], lE[whole[j], c]) + np.log2(times[j])
+    for c in range(channels):
+        rising = np.argsort(lE[:, c])[np.isinf(lE[:, c]).sum() :]  # once for all frames
+        for j, levels in enumerate(Z[..., c]):
+            own = rising[whole[j].take(rising)]
+            medians[j, c] = _median_per_level(levels.take(own), lE[:, c].take(own)) + np.log2(times[j])
     return medians
 
 
 def _median_per_level(Z: Flags, lE: F32) -> F64:
-    """Return the median of lE over the pixels of each level, (256,)."""
-    Z, lE = Z[np.isfinite(lE)], lE[np.isfinite(lE)]
-    order = np.argsort(Z, kind="stable")
-    groups = np.split(lE[order], np.cumsum(np.bincount(Z, minlength=256))[:-1])
-    return np.array([np.median(group) if len(group) >= FEWEST else np.nan for group in groups])
+    """Return the median of lE, which rises, over the pixels of each level, (256,)."""
+    lE, count = lE[np.argsort(Z, kind="stable")], np.bincount(Z, minlength=256)
+    first, enough = np.cumsum(count) - count, count >= FEWEST
+    low, high = ((first + half)[enough] for half in ((count - 1) // 2, count // 2))
+    medians = np.full(256, np.nan)
+    medians[enough] = (lE[low] + lE[high]) / 2
+    return medians
 
 
 def measure_deviations(medians: F64) -> F64:

@@ -15,7 +15,7 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.types import F64
 from hdrlab.diagnostics.plausibility import validate_response
 from hdrlab.fast import robertson
-from hdrlab.pipeline import catalogue, relative_times
+from hdrlab.pipeline import catalogue, relative_times, response_choice
 from hdrlab.pipeline.assembly import Method
 from hdrlab.response import self_calibration
 
@@ -63,7 +63,7 @@ def resolve_auto(response: Method, bracket: Bracket) -> Method:
 
 
 def find_response(response: Method, bracket: Bracket) -> Found:
-    """Return the Found response of an aligned bracket; a function is taken as it is, and so is "linear".
+    """Return the Found response of an aligned bracket; "auto" is what held-out pixels choose.
 
     Raises
     ------
@@ -71,10 +71,13 @@ def find_response(response: Method, bracket: Bracket) -> Found:
         For names that no method has, and photographs of which no two see anything well.
     """
     images, times, _, valid, linear = bracket
-    response = resolve_auto(response, bracket)
-    method = find_validated_method(response)
+    if response == "auto" and not linear:
+        method, notes = response_choice.choose_response(bracket)
+        method = partial(_recover, method)
+    else:
+        method, notes = find_validated_method(resolve_auto(response, bracket)), ()
     try:
-        return Found(method(images, times, valid=valid))
+        return Found(method(images, times, valid=valid), notes)
     except ValueError as error:
         if callable(response) or not np.isfinite(relative_times.compare_order(bracket)).any():
             raise

@@ -56,7 +56,7 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         out of the histograms. "auto" takes whichever lays the photographs on each other best, see
         `pipeline.alignment`.
     response : str or function
-        A method of `response`, "auto" (linear where the bracket is, else Debevec), or your own
+        A method of `response`, "auto" (linear where the bracket is, else see `response_choice`), or your own
         `recover(images, times, *, valid) -> g`.
     weight : {"gaussian", "hat", "flat", "snr"}
         How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the frames of

@@ -73,7 +73,8 @@ def test_times_in_the_wrong_order_are_refused_or_estimated_where_that_is_asked_f
 def test_true_times_stay_byte_for_byte_and_say_nothing(taken):
     found = pipeline.assemble(taken)
     assert found.bracket.times.tobytes() == taken.times.tobytes()
-    assert found.notes == () and found.doubts == () and found.fallback == ""
+    assert not found.doubts and not found.fallback
+    assert all(note.startswith("response: ") for note in found.notes)  # none about times
 
 
 def test_rough_times_are_corrected_unless_they_are_to_stay():

@@ -1,0 +1,121 @@
+"""The default response: held-out pixels choose, and of two that explain them alike, the simpler is taken.
+
+A neutral surface has one level in all channels, and so should have one radiance. Three curves, each recovered
+by itself, disagree where few frames leave them open, and a gray wall gets coloured patches. One curve for all
+channels cannot. Cameras have one, as a rule; scanned film has three. So one curve is taken where it explains
+pixels that it was not recovered from nearly as well as three do, by `consistency.measure_spread`.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core import weights
+from hdrlab.core.arrays import as_mask, as_stack
+from hdrlab.core.bracket import Bracket
+from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
+from hdrlab.core.sampling import by_rank
+from hdrlab.core.types import F64
+from hdrlab.diagnostics import consistency
+from hdrlab.diagnostics.plausibility import validate_response
+from hdrlab.fast import debevec
+from hdrlab.fast.merge import merge_with_quality
+from hdrlab.response import space
+
+Recover = Callable[..., F64]
+# pixels of a frame, on an even grid; every other stripe is held out
+PIXELS, STRIPES = 2**17, 20
+# how much more spread one curve for all channels may leave: a share, and stops
+SLACK, FINEST = 0.05, 0.003
+# levels in a row that smoothness alone connects
+WIDEST_GAP = 20
+# samples that show which levels two frames share
+SAMPLES = 1000
+
+
+def share_curve(method: Recover) -> Recover:
+    """Return a method that recovers one curve from the levels of all channels together."""
+
+    def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
+        stack = as_stack(images)
+        mask, shape = as_mask(valid, stack), stack.shape[3:]
+        shown = None if mask is None else np.repeat(mask, np.prod(shape, dtype=int), axis=2)
+        g = method(stack.reshape(*stack.shape[:2], -1), times, valid=shown)
+        return np.multiply.outer(g, np.ones(shape))
+
+    return recover
+
+
+CANDIDATES: dict[str, Recover] = {  # three curves first, which set the spread to compare with
+    "a curve for each channel by debevec": debevec.recover,
+    "a curve for each channel by space": space.recover,
+    "one curve by space": share_curve(space.recover),
+    "one curve by debevec": share_curve(debevec.recover),
+}
+
+
+def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
+    """Return every other stripe of a bracket, thinned to PIXELS, and those between."""
+    images, _, _, valid, _ = bracket
+    height, width = images.shape[1:3]
+    step = max(1, int(np.sqrt(height * width / PIXELS)))
+    rows = np.arange(0, height, step)
+    odd = rows * STRIPES // height % 2 == 1
+
+    def keep(own: NDArray[np.intp]) -> Bracket:
+        shown = None if valid is None else valid[:, own, ::step]
+        return bracket._replace(images=images[:, own, ::step], valid=shown)
+
+    return keep(rows[~odd]), keep(rows[odd])
+
+
+def find_widest_gap(Z: ArrayLike) -> int:
+    """Return how many levels in a row, of those that samples Z (N, P) show, no sample shows in two frames.
+
+    Examples
+    --------
+    >>> find_widest_gap([[100, 200], [101, 201], [20, 255]])  # 20 stands in one frame alone
+    99
+    """
+    Z = np.asarray(Z)
+    inside = (Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)
+    shared, shown = Z[inside & (inside.sum(axis=1, keepdims=True) > 1)], Z[inside]
+    return (
+        int(np.diff(np.unique(np.r_[shown.min(), shared, shown.max()])).max(initial=1)) if len(shown) else 256
+    )
+
+
+def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
+    """Return the spread in stops that a method's response leaves in held-out pixels; inf if implausible."""
+    images, times, _, shown, _ = fit
+    try:
+        g = validate_response(method(images, times, valid=shown), images, times, valid=shown)
+    except ValueError:
+        return np.inf
+    E = merge_with_quality(held.images, times, g, weights.gaussian(), valid=held.valid).E
+    medians = consistency.measure_level_exposures(held.images, times, E, valid=held.valid)
+    return float(np.nan_to_num(consistency.measure_spread(medians), nan=np.inf))
+
+
+def choose_response(bracket: Bracket) -> tuple[Recover, tuple[str, ...]]:
+    """Return the method for an aligned bracket, and a note on it; Debevec's where nothing can be compared.
+
+    Debevec's curve does not count where smoothness alone connects its levels: a prior settles them.
+    """
+    fit, held = split_stripes(bracket)
+    Z = by_rank(fit.images, SAMPLES, valid=fit.valid).reshape(SAMPLES, len(fit.times), -1)
+    open_levels = any(find_widest_gap(Z[..., c]) > WIDEST_GAP for c in range(Z.shape[-1]))
+    name, enough, spreads = "", np.inf, {}
+    for one, method in CANDIDATES.items():
+        separate = not one.startswith("one")
+        if (open_levels and "debevec" in one) or (separate and np.isfinite(enough)):
+            continue
+        spreads[one] = measure_spread(method, fit, held)
+        if spreads[one] < np.inf and spreads[one] <= enough:
+            name, enough = one, (1 + SLACK) * spreads[one] + FINEST
+            if not separate:
+                break
+    compared = ", ".join(f"{one} {spread:.3f}" for one, spread in spreads.items())
+    said = f"response: {name}, chosen by the spread that each leaves in held-out pixels, in stops: {compared}"
+    return (CANDIDATES[name], (said,)) if name else (debevec.recover, ())

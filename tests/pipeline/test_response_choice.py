@@ -1,0 +1,87 @@
+"""The default response: one curve where held-out pixels allow it, and none that photographs leave open."""
+
+import io
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab import pipeline, scenes
+from hdrlab.capture import camera
+from hdrlab.capture.responses import true_g
+from hdrlab.core.bracket import bracket
+from hdrlab.fast import debevec
+from hdrlab.pipeline import recovery, response_choice
+
+LEVELS = slice(10, 251)
+
+
+def bend(X):
+    """Return the brightness of exposures X in a camera that adds an S-curve to a gamma."""
+    M = X ** (1 / 2.2)
+    return M + 0.9 * (M**2 * (3 - 2 * M) - M)
+
+
+@pytest.fixture(scope="module")
+def three():
+    """Three JPEGs of a chapel, two stops apart."""
+    E = scenes.chapel((180, 270))
+    sensor = camera.Camera(response=bend, full_well=20_000, read_noise=5)
+    taken = camera.shoot(E, camera.times_around(E, 3), sensor, rng=1)
+    files = [io.BytesIO() for _ in taken.images]
+    for file, image in zip(files, taken.images, strict=True):
+        Image.fromarray(image).save(file, "jpeg", quality=90)
+    return taken._replace(images=np.stack([np.asarray(Image.open(file)) for file in files]))
+
+
+def part(g):
+    """Return by what factor the radiances of a gray wall's channels differ at most."""
+    return np.exp(np.ptp(g[LEVELS], axis=1).max())
+
+
+def error(g):
+    """Return the root mean square error of a response in stops, the best unit for each channel."""
+    off = (g - true_g(bend)[:, None])[LEVELS] / np.log(2)
+    return np.sqrt(np.mean((off - off.mean(axis=0)) ** 2))
+
+
+def test_a_gray_wall_in_three_photographs_comes_out_gray(three):
+    separate = debevec.recover(three.images, three.times)
+    found = pipeline.assemble(three, align="none", times="stated")
+    assert part(separate) > 2 and part(found.g) < 1.001
+    assert error(found.g) < min(0.2, error(separate))
+    assert any("response: one curve by" in note for note in found.notes)
+
+
+def test_channels_with_responses_of_their_own_keep_them():
+    E = scenes.room((180, 270))
+    times = camera.times_around(E, 5)
+    taken = [
+        camera.shoot(E[..., c], times, camera.Camera(response=f))
+        for c, f in enumerate(["film", "srgb", "gamma"])
+    ]
+    mixed = bracket(np.stack([one.images for one in taken], axis=-1), times)
+    found = recovery.find_response("auto", mixed)
+    assert "a curve for each channel" in found.notes[0].partition(",")[0]
+    assert np.array_equal(found.g, debevec.recover(mixed.images, mixed.times))
+
+
+def test_levels_that_no_two_frames_share_are_settled_by_the_prior(three):
+    far = bracket(three.images[[0, 2]], three.times[[0, 2]])
+    images = np.where((far.images > 60) & (far.images < 190), 0, far.images)  # nothing connects the middle
+    assert "debevec" not in recovery.find_response("auto", far._replace(images=images)).notes[0]
+
+
+@pytest.mark.parametrize("gray", [False, True])
+def test_a_linear_bracket_has_no_response_to_choose(three, gray):
+    images = three.images[..., 1] if gray else three.images
+    taken = bracket(images, three.times)
+    assert recovery.find_response("auto", taken._replace(linear=True)).notes == ()
+    assert recovery.find_response("auto", taken).g.shape == (256, *images.shape[3:])
+
+
+def test_held_out_stripes_share_no_pixel_with_those_that_make_a_response(three):
+    rows = np.broadcast_to(np.arange(180, dtype=np.uint8)[:, None], (3, 180, 270))
+    fit, held = response_choice.split_stripes(bracket(rows, three.times))
+    assert not set(fit.images.ravel()) & set(held.images.ravel())
+    assert fit.images.shape == held.images.shape == (3, 90, 270)
