@@ -10,7 +10,7 @@ A meter does not know what it looks at. It takes the world for gray, so snow com
 locomotive too; the modes differ in which pixels they ask.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -89,18 +89,6 @@ def _feather(squared: Array, sigma: float) -> F64:
     return _normal(np.exp(-squared / (2 * sigma**2)))
 
 
-def _five(down: Array, right: Array) -> Array:
-    """The centre, and four corners around it: the first matrix meters had these."""
-    corner = 1 + 2 * (down > 0) + (right > 0)
-    return np.where((down / 0.28) ** 2 + (right / 0.28) ** 2 < 1, 0, corner)
-
-
-def _grid(down: Array, right: Array) -> Array:
-    """Five rows of seven."""
-    row, column = np.floor((down + 0.5) * 5), np.floor((right + 0.5) * 7)
-    return (7 * row + column).astype(int)
-
-
 def _honeycomb(down: Array, right: Array) -> Array:
     """Hexagons: each pixel belongs to the nearest of centres in five staggered rows of six and five."""
     rows = np.repeat(np.arange(5), [6, 5, 6, 5, 6])
@@ -109,27 +97,20 @@ def _honeycomb(down: Array, right: Array) -> Array:
     return np.argmin((2 * tall) ** 2 + (3 * wide) ** 2, axis=-1)
 
 
-LAYOUTS: dict[str, Callable[[Array, Array], Array]] = {"five": _five, "grid": _grid, "honeycomb": _honeycomb}
-
-
 @lru_cache(16)
-def zones(shape: tuple[int, int], layout: str = "honeycomb") -> NDArray[np.int64]:
-    """Return which of a matrix meter's zones each pixel (H, W) lies in, from 0: there are 5, 35 or 28.
+def zones(shape: tuple[int, int]) -> NDArray[np.int64]:
+    """Return which of a matrix meter's zones each pixel (H, W) lies in, from 0 to 27.
 
     A meter's zones stay as they are from shot to shot: they are kept, and must not be written to.
     """
-    if layout not in LAYOUTS:
-        raise ValueError(f"expected a layout among {', '.join(LAYOUTS)}, got {layout!r}")
     down, right = _places(shape, (0.5, 0.5))
-    labels = LAYOUTS[layout](*np.broadcast_arrays(down, right))
+    labels = _honeycomb(*np.broadcast_arrays(down, right))
     found = np.unique(labels, return_inverse=True)[1].reshape(shape)
     found.flags.writeable = False
     return found
 
 
-def matrix(
-    B: ArrayLike, *, at: At = (0.5, 0.5), layout: str = "honeycomb", near: float = 0.2, tolerance: float = 2.0
-) -> F64:
+def matrix(B: ArrayLike, *, at: At = (0.5, 0.5), near: float = 0.2, tolerance: float = 2.0) -> F64:
     """Return a matrix meter's weights: zones near the focus point count more, zones far from the others less.
 
     A zone's weight is exp(-d^2 / (2 near^2)) exp(-e^2 / (2 tolerance^2)): d is its distance from the focus
@@ -137,7 +118,7 @@ def matrix(
     Makers do not tell their rules; this one has what the text says they take into account.
     """
     B = as_luminance(B)
-    labels = zones(B.shape, layout)
+    labels = zones(B.shape)
     area = np.bincount(labels.ravel())
 
     def mean(values: Array) -> Array:

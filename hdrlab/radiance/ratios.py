@@ -170,8 +170,3 @@ def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
     if (overlap := count_overlap(found)) < FEWEST:
         raise ValueError(f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}")
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k
-
-
-def chain_times(k: ArrayLike) -> F64:
-    """Return each frame's exposure over the first one's (P,): t_1 = 1, t_j+1 = k_j t_j [Cerman06 sec. 5]."""
-    return np.cumprod(np.concatenate([[1.0], np.asarray(k, np.float64)]))

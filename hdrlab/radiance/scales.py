@@ -1,6 +1,5 @@
-"""What a response leaves open: units of exposure and of colours (Mitsunaga and Nayar 1999, sec. 6.3 and 6.4).
+"""What a response leaves open: the units of its colours (Mitsunaga and Nayar 1999, sec. 6.4).
 
-t   exposure times        (P,), seconds
 M   measured brightness   (N, 3), 0 ... 1
 I   radiance              (N, 3), each channel in a unit of its own
 k   channel scales        (3,), k_green = 1
@@ -14,14 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from hdrlab.core.arrays import as_times, describe
+from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64
-
-
-def normalize_times(times: ArrayLike) -> F64:
-    """Return t / mean(t), so that radiance is in the unit of a mean exposure [Mitsunaga99 sec. 6.3]."""
-    t = as_times(times, max(np.size(times), 1))
-    return t / t.mean()
 
 
 def chromaticity(M: ArrayLike) -> F64:

@@ -1,4 +1,4 @@
-"""Units of exposure and of colours, and the weight of signal over noise."""
+"""Units of colours, and the weight of signal over noise."""
 
 import numpy as np
 import pytest
@@ -8,18 +8,6 @@ from hypothesis import strategies as st
 from hdrlab.capture import responses
 from hdrlab.core import weights
 from hdrlab.radiance import scales
-
-
-@given(st.lists(st.floats(1e-4, 30), min_size=1, max_size=9))
-def test_normalized_times_have_the_mean_1_and_the_same_ratios(times):
-    t = scales.normalize_times(times)
-    assert np.isclose(t.mean(), 1) and np.allclose(t / t[0], np.array(times) / times[0])
-
-
-@pytest.mark.parametrize("times", [[], [1, 0], [1, -1], [1, np.nan], [[1, 2]]])
-def test_what_are_no_times_is_refused(times):
-    with pytest.raises(ValueError, match="exposure times"):
-        scales.normalize_times(times)
 
 
 @given(seed=st.integers(0, 99), red=st.floats(0.05, 20), blue=st.floats(0.05, 20))
