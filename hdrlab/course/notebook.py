@@ -10,6 +10,7 @@ from typing import Any
 from hdrlab.course import grading, plan
 from hdrlab.course.code import closure
 from hdrlab.course.code.closure import Cell
+from hdrlab.course.code.names import imported
 from hdrlab.course.grading import Conditions
 from hdrlab.course.material import handouts
 from hdrlab.course.plan import Homework
@@ -64,7 +65,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     missing = tuple(
         f"{task} is not there yet: run the cell that defines it" for task in tasks if task not in sources
     )
-    read = Submission(sources, missing, "")
+    read = Submission(sources, missing, "", tuple(imported(sources.values())))
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)

@@ -96,7 +96,7 @@ SECRETS = ("the message", "first hint", "expected 0.25", "what it printed", "tes
 
 
 def test_a_teams_copy_holds_of_a_hidden_check_its_words_and_points_alone(hostile):
-    picture = Drawing((web.webp(np.zeros((4, 4), np.uint8)),), ("expected 0.25",), ("expected 0.25",))
+    picture = Drawing((web.encode_webp(np.zeros((4, 4), np.uint8)),), ("expected 0.25",), ("expected 0.25",))
     hidden = Check("gsolve", "test_hidden_name", "It is kept", Fraction(), Fraction(1), "fails", *SECRETS[:1])
     hidden = hidden._replace(hints=("first hint",), drawing=picture, said="what it printed", hidden=True)
     own = hostile.checks[1]._replace(message="yours to read")

@@ -1,0 +1,54 @@
+"""What a command writes on its way is gone when it ends; what a killed one has left, when the next begins."""
+
+import os
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+import pytest
+
+from hdrlab.course.scratch import locked_folder, temporary_folder
+
+SLEEPER = """
+import sys, tempfile, time
+from hdrlab.course.scratch import temporary_folder
+with temporary_folder() as folder:
+    (folder / "left").write_text("x")
+    tempfile.mkdtemp(prefix="hdrlab-read-")
+    print(folder, flush=True)
+    time.sleep(60)
+"""
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    return tmp_path
+
+
+def sleeper(place):
+    """Start a process that holds such a folder, and return it with the folder."""
+    environment = os.environ | {"TMPDIR": str(place)}
+    process = subprocess.Popen([sys.executable, "-c", SLEEPER], env=environment, stdout=subprocess.PIPE)
+    return process, Path(process.stdout.readline().decode().strip())
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="nothing is locked there")
+@pytest.mark.parametrize("how", ["kill", "terminate"])
+def test_what_a_killed_command_leaves_is_removed_by_the_next(place, how):
+    (place / "another").mkdir()
+    lives, held = sleeper(place)
+    dies, left = sleeper(place)
+    getattr(dies, how)()
+    dies.wait()
+    dies.stdout.close()
+    assert (left / "left").exists()
+    with temporary_folder() as mine:
+        assert set(place.iterdir()) == {held, mine, place / "another"}
+    lives.kill()
+    lives.wait()
+    lives.stdout.close()
+    with locked_folder():
+        pass
+    assert set(place.iterdir()) == {place / "another"}
