@@ -110,7 +110,8 @@ def grade(
         raise ValueError(
             "expected --secret-file with --student: without it anybody could draw the same inputs"
         )
-    conditions = Conditions(tier, student, _secret(secret_file), hidden, timeout)
+    secret, word = _secret(secret_file)
+    conditions = Conditions(tier, student, secret, hidden, timeout)
     if submission.is_dir():
         from hdrlab.cli import classroom
 
@@ -118,16 +119,15 @@ def grade(
         course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
         with temporary_folder():
             classroom.grade_folder(submission, out, course, options)
-        if secret_file is None:
-            click.echo(
-                "note: for practice: without --secret-file the inputs are public, for credit they are not",
-                err=True,
-            )
+        if word:
+            click.echo(word, err=True)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
         click.echo(f"note: for practice. {result.why_practice}", err=True)
+    if secret and word:
+        click.echo(word, err=True)
     gradebook.write_results(out, result)
     click.echo(out / "feedback.html")
 
@@ -199,9 +199,9 @@ def export(
         for file in to_nbgrader.export(read, nbgrader):
             click.echo(file)
     if gradescope is not None:
-        secret = _secret(secret_file)
-        if not secret:
-            click.echo("note: for practice: for credit, --secret-file draws each student's inputs", err=True)
+        secret, word = _secret(secret_file)
+        if word:
+            click.echo(word, err=True)
         for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
             click.echo(file)
 
@@ -248,16 +248,14 @@ def _only(homework: "Homework", task: str) -> "Homework":
     return homework._replace(tasks=tasks)
 
 
-def _secret(file: Path | None) -> str:
-    """Return the course's secret, and say so where it was made; "" without a file."""
+def _secret(file: Path | None) -> tuple[str, str]:
+    """Return the course's secret, and a word about it where it was made, or where there is none."""
     from hdrlab.course import plan as plans
 
     if file is None:
-        return ""
+        return "", "note: for practice: without --secret-file the inputs are public, for credit they are not"
     secret, made = plans.read_secret(file)
-    if made:
-        click.echo(f"note: {file}: a new secret for the course; keep it, and keep it to yourself", err=True)
-    return secret
+    return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
 
 
 def _graded(submission: Path, homework: "Homework", conditions: "Conditions") -> "Result":
