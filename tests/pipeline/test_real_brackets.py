@@ -1,0 +1,67 @@
+"""Every real bracket becomes a map by the steps of the plain command, with the right warnings alone."""
+
+import numpy as np
+import pytest
+
+from hdrlab import pipeline
+from hdrlab.cli.photographs import read_bracket
+
+SIDE = 500  # pixels: of larger photographs every second, third ... is taken
+
+
+@pytest.fixture
+def assembled(shared):
+    """assembled(folder, ...) -> the Assembly of a folder of photographs, as `hdrlab assemble` makes it."""
+
+    def assemble(folder, times="exif", mask=None, stops=None):
+        top, _, rest = folder.partition("/")
+        taken = read_bracket((shared(top) / rest,), times, mask, stops)
+        every = max(1, round(max(taken.images.shape[1:3]) / SIDE))
+        valid = taken.valid if taken.valid is None else taken.valid[:, ::every, ::every]
+        images = np.ascontiguousarray(taken.images[:, ::every, ::every])
+        way = "estimate" if times == "estimate" else "correct"
+        return pipeline.assemble(taken._replace(images=images, valid=valid), times=way)
+
+    return assemble
+
+
+SOUND = [
+    ("window", {}, 0.026),
+    ("stlouis_arch", {}, 0.02),
+    ("frobisher", {}, 0.002),
+    ("memorial", {"mask": "0000FF"}, 0.1),
+    ("mertens_house", {"stops": 3}, 0.02),
+    ("mertens_house", {"times": "estimate"}, 0.02),
+]
+
+
+@pytest.mark.parametrize(("folder", "options", "spread"), SOUND)
+def test_a_sound_bracket_comes_out_without_a_warning(assembled, folder, options, spread):
+    found = assembled(folder, **options)
+    assert found.doubts == () and found.fallback == ""
+    assert found.spread <= spread + 5e-4 and np.all(np.isfinite(found.E))
+
+
+@pytest.mark.parametrize("folder", ["frobisher", "stlouis_arch"])
+def test_times_that_are_true_are_left_byte_for_byte(assembled, shared, folder):
+    stated = read_bracket((shared(folder),), "exif", None, None).times
+    assert assembled(folder).bracket.times.tobytes() == stated.tobytes()
+
+
+def test_the_wrong_times_of_the_phone_are_corrected_and_their_scale_doubted(assembled):
+    found = assembled("tripod_phone")
+    assert found.spread < 0.15 and found.E.any()
+    assert any("estimated times depart from those stated" in doubt for doubt in found.doubts)
+    assert any("times estimated from the pixels" in note for note in found.notes)
+
+
+@pytest.mark.parametrize("options", [{"stops": 1}, {"times": "estimate"}])
+def test_a_walk_around_the_crusader_comes_out_with_doubts(assembled, options):
+    found = assembled("crusader/frames", **options)
+    assert found.doubts and np.all(np.isfinite(found.E)) and found.E.any()
+
+
+@pytest.mark.parametrize("folder", ["mertens_house", "crusader/frames"])
+def test_photographs_without_times_are_refused_with_the_ways_on(assembled, folder):
+    with pytest.raises(ValueError, match=r"--times FILE.*--stops 2.*--times estimate"):
+        assembled(folder)
