@@ -147,9 +147,10 @@ def note(found: Estimate, names: Sequence[str]) -> str:
     if not found.accepted:
         return f"the stated times stay: {found.reason}"
     frames = ", ".join(f"{name} {by:+.3f}" for name, by in zip(names, found.stops, strict=True))
+    falls = f", and the map's spread falls from {found.spread_before:.3f} to {found.spread_after:.3f}"
     return (
-        f"times estimated from the pixels, stops against those stated: {frames}; {found.reason}, "
-        f"and the map's spread falls from {found.spread_before:.3f} to {found.spread_after:.3f}"
+        f"times estimated from the pixels, stops against those stated: {frames}; {found.reason}"
+        f"{falls if np.isfinite(found.spread_before) else ''}"
     )
 
 

@@ -5,7 +5,6 @@ library's does. `assemble_steps` yields what is known after each stage; `assembl
 """
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from functools import partial
 from typing import Any
 
@@ -17,7 +16,11 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics import exposure_times as timing
-from hdrlab.diagnostics.contradictions import find_contradictions, warn_of_contradictions
+from hdrlab.diagnostics.contradictions import (
+    find_contradictions,
+    find_outlying_frames,
+    warn_of_contradictions,
+)
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery, relative_times
 from hdrlab.pipeline.assembly import Assembly, Method, Table
@@ -124,12 +127,11 @@ def assemble_steps(
     yield (state := state._replace(notes=(*said, *state.notes)))
     w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
     if times != "stated":
-        with suppress(ValueError):  # no response under these times: what comes next says what that means
-            found = refine_times(state, recovery.resolve_auto(response, bracket), w, merge)
-            kept = np.array_equal(found.bracket.times, state.bracket.times)
-            state = state if kept and times == "correct" else found
+        found = refine_times(state, recovery.resolve_auto(response, bracket), w, merge)
+        kept = np.array_equal(found.bracket.times, state.bracket.times)
+        state = state if kept and (said or times == "correct") else found
         yield (state := state._replace(stage="times"))
-    yield (state := recover(state, response))
+    yield (state := recover(leave_out_contrary(state), response))
     (images, seconds, _, valid, _), g = state.bracket, state.g
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
@@ -141,6 +143,28 @@ def assemble_steps(
     if state.spread > WORTHLESS:
         state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
     yield state
+
+
+def leave_out_contrary(state: Assembly) -> Assembly:
+    """Return the Assembly without the frames that contradict all others, and a note on them."""
+    images, times, names, valid, _ = state.bracket
+    found = find_outlying_frames(images, times, valid=valid)
+    if not found:
+        return state
+    kept = np.delete(np.arange(len(times)), found)
+    bracket = state.bracket._replace(
+        images=images[kept],
+        times=times[kept],
+        names=tuple(names[j] for j in kept),
+        valid=None if valid is None else valid[kept],
+    )
+    said = (
+        f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
+        "whether its time is right, and whether it shows this scene, in this light"
+    )
+    H = None if state.homographies is None else state.homographies[kept]
+    notes = (*state.notes, said)
+    return state._replace(bracket=bracket, offsets=state.offsets[kept], homographies=H, notes=notes)
 
 
 def recover(state: Assembly, response: Method) -> Assembly:
@@ -197,7 +221,10 @@ def refine_times(
     shown = None if valid is None else valid[few]
 
     def spread(times: NDArray[np.float64]) -> float:
-        g = recover(images[few], times, valid=shown)
+        try:
+            g = recover(images[few], times, valid=shown)
+        except ValueError:  # no camera's response
+            return np.inf
         E = merge(images[few], times, g, w(g), valid=shown).E
         return consistency.measure_spread(
             consistency.measure_level_exposures(images[few], times, E, valid=shown)
@@ -214,9 +241,11 @@ def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
     """Return the Assembly with the medians of each level, and the warnings that follow from them."""
     state = state._replace(stage="compare", medians=medians)
     images, times, names, valid, _ = state.bracket
-    alone = "no level stands in two frames, so the times cannot be compared with the pixels"
     if np.isnan(state.spread):
-        return state._replace(notes=(*state.notes, alone))
+        alone = (
+            "no level stands in two frames, so nothing supports times and map: take photographs in between"
+        )
+        return state._replace(doubts=(*state.doubts, alone))
     found = find_contradictions(images, times, valid=valid)
     said = warn_of_contradictions(found, names, state.spread)
     if not said and state.spread > CONTRADICTION:

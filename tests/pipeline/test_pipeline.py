@@ -162,13 +162,13 @@ def test_times_that_the_photographs_contradict_are_a_doubt_that_names_the_frames
     assert assemble(taken, align="none").doubts == ()
 
 
-def test_photographs_that_share_no_level_are_noted():
+def test_photographs_that_share_no_level_are_doubted():
     images = np.stack([np.full((20, 20), z, np.uint8) for z in (60, 200)])
     images[:, :5] = np.array([100, 140])[:, None, None]
     images[0, :, :1] = np.arange(20, 120, 5)[:, None]  # a few pixels that tie the levels
     images[1, :, :1] = np.arange(40, 140, 5)[:, None]
     found = assemble(bracket(images, [1, 2]), align="none")
-    assert "no level stands in two frames" in found.notes[-1] and found.doubts == ()
+    assert np.isnan(found.spread) and "no level stands in two frames" in found.doubts[-1]
 
 
 def test_photographs_of_two_scenes_are_a_doubt_about_their_alignment(room):
@@ -282,3 +282,13 @@ def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(s
     taken = bracket(images[order], 2.0 ** np.arange(7), [paths[j].name for j in order])
     doubts = [doubt for doubt in assemble(taken).doubts if "moved by" in doubt]
     assert len(doubts) >= 2 and all("leave one out" in doubt and ".jpeg" in doubt for doubt in doubts)
+
+
+def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
+    taken = camera.shoot(room, camera.times_around(room, 6, stops=1.5), rng=1)
+    images = taken.images.copy()
+    images[2] = images[2, ::-1, ::-1]  # another scene, of the same brightness
+    found = assemble(taken._replace(images=images, names=tuple("abcdef")), align="none", times="stated")
+    assert found.bracket.names == tuple("abdef") and found.offsets.shape == (5, 2)
+    assert any("left out" in note and " c;" in note for note in found.notes)
+    assert found.spread < 0.02 and assemble(taken).bracket.images.shape[0] == 6
