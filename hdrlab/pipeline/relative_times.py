@@ -96,8 +96,13 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
         exposures = zip(bracket.names, bracket.times, strict=True)
         got = ", ".join(f"{name} {time:.6g} s" for name, time in exposures)
         raise ValueError(f"expected photographs of at least two different exposures, got {got}")
-    by = ", ".join(f"{step:.1f}" for step in steps)
-    return found, (
+    return found, (describe_steps(found.times),)
+
+
+def describe_steps(times: F64) -> str:
+    """Return the sentence on relative times: how they were found, and how far to trust them."""
+    by = ", ".join(f"{step:.1f}" for step in np.diff(np.log2(times)))
+    return (
         f"relative times, the shortest is 1, by the pixels and the response of a usual camera: steps of {by} "
-        "stops; the contrast of the map is as true as these, so give --stops 2 or the like if you know them",
+        "stops; the contrast of the map is as true as these, so give --stops 2 or the like if you know them"
     )

@@ -130,6 +130,8 @@ def assemble_steps(
         found = refine_times(state, recovery.resolve_auto(response, bracket), w, merge)
         kept = np.array_equal(found.bracket.times, state.bracket.times)
         state = state if kept and (said or times == "correct") else found
+        order = np.argsort(state.bracket.times, kind="stable")
+        state = state if np.all(np.diff(order) > 0) else take_frames(state, order)
         yield (state := state._replace(stage="times"))
     yield (state := recover(leave_out_contrary(state), response))
     (images, seconds, _, valid, _), g = state.bracket, state.g
@@ -140,6 +142,16 @@ def assemble_steps(
     if flare != "none":
         yield (state := remove_glare(state))
     state = assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
+    if state.spread > WORTHLESS and times == "correct":
+        knobs = {"align": align, "response": response, "weight": weight, "method": method}
+        again = relative_times.estimate_relative_times(bracket)
+        other = assemble(again, times="estimate", ghosts=ghosts, flare=flare, **knobs)
+        if other.spread < WORTHLESS / 2:
+            doubt = (
+                f"the stated times contradict the pixels by {state.spread:.2f} stops, so they were not used"
+            )
+            steps = relative_times.describe_steps(again.times)
+            state = other._replace(doubts=(f"{doubt}, but {steps}", *other.doubts))
     if state.spread > WORTHLESS:
         state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
     yield state
@@ -151,20 +163,20 @@ def leave_out_contrary(state: Assembly) -> Assembly:
     found = find_outlying_frames(images, times, valid=valid)
     if not found:
         return state
-    kept = np.delete(np.arange(len(times)), found)
-    bracket = state.bracket._replace(
-        images=images[kept],
-        times=times[kept],
-        names=tuple(names[j] for j in kept),
-        valid=None if valid is None else valid[kept],
-    )
     said = (
         f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
         "whether its time is right, and whether it shows this scene, in this light"
     )
-    H = None if state.homographies is None else state.homographies[kept]
-    notes = (*state.notes, said)
-    return state._replace(bracket=bracket, offsets=state.offsets[kept], homographies=H, notes=notes)
+    kept = np.delete(np.arange(len(times)), found)
+    return take_frames(state, kept)._replace(notes=(*state.notes, said))
+
+
+def take_frames(state: Assembly, order: NDArray[np.intp]) -> Assembly:
+    """Return the Assembly of some frames, in this order."""
+    images, times, names, valid, linear = state.bracket
+    valid = None if valid is None else valid[order]
+    some = Bracket(images[order], times[order], tuple(names[j] for j in order), valid, linear)
+    return state._replace(bracket=some, offsets=state.offsets[order], homographies=state.homographies[order])
 
 
 def recover(state: Assembly, response: Method) -> Assembly:
