@@ -36,6 +36,8 @@ from hdrlab.diagnostics import flat_patches, response_steps
 TILE = 12
 # patches that make the median of a part
 FEWEST = 10
+# flat patches of a pair, without which all that are static show whether the corners change
+ENOUGH = 50
 # of a frame, on an even grid, that stand for the whole
 PIXELS = 30_000
 # stops, the prior: here times are free, for the question is what is wrong and not what is likely
@@ -83,17 +85,16 @@ class Contradictions(NamedTuple):
     @property
     def local(self) -> bool:
         """Whether one response, and one factor per frame, cannot explain the bracket."""
-        by = self.regions[np.isfinite(self.regions)]
+        by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
         if not len(by):
             return False
-        sure = self.vignetted or np.nanmedian(self.significance) > SIGNIFICANT
-        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and sure))
+        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT))
 
     @property
     def vignetted(self) -> bool:
-        """Whether it is the corners that change against the middle."""
+        """Whether the corners change against the middle."""
         by = self.corners[np.isfinite(self.corners)]
-        return bool(len(by) and np.median(by) > CORNERS)
+        return bool(len(by) and np.median(by) > SLIGHT)
 
 
 def find_contradictions(
@@ -213,9 +214,9 @@ def remove_trend(x: F64, B: F64) -> F64:
 def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:
     """Return each pair's disagreement by place, (3, P - 1).
 
-    In stops, where a quarter of the tiles are off by more; in standard errors, where half of them are; and
-    the share of its variance that the distance from the middle explains. Of patches flat in all frames,
-    under the response that fits these best; or else, in the pair.
+    In stops, where a quarter of the tiles are off by more; and in standard errors, where half of them are: of
+    patches flat in all frames, under the response that fits these best, or else in the pair. And in stops
+    from the middle to the corners, 0 where that distance does not explain most: of flat patches or not.
     """
     h, w = found.Z.shape[2:]
     y, x = np.indices((h, w)) // TILE
@@ -229,13 +230,18 @@ def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response
     out = np.full((3, len(B) - 1), np.nan)
     for j, step in enumerate(np.diff(B + best.x)):
         a, b = found.Z[j], found.Z[j + 1]
-        trusted = (response_steps.PAIR[a, b] > 0).all(axis=0) & chosen[j]
-        r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0)[trusted] - step
-        medians, errors = _tile_medians(r / np.log(2), tile[trusted])
+        trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
+        r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0) / np.log(2) - step / np.log(2)
+        flat = trusted & chosen[j]
+        medians, errors = _tile_medians(r[flat], tile[flat])
         if len(medians):
             out[:2, j] = np.quantile(np.abs(medians), 0.75), np.median(np.abs(medians) / errors)
-        if len(r) and np.ptp(r) > 0 and np.ptp(r2[trusted]) > 0:
-            out[2, j] = np.corrcoef(r, r2[trusted])[0, 1] ** 2
+        static = flat_patches.find_static(found.Z[j : j + 2])[0]
+        trusted = flat if np.count_nonzero(flat) >= ENOUGH else trusted & static
+        if np.count_nonzero(trusted) >= FEWEST and np.ptp(r[trusted]) > 0 and np.ptp(r2[trusted]) > 0:
+            slope = np.polyfit(r2[trusted], r[trusted], 1)[0]
+            explained = (slope * r2[trusted].std() / r[trusted].std()) ** 2
+            out[2, j] = 2 * abs(slope) if explained > CORNERS else 0
     return out
 
 
@@ -258,14 +264,15 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
     Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
     """
     sound = spread <= SOUND
+    if found.vignetted:
+        return (
+            "the corners change against the middle of the picture by "
+            f"{np.nanmedian(found.corners):.2f} stops from one photograph to the next: with the aperture its "
+            "vignetting changed; keep the aperture fixed"
+        )
     if found.local and not (sound and np.nanmedian(found.regions) <= LOCAL):
         j, by = int(np.nanargmax(found.regions)), np.nanmedian(found.regions)
         said = f"{by:.2f} stops under the best factor for each, most between {names[j]} and {names[j + 1]}"
-        if found.vignetted:
-            return (
-                f"the corners change against the middle of the picture, by {said}: with the aperture its "
-                "vignetting changed; keep the aperture, and let the time alone change"
-            )
         return (
             f"one response cannot explain the photographs: parts of the picture disagree by {said}; light "
             "that changed, or a camera that brightens by place: switch HDR and automatic enhancement off, or "

@@ -14,7 +14,7 @@ from pathlib import Path
 import nbformat
 import pytest
 
-from hdrlab.course.site import live, reference
+from hdrlab.course.site import cases, live, reference
 from hdrlab.course.site import pages as build
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
@@ -295,3 +295,10 @@ def test_the_sources_of_the_site_travel_with_the_package():
     folder = Path(live.__file__).parent
     for name in ("pages/index.md", "pages/front.ipynb", "theme/layout.html", "theme/static/live.js"):
         assert (folder / name).is_file()
+
+
+def test_every_case_that_a_guide_names_is_pictured_with_alt_text():
+    said = cases.illustrate("<!-- case: black -->\n<!-- case: turned -->")
+    assert said.count('<img alt="Three photographs of the chapel') == 1 and said.count("turned by four") == 1
+    text = (Path(cases.__file__).parent / "pages" / "verdicts.md").read_text("utf-8")
+    assert set(re.findall(r"<!-- case: (\w+) -->", text)) == set(cases.CASES)
