@@ -195,7 +195,7 @@ def _pale(C: F32, M: F32, Ld: F32) -> F32:
     fit = np.maximum(M, 1) ** np.float32(-0.85)
     C, M, Ld = C * fit, M * fit, Ld * fit
     full = np.minimum((M - Ld) / np.maximum(1 - Ld, DARK), 1000)  # of the room between the luminance and 1
-    return Ld + (C - Ld) * (1 + full**8) ** np.float32(-1 / 8)
+    return np.asarray(Ld + (C - Ld) * (1 + full**8) ** np.float32(-1 / 8), np.float32)
 
 
 WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "chroma": _chroma, "hue": _hue}

@@ -22,7 +22,11 @@ LESSONS = {name: lesson for name, lesson in LESSONS.items() if lesson is not OPE
 VARIED = {
     "brush": [{"bins": 1}, {"bins": 64, "limit": 1}, {"limit": np.inf}],
     "chiu": [{"headroom": 2}, {"headroom": 64, "passes": 0}, {"sigma": 3.5}, {"sigma": 30, "passes": 2}],
-    "curves": [{"curve": "linear", "cut": 0}, {"curve": "gamma", "gamma": 0.5}, {"cut": 0.2}],
+    "curves": [
+        {"curve": "linear", "cut": 0},
+        {"curve": "gamma", "gamma": 0.5},
+        {"cut": 0.2, "encoded": False},
+    ],
     "durand": [{"contrast": 1.5, "sigma_s": 8}, {"contrast": 1e4, "cut": 0}, {"sigma_s": 40, "sigma_r": 5}],
     "fattal": [
         {"alpha": 0.3, "beta": 0.85},
