@@ -1,0 +1,88 @@
+"""A class in which all of it is mixed: nobody honest notices, and each of the others has a note."""
+
+import os
+
+import hostile
+import pytest
+from hats import GOOD, PLAN
+from traps import TRAPS
+
+from hdrlab import cli
+from hdrlab.course.reports import sheets
+
+HONEST = {
+    "h1": ("h1_hw2.py", GOOD.encode()),
+    "h2": ("h2_hw2.ipynb", hostile.notebook(GOOD)),
+}
+CODE = ("ends otherwise each time",)
+FILES = ("empty dictionaries", "blank lines")
+TEXTS = ("half a character, raised",)
+NAMES = ("not UTF-8",)
+ODD = ("a huge sparse notebook", "a pipe", "a link to a device", "a folder in a folder")
+ARCHIVES = ("a bomb in a tar.xz",)
+
+
+def written(folder):
+    """Write what hostile students hand in, and return whose it is."""
+    who = iter(f"x{k:02d}" for k in range(1, 99))
+    each = {}
+    for name in [*CODE, *TEXTS]:
+        each[student := next(who)] = name
+        (folder / f"{student}_hw2.py").write_text((hostile.CODE | hostile.TEXTS)[name])
+    for name in FILES:
+        each[student := next(who)] = name
+        ending, made = hostile.FILES[name]
+        (folder / f"{student}_hw2{ending}").write_bytes(made())
+    for name in NAMES:
+        each[student := next(who)] = name
+        with open(os.fsencode(folder / student) + hostile.NAMES[name], "w") as file:
+            file.write("def hat(n=256:\n")
+    for name in ODD:
+        each[student := next(who)] = name
+        ending, made = hostile.ODD[name]
+        made(folder / f"{student}_hw2{ending}")
+    for name in ARCHIVES:
+        each[student := next(who)] = name
+        TRAPS[name](folder / f"{student}_hw2.zip")
+    return each
+
+
+@pytest.fixture
+def grade(tmp_path, monkeypatch):
+    """grade(folder) -> the rows of its gradebook, and the bytes of each team's files."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "plan.toml").write_text(PLAN)
+
+    def run(folder, students):
+        (tmp_path / "roster.csv").write_text("student\n" + "\n".join(students))
+        words = ["grade", folder, "--homework", "hw2", "--roster", "roster.csv", "--plan", "plan.toml"]
+        with pytest.raises(SystemExit) as ended:
+            cli.run([*words, "--tier", "practice", "-o", f"{folder}-out", "--jobs", "2", "--timeout", "3"])
+        assert not ended.value.code
+        files = {path: path.read_bytes() for path in (tmp_path / f"{folder}-out" / "feedback").rglob("*.*")}
+        rows = sheets.read_csv(tmp_path / f"{folder}-out" / "gradebook.csv")
+        return {row["student"]: row for row in rows}, {
+            str(path.relative_to(tmp_path / f"{folder}-out")): data for path, data in files.items()
+        }
+
+    return run
+
+
+def test_a_class_with_all_of_it_is_graded_to_the_end_and_the_honest_are_as_without_it(
+    tmp_path, grade, monkeypatch
+):
+    for folder in ("all", "honest"):
+        (tmp_path / folder).mkdir()
+        for name, data in HONEST.values():
+            (tmp_path / folder / name).write_bytes(data)
+            os.utime(tmp_path / folder / name, (1_700_000_000, 1_700_000_000))
+    others = written(tmp_path / "all")
+    rows, files = grade("all", [*HONEST, *others])
+    alone, expected = grade("honest", HONEST)
+    assert {name: files[name] for name in expected} == expected and len(expected) == 5 * len(HONEST)
+    assert {student: rows[student] for student in HONEST} == alone
+    for student, name in others.items():
+        right = name == "blank lines"  # with a right function at the end
+        assert float(rows[student]["work"]) == 10 * right, name
+        assert right or name in (*CODE, *TEXTS) or rows[student]["note"], name
+        assert rows[student]["note"].isprintable()
