@@ -30,6 +30,8 @@ from hdrlab.core.types import F32, F64, Mask
 
 # pixels of the level where points are looked for, at most
 PIXELS = 250_000
+# points of a photograph, the largest: every one is compared with every other
+MOST = 3000
 # pixels of that level, between a match and its homography
 INLIER = 1.5
 # matches that agree: 4 make a homography out of nothing
@@ -66,9 +68,10 @@ def match_points(X: F32) -> F64:
         sift = SIFT()
         try:
             sift.detect_and_extract(detail(x))
-            found.append((np.asarray(sift.keypoints)[:, ::-1].astype(float), sift.descriptors))
         except RuntimeError:  # scikit-image's word for no point at all
             return np.empty((2, 0, 2))
+        largest = np.argsort(-sift.sigmas, kind="stable")[:MOST]
+        found.append((np.asarray(sift.keypoints)[largest, ::-1].astype(float), sift.descriptors[largest]))
     (q, one), (p, other) = found
     both = match_descriptors(one, other, max_ratio=0.8, cross_check=True)
     return np.stack([q[both[:, 0]], p[both[:, 1]]])
@@ -114,9 +117,9 @@ def through(shape: tuple[int, ...], c: F64) -> F64:
     return np.append(np.linalg.solve(system[:, :8], system[:, 8]), 1).reshape(3, 3)
 
 
-def enlarge(H: F64) -> F64:
-    """Return H in pixels half as large: pixel x of a level lies over 2 x + 1/2 of the next finer one."""
-    finer = np.array([[2, 0, 0.5], [0, 2, 0.5], [0, 0, 1]])
+def enlarge(H: F64, times: float = 2) -> F64:
+    """Return H in finer pixels: pixel x of a level lies over 2 x + 1/2 of the one that is twice as large."""
+    finer = np.array([[times, 0, (times - 1) / 2], [0, times, (times - 1) / 2], [0, 0, 1]])
     return np.asarray(finer @ H @ np.linalg.inv(finer))
 
 

@@ -36,8 +36,8 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @click.option(
     "--align",
     type=click.Choice(["auto", *catalogue.names("align"), "none"]),
-    default="mtb",
-    help="mtb shifts; cerman turns, too; homography takes scale and tilt; auto takes what fits best.",
+    default="auto",
+    help="mtb shifts; cerman rotates, too; homography tilts; auto: mtb, and more where that is too little.",
 )
 @click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
 @click.option("--weight", type=click.Choice(["gaussian", "hat", "flat", "snr"]), default="gaussian")
@@ -173,11 +173,11 @@ def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":
     """Return what the pipeline makes of a bracket, with progress."""
     from hdrlab import pipeline
     from hdrlab.core.steps import last
-    from hdrlab.pipeline.registration import BY_LIGHT
+    from hdrlab.pipeline.alignment import SEARCHES
 
     steps = pipeline.assemble_steps(bracket, **methods)
     asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
     count = len(pipeline.STAGES) - (methods["times"] == "stated") + asked
-    if methods["align"] in BY_LIGHT:  # the first stage takes seconds a photograph
+    if methods["align"] in SEARCHES:  # the first stage takes seconds a photograph
         return last(common.one_by_one(steps, ["aligning", *["the map"] * (count - 1)]))
     return last(common.progress(steps, "assembling", count))

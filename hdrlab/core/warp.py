@@ -81,17 +81,17 @@ def corner_distance(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) 
     return np.asarray(np.hypot(off[..., 0], off[..., 1]).max(axis=-1))
 
 
-def chain_homographies(order: ArrayLike, steps: Sequence[F64 | None]) -> F64:
+def chain_homographies(order: ArrayLike, steps: Sequence[F64]) -> F64:
     """Return the H (P, 3, 3) that lay every image on the middle one of `order`: products of the P - 1 steps.
 
-    Step k lays image order[k] on order[k + 1]. None breaks the chain: the image beyond stays where it is.
+    Step k lays image order[k] on order[k + 1].
     """
     H, order = np.tile(np.eye(3), (len(steps) + 1, 1, 1)), np.asarray(order)
     middle = len(order) // 2
     for k in reversed(range(middle)):
-        H[order[k]] = np.eye(3) if (one := steps[k]) is None else H[order[k + 1]] @ one
+        H[order[k]] = H[order[k + 1]] @ steps[k]
     for k in range(middle, len(steps)):
-        H[order[k + 1]] = np.eye(3) if (one := steps[k]) is None else H[order[k]] @ np.linalg.inv(one)
+        H[order[k + 1]] = H[order[k]] @ np.linalg.inv(steps[k])
     return np.asarray(H / H[:, 2:, 2:])
 
 

@@ -1,4 +1,4 @@
-"""May I trust an alignment? A search always answers, so its answer is compared once more, at full resolution.
+"""May I trust an alignment? A search always answers, so its answer is compared once more.
 
 H        homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
 p        pixels              (n, 2): those at which light is compared, spread evenly
@@ -7,6 +7,9 @@ d        differences         of light (n,): relative to it, NaN where one measur
 e        error               mean of d^2, see `align.light`; bits that differ / bits compared
 near     differences 2 pixels further than H, in eight directions
 far      differences 8 pixels further
+
+These pixels are those of an overview, at most half a megapixel, so a verdict does not depend on the size of
+photographs. Only whether an offset of bitmaps is better than none is asked at full resolution.
 
 Of Ward's brackets 84 % came out well; the others had turned, moved too far, or were all fine texture. So: is
 H better than the identity, better than what lies around it, do the four quarters of the picture agree (in a
@@ -20,13 +23,13 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.fft import fftshift, irfft2, rfft2
 
-from hdrlab.align import light
+from hdrlab.align import homography, light
 from hdrlab.align.cerman import peaks
 from hdrlab.align.mtb import exclusion
 from hdrlab.core import warp
 from hdrlab.core.types import F32, F64, Array, Mask
 
-# pixels: the distances at which other answers are compared
+# pixels of the overview: the distances at which other answers are compared
 NEAR, FAR = 2, 8
 # standard errors by which an error is clearly lower
 SURE = 3
@@ -37,9 +40,11 @@ RIVALS = 4
 # of the way up to the error elsewhere: a rival this low fits as well
 ALIKE = 0.1
 # pixels of a bitmap and of light: in this large a part of the picture, its middle, rivals are looked for
-BITS_TILE, LIGHT_TILE = 96, 512
-# of the rows of a bitmap, this fraction is compared near and far
-ROWS = 4
+BITS_TILE, LIGHT_TILE = 64, 512
+# error of photographs that clearly lie apart: of bits an eighth as fine, where noise is none, and of light
+BITS_APART, LIGHT_APART = 0.1, 0.1
+# quarters of a picture: so many fit better elsewhere where the camera rotated; fewer, where something moved
+ROTATED = 3
 EIGHT = np.array([(dy, dx) for dy in (-1, 0, 1) for dx in (-1, 0, 1) if dy or dx])
 
 
@@ -56,6 +61,7 @@ class Validation(NamedTuple):
     confidence : 1 is a perfect match, 0 is no better than 8 pixels away
     informative : False where the two photographs cannot be compared
     failure : the reason not to trust H; empty where there is none
+    apart : whether the photographs clearly do not lie on each other, wherever H puts them
     """
 
     moving: int
@@ -68,11 +74,22 @@ class Validation(NamedTuple):
     confidence: float
     informative: bool
     failure: str
+    apart: bool = False
 
     @property
     def reliable(self) -> bool:
         """Whether no reason was found not to trust H."""
         return not self.failure
+
+    @property
+    def known(self) -> bool:
+        """Whether H is clearly better than what lies around it."""
+        return self.confidence >= LOST
+
+    @property
+    def step(self) -> F64:
+        """H where it is known; else the identity, with which a photograph stays beside its neighbour."""
+        return self.H if self.known else np.eye(3)
 
 
 class Comparison(NamedTuple):
@@ -82,29 +99,36 @@ class Comparison(NamedTuple):
     ----------
     moving, fixed : which two images
     shape : of the fixed one
-    differences : function of H, and of n: every n-th row of bits will do; returns d
+    scale : pixels that are one of the overview
+    differences : function of H that returns d of the overview, or of the size whose pixel is so many wide
     error : function of d that returns e, and `light.NONE` where the two share too little
     lower : function of two d that returns (5,), whether the first is clearly lower in a quarter, in the whole
     middle : (h, w), the middle of the fixed photograph, NaN where it measures nothing
+    apart : e above which photographs clearly do not lie on each other
     """
 
     moving: int
     fixed: int
     shape: tuple[int, ...]
+    scale: int
     differences: Callable[..., F64]
     error: Callable[[F64], float]
     lower: Callable[[F64, F64], Mask]
     middle: F32
+    apart: float
 
 
-def compare_light(moving: int, fixed: int, X: F32) -> Comparison:
-    """Return the Comparison of light X (2, H, W): the gain of one H over another is taken pixel by pixel."""
+def compare_light(moving: int, fixed: int, X: F32, scale: int = 1) -> Comparison:
+    """Return the Comparison of light X (2, h, w): the gain of one H over another is taken pixel by pixel.
+
+    A pixel of X is `scale` pixels of the photographs wide.
+    """
     p = light.lattice(X.shape[1:])
     right, low = (p > p.max(axis=0) / 2).T
     quarters = np.eye(4, dtype=np.float32)[right + 2 * low]
 
-    def differences(H: F64, every: int = 1) -> F64:
-        return light.differences(X, H, p)
+    def differences(H: F64, pixel: int = scale) -> F64:
+        return light.differences(X, homography.enlarge(H, 1 / scale), p)
 
     def lower(d: F64, other: F64) -> Mask:
         gain = other**2 - d**2
@@ -116,21 +140,24 @@ def compare_light(moving: int, fixed: int, X: F32) -> Comparison:
         error = np.sqrt(np.maximum(square - gained**2, 0) / np.maximum(n, 1))
         return np.asarray((n >= 20) & (gained > rate / 20 + SURE * error))
 
-    return Comparison(moving, fixed, X.shape[1:], differences, light.error, lower, _middle(X[0], LIGHT_TILE))
+    shape, middle = tuple(scale * n for n in X.shape[1:]), _middle(X[0], LIGHT_TILE)
+    return Comparison(moving, fixed, shape, scale, differences, light.error, lower, middle, LIGHT_APART)
 
 
 def compare_bits(
-    moving: int, fixed: int, Y: Array, t: int, count: Callable[[tuple[int, int], int], Array]
+    moving: int, fixed: int, Y: list[Array], overview: int, t: int, count: Callable[[Array, int], Array]
 ) -> Comparison:
     """Return the Comparison of the bitmaps of two gray photographs; its H shift by whole pixels.
 
-    Y and t are the fixed one and its threshold; count(offset, n) returns d of every n-th row.
+    Y are the levels of the fixed one, t the threshold of the level that is the overview, and
+    count(offset, level) returns d of a level.
     """
-    tile = _middle(Y, BITS_TILE)
+    tile, scale = _middle(Y[overview], BITS_TILE), 2**overview
     signs = np.where(exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
 
-    def differences(H: F64, every: int = 1) -> F64:
-        return np.asarray(count((round(H[1, 2]), round(H[0, 2])), every), np.float64)
+    def differences(H: F64, pixel: int = scale) -> F64:
+        level = min(pixel.bit_length(), len(Y)) - 1
+        return np.asarray(count(np.rint(H[1::-1, 2] / 2**level).astype(int), level), np.float64)
 
     def error(d: F64) -> float:
         differ, compared = d.sum(axis=0)
@@ -141,7 +168,7 @@ def compare_bits(
         own, rate = (one[:, 0] / np.maximum(one[:, 1], 1) for one in (d, other))
         return np.asarray(rate - own > rate / 20 + SURE * np.sqrt(rate / np.maximum(other[:, 1], 1)))
 
-    return Comparison(moving, fixed, Y.shape, differences, error, lower, signs)
+    return Comparison(moving, fixed, Y[0].shape, scale, differences, error, lower, signs, BITS_APART)
 
 
 def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
@@ -149,51 +176,54 @@ def validate(pair: Comparison, H: F64, *, limit: float = np.inf) -> Validation:
 
     The identity takes the place of an H that is not clearly better.
     """
-    before, d = pair.differences(np.eye(3)), pair.differences(H)
-    if pair.error(before) < light.NONE and not pair.lower(d, before)[-1]:
-        H, d = np.eye(3), before
-    near, far = ([pair.differences(shift(H, n * step), ROWS) for step in EIGHT] for n in (NEAR, FAR))
-    errors, elsewhere = (pair.error(before), pair.error(d)), [pair.error(one) for one in far]
-    if errors[1] == light.NONE or not any(pair.error(one) > 0 for one in near + far):
-        return uninformative(pair.moving, pair.fixed, H)
-    d = pair.differences(H, ROWS)
-    sure = confidence(pair.error(d), elsewhere)
+    still, fine, coarse = np.eye(3), max(pair.scale // 2, 1), pair.scale
+    before = pair.differences(still, 1)
+    after = before if np.array_equal(H, still) else pair.differences(H, 1)
+    if pair.error(before) < light.NONE and not pair.lower(after, before)[-1]:
+        H, after = still, before
+    d = pair.differences(H, fine)
+    near = [pair.differences(shift(H, NEAR * fine * to), fine) for to in EIGHT]
+    elsewhere = [pair.error(pair.differences(shift(H, FAR * coarse * to))) for to in EIGHT]
+    if (e := pair.error(after)) == light.NONE or not any(elsewhere + [pair.error(one) for one in near]):
+        return uninformative(pair.moving, pair.fixed)
     middle = (np.array(pair.shape[::-1]) - 1) / 2
-    dx, dy = warp.apply(H, [middle])[0] - middle
-    reason = failure_reason(pair, H, d, near, far, limit if max(abs(dx), abs(dy)) >= limit else None)
+    dx, dy = (float(by) for by in warp.apply(H, [middle])[0] - middle)
     degrees = float(np.rad2deg(np.arctan2(H[1, 0], H[0, 0])))
-    return Validation(
-        pair.moving, pair.fixed, H, (float(dy), float(dx)), degrees, *errors, sure, True, reason
-    )
+    sure = confidence(pair.error(pair.differences(H)), elsewhere)
+    away = int(np.any([pair.lower(one, d)[:-1] for one in near], axis=0).sum())
+    reason = failure_reason(pair, H, elsewhere, all(pair.lower(d, one)[-1] for one in near), away)
+    if max(abs(dx), abs(dy)) >= limit:
+        reason = f"the offset lies at the end of the range, {limit} pixels"
+    apart = away >= ROTATED if sure >= LOST else pair.error(pair.differences(still, 8 * coarse)) > pair.apart
+    numbers = (dy, dx), degrees, pair.error(before), e, sure
+    return Validation(pair.moving, pair.fixed, H, *numbers, True, reason, apart)
 
 
-def uninformative(moving: int, fixed: int, H: F64 | None = None) -> Validation:
+def uninformative(moving: int, fixed: int) -> Validation:
     """Return the Validation of a pair that cannot be compared."""
     reason = "uninformative: both measure too little of the scene, or no threshold divides both pictures"
-    return Validation(
-        moving, fixed, np.eye(3) if H is None else H, (0.0, 0.0), 0.0, 0.0, 0.0, 0.0, False, reason
-    )
+    return Validation(moving, fixed, np.eye(3), (0.0, 0.0), 0.0, 0.0, 0.0, 0.0, False, reason)
 
 
-def failure_reason(
-    pair: Comparison, H: F64, d: F64, near: list[F64], far: list[F64], limit: float | None
-) -> str:
-    """Return the reason not to trust H, whose differences are d, or an empty string."""
-    if limit is not None:
-        return f"the offset lies at the end of the range, {limit} pixels"
-    e, elsewhere = pair.error(d), [pair.error(one) for one in far]
+def failure_reason(pair: Comparison, H: F64, elsewhere: list[float], clear: bool, away: int) -> str:
+    """Return the reason not to trust H, or an empty string.
+
+    `elsewhere` are the errors far from it; near it all is clearly worse, and `away` quarters are better.
+    """
+    e, n = pair.error(pair.differences(H)), pair.scale
     if not any(elsewhere):
-        return f"the picture repeats itself: {FAR} pixels away the photographs fit as well"
+        return f"the picture repeats itself: {FAR * n} pixels away the photographs fit as well"
     if (sure := confidence(e, elsewhere)) < LOST:
-        return f"8 pixels away the photographs fit nearly as well (confidence {sure:.2f})"
-    if not all(pair.lower(d, one)[-1] for one in near):
-        return "2 pixels away the photographs fit as well"
-    if away := np.any([pair.lower(one, d)[:-1] for one in near], axis=0).sum():
+        return f"{FAR * n} pixels away the photographs fit nearly as well (confidence {sure:.2f})"
+    if away:
         return f"{away} of 4 quarters of the picture fit better elsewhere (rotation, depth or motion)"
+    if not clear:
+        return f"{NEAR * max(n // 2, 1)} pixels away the photographs fit as well"
     for rival in rivals(pair.middle):
-        also = pair.error(pair.differences(shift(H, rival), ROWS))
+        also = pair.error(pair.differences(shift(H, rival * n)))
         if confidence(e, [also]) < LOST or also - e < ALIKE * (np.mean(elsewhere) - e):
-            return f"the picture repeats itself: moved on by {tuple(rival.tolist())} it fits nearly as well"
+            on = tuple((rival * n).tolist())
+            return f"the picture repeats itself: moved on by {on} it fits nearly as well"
     return ""
 
 
@@ -220,7 +250,8 @@ def rivals(middle: F32) -> list[Array]:
 
 def shift(H: F64, offset: ArrayLike) -> F64:
     """Return H, and then an offset (dy, dx) further."""
-    return np.asarray(warp.as_homographies(np.reshape(offset, (1, 2)))[0] @ H)
+    dy, dx = np.asarray(offset, float)
+    return np.asarray(np.array([[1, 0, dx], [0, 1, dy], [0, 0, 1]]) @ H)
 
 
 def _middle(image: Array, side: int) -> Array:

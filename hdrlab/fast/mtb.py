@@ -6,10 +6,11 @@ bits    of one photograph    (2, H, ceil(W / 64)) uint64: bitmap, and exclusion 
 offset  (dy, dx) pixels      down and right
 
 Of photographs above 2^17 pixels the histogram is counted on rows spread evenly: their median is that of all
-to a code.
+to a code. Of levels above 2^19 pixels bits are compared on such rows.
 """
 
-from itertools import pairwise
+from functools import partial
+from itertools import pairwise, product
 from typing import Self
 
 import numpy as np
@@ -21,11 +22,15 @@ from hdrlab.core.types import Array, Mask
 
 Words = NDArray[np.uint64]
 Offset = tuple[int, int]
+# pixels: a level of at most this many is compared as a whole
+WHOLE = 2**18
+# pixels: in the largest level of at most this many an offset is validated
+OVERVIEW = 2**20
 # pixels: the percentiles of this many are those of all
 ENOUGH = 2**17
 # pixels of a band of rows that fits the processor's cache
 CACHE = 2**18
-# rows of a band of which every third byte is picked
+# rows of a band, an even number, of which every third byte is picked
 BAND = 32
 
 
@@ -37,45 +42,61 @@ class Photograph:
         while len(self.Y) < bits and min(self.Y[-1].shape) >= lesson.SMALLEST:
             self.Y.append(_shrink(self.Y[-1]))
         self.h = [_histogram(Y) for Y in self.Y]
-        self._bits: dict[tuple[int, int], Words] = {}
+        self.overview = next((j for j, Y in enumerate(self.Y) if Y.size <= OVERVIEW), len(self.Y) - 1)
+        self._bits: dict[tuple[int, ...], Words] = {}
+        self._thresholds: dict[tuple[float, int], int] = {}
 
     def threshold(self, q: float, level: int = 0) -> int:
         """Return the threshold of a level."""
-        return int(lesson.threshold(self.h[level], q))
+        if (q, level) not in self._thresholds:
+            self._thresholds[q, level] = int(lesson.threshold(self.h[level], q))
+        return self._thresholds[q, level]
 
-    def bits(self, q: float, level: int) -> Words:
-        """Return the bits of a level, which is compared with the one before and the one after."""
-        key = level, self.threshold(q, level)
-        if key not in self._bits:
-            self._bits[key] = _bitmaps(self.Y[level], key[1])
+    def bits(self, q: float, level: int, dx: int = 0, first: int = 0) -> Words:
+        """Return the bits of a level, moved dx pixels to the right; of a large one of some rows alone."""
+        key = level, self.threshold(q, level), first, dx
+        if key not in self._bits and dx:
+            self._bits[key] = _slide(self.bits(q, level, 0, first), dx)
+        elif key not in self._bits:
+            self._bits[key] = _bitmaps(self.Y[level][first :: _every(self.Y[level])], key[1])
         return self._bits[key]
+
+    def compare(self, fixed: Self, offset: Offset, level: int, q: float) -> tuple[Words, Words, int]:
+        """Return where bits differ after an offset, where they are compared, and the rows of the upper half.
+
+        What slides in from the side is 0 in the exclusion bitmap too, so nothing beyond the overlap counts.
+        """
+        (dy, dx), H, every = offset, len(self.Y[level]), _every(self.Y[level])
+        top = -(-max(dy, 0) // every)
+        rows = len(range(top * every, min(H, H + dy), every))
+        start = (top * every - dy) // every
+        A = fixed.bits(q, level)[:, top : top + rows]
+        B = self.bits(q, level, dx, -dy % every)[:, start : start + rows]
+        kept = A[1] & B[1]
+        return (A[0] ^ B[0]) & kept, kept, max(-(-(H // 2) // every) - top, 0)
+
+    def error(self, fixed: Self, level: int, q: float, offset: Offset) -> float:
+        """Return bits that differ / bits compared."""
+        differ, kept, _ = self.compare(fixed, offset, level, q)
+        return int(np.bitwise_count(differ).sum()) / max(int(np.bitwise_count(kept).sum()), 1)
 
     def offset_onto(self, fixed: Self, q: float = 0.5) -> Offset:
         """Return the offset that lays this photograph on another, as `align.mtb.search` finds it."""
         y, x = 0, 0
         for level in reversed(range(len(self.Y))):
-            errors = _errors(fixed.bits(q, level), self.bits(q, level), (2 * y, 2 * x))
-            dy, dx = min(lesson.NINE, key=lambda d: errors[d[0] + 1, d[1] + 1])
-            y, x = 2 * y + dy, 2 * x + dx
+            nine = [(2 * y + dy, 2 * x + dx) for dy, dx in lesson.NINE]
+            y, x = min(nine, key=partial(self.error, fixed, level, q))
         return y, x
 
-    def count_differences(
-        self, fixed: Self, offset: Offset, every: int = 1, q: float = 0.5
-    ) -> NDArray[np.int64]:
-        """Return (4, 2), of the quarters of the picture: bits that differ after an offset, bits compared.
+    def count_differences(self, fixed: Self, offset: Offset, level: int, q: float = 0.5) -> Array:
+        """Return (4, 2), of the quarters of a level: bits that differ after an offset, bits compared.
 
-        Of every n-th row; the quarters are cut at a whole word.
+        The quarters are cut at a whole word.
         """
-        dy, H = offset[0], len(self.Y[0])
-        rows = np.arange(-(-max(dy, 0) // every) * every, max(H + min(dy, 0), 0), every)
-        A, B = fixed.bits(q, 0)[:, rows], _slide(self.bits(q, 0)[:, rows - dy], offset[1])
-        kept = A[1] & B[1]
-        counts = np.bitwise_count(np.stack([(A[0] ^ B[0]) & kept, kept]))
-        n, half = np.searchsorted(rows, H // 2), kept.shape[1] // 2
-        quarters = [
-            rest for part in (counts[:, :n], counts[:, n:]) for rest in np.split(part, [half], axis=2)
-        ]
-        return np.array([one.sum(axis=(1, 2), dtype=np.int64) for one in quarters])
+        differ, kept, n = self.compare(fixed, offset, level, q)
+        ones, half = (np.bitwise_count(differ), np.bitwise_count(kept)), kept.shape[1] // 2
+        quarters = product((slice(n), slice(n, None)), (slice(half), slice(half, None)))
+        return np.array([[one[quarter].sum(dtype=np.int64) for one in ones] for quarter in quarters])
 
 
 def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np.int64]:
@@ -100,8 +121,17 @@ def _gray(image: Array, luma: bool) -> Array:
 
 def _shrink(Y: Array) -> Array:
     rows, columns = Y.shape[0] // 2 * 2, Y.shape[1] // 2 * 2
-    pairs = np.add(Y[0:rows:2, :columns], Y[1:rows:2, :columns], dtype=np.uint16)
-    return ((pairs[:, 0::2] + pairs[:, 1::2] + 2) >> 2).astype(np.uint8)
+    half = np.empty((rows // 2, columns // 2), np.uint8)
+    for row in range(0, rows, BAND):
+        two = np.ascontiguousarray(Y[row : min(row + BAND, rows), :columns]).view(np.uint16)
+        two = (two & 255) + (two >> 8)
+        half[row // 2 : (row + BAND) // 2] = (two[::2] + two[1::2] + 2) >> 2
+    return half
+
+
+def _every(Y: Array) -> int:
+    """Return of how many rows one is compared."""
+    return -(-Y.size // WHOLE)
 
 
 def _histogram(Y: Array) -> NDArray[np.int64]:
@@ -110,8 +140,12 @@ def _histogram(Y: Array) -> NDArray[np.int64]:
 
 
 def _bitmaps(Y: Array, t: int) -> Words:
-    bands = np.array_split(Y, Y.size // CACHE + 1)
-    return np.concatenate([_pack(np.stack([t < Z, lesson.exclusion(Z, t)])) for Z in bands], axis=1)
+    packed = []
+    for Z in np.array_split(Y, Y.size // CACHE + 1):
+        mask = np.empty((2, *Z.shape), bool)
+        mask[0], mask[1] = t < Z, lesson.exclusion(Z, t)
+        packed.append(_pack(mask))
+    return np.concatenate(packed, axis=1)
 
 
 def _pack(mask: Mask) -> Words:
@@ -123,30 +157,10 @@ def _pack(mask: Mask) -> Words:
 
 def _slide(words: Words, dx: int) -> Words:
     """Return every row moved dx pixels to the right: zeros come in, and what leaves is gone."""
-    whole, part = divmod(dx, 64)
-    n, margin = words.shape[-1], abs(whole) + 1
-    wide = np.zeros((*words.shape[:-1], n + 2 * margin), np.uint64)
-    wide[..., margin : margin + n] = words
-    first = margin - whole
-    moved = wide[..., first : first + n] >> np.uint64(part)
-    if part:
-        moved |= wide[..., first - 1 : first - 1 + n] << np.uint64(64 - part)
+    n, (whole, part) = words.shape[-1], divmod(dx, 64)
+    moved = np.zeros_like(words)
+    for by, bits in ((whole, part), (whole + 1, part - 64)) if part else ((whole, 0),):
+        end = max(n + min(by, 0), 0)
+        source = words[..., max(-by, 0) : max(n - by, 0)]
+        moved[..., max(by, 0) : end] |= source >> np.uint64(bits) if bits >= 0 else source << np.uint64(-bits)
     return moved
-
-
-def _errors(fixed: Words, moving: Words, offset: Offset) -> NDArray[np.float64]:
-    """Return the errors (3, 3) of the nine offsets around one, rows dy and columns dx.
-
-    What slides in from the side is 0 in the exclusion bitmap too, so nothing beyond the overlap is compared.
-    """
-    errors, H = np.zeros((3, 3)), fixed.shape[1]
-    for j in range(3):
-        moved = _slide(moving, offset[1] + j - 1)
-        for i in range(3):
-            dy = offset[0] + i - 1
-            A, A_kept = fixed[:, max(dy, 0) : max(H + dy, 0)]
-            B, B_kept = moved[:, max(-dy, 0) : max(H - dy, 0)]
-            kept = A_kept & B_kept
-            compared = int(np.bitwise_count(kept).sum())
-            errors[i, j] = int(np.bitwise_count((A ^ B) & kept).sum()) / max(compared, 1)
-    return errors

@@ -1,13 +1,11 @@
-"""Alignment of a bracket pair by pair: every answer is validated, and the best of the methods is chosen.
+"""Alignment of a bracket pair by pair, where every answer is validated.
 
-e  error  mean over the pairs of neighbours in brightness of the mean square of d, see `align.light`, over the
-          pixels that a pair shows after each of the methods alike, so that none gains by what it leaves out
-
-Of all methods "auto" takes the simplest whose error is within a twentieth of the least. So by this measure
-the choice is never worse than leaving the photographs where they are: that is the simplest of all.
+"mtb" shifts by whole pixels. "auto" does so, too, and looks once more at the pairs that no shift lays on each
+other: with rotation, then with a homography, in an overview of half a megapixel. It takes their answer
+where the light of the two photographs then agrees clearly better than after the shift.
 """
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -31,27 +29,33 @@ SEARCHES: dict[str, Callable[[list[F32]], Iterator[Any]]] = {
     "cerman": cerman.search,
     "homography": homography.search,
 }
-# the simplest first
-CHOICES = ("none", "mtb", "cerman", "homography")
-# of the least error
-SLACK = 0.05
+# levels of a pyramid: more than any picture has, so the range grows with the picture
+BITS = 16
 # percentiles that are tried where the search by the median fails
 OTHERS = (0.83, 0.17)
 # confidence of what is taken from them
 CERTAIN = 0.9
+# from the numbers and the gray photographs of a darker and a brighter one to the pyramid of their light
+AsLight = Callable[[int, int, Array, Array], list[F32]]
 
 
 class Registration(NamedTuple):
-    """The homographies (P, 3, 3) of a bracket, the Validation of each pair, and the errors of the choices."""
+    """The homographies (P, 3, 3) of a bracket, the Validation of each pair, and the method.
+
+    Of "auto" it is the least simple that a pair took, and "none" where all photographs stay.
+    """
 
     homographies: F64
     pairs: tuple[Validation, ...]
     method: str
-    errors: dict[str, float]
 
 
 def register(
-    images: ArrayLike, method: str = "auto", *, times: ArrayLike | None = None, g: ArrayLike | None = None
+    images: ArrayLike,
+    method: str = "auto",
+    *,
+    times: ArrayLike | None = None,
+    g: ArrayLike | Callable[[], F64 | None] | None = None,
 ) -> Registration:
     """Return the Registration of photographs by a method of METHODS.
 
@@ -62,11 +66,12 @@ def register(
     images : (P, H, W) or (P, H, W, 3), uint8 or uint16
         Photographs of one scene with different exposures, in any order.
     method : str
-        "mtb", "cerman", "homography", or "auto", which takes whichever lays them on each other best.
+        "mtb", "cerman", "homography", or "auto": "mtb", and the others for pairs that no shift serves.
     times : (P,) seconds, optional
         Their exposures. Without them the ratios come out of the histograms.
     g : (n,) or (n, 3), optional
-        The camera's response, ln exposure of each level. Without it the histograms of each pair are matched.
+        The camera's response, ln exposure of each level, or a function that finds it where light is compared.
+        Without it the histograms of each pair are matched.
 
     Raises
     ------
@@ -82,26 +87,69 @@ def register(
     >>> found.method, found.homographies[0, :2, 2].tolist()  # dx, dy
     ('mtb', [-4.0, 3.0])
     """
-    images, errors = as_stack(images), dict[str, float]()
+    images = as_stack(images)
     if method not in METHODS:
         raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
-    if method == "mtb":
-        pairs = tuple(register_by_bits(images))
-    elif method == "auto":
-        method, pairs, errors = choose(images, times, g)
+    as_light = (
+        (lambda *pair: light_scale(images, times, g())(*pair))
+        if callable(g)
+        else light_scale(images, times, g)
+    )
+    if method in SEARCHES:
+        pairs = tuple(register_by_light(images, as_light, method))
     else:
-        each = light_pairs(images, times, g)
-        pairs = tuple(_validated(*one, method) for one in each)
-    steps = [one.H if one.informative else None for one in pairs]
-    return Registration(warp.chain_homographies(mtb.by_brightness(images), steps), pairs, method, errors)
+        pairs = tuple(register_by_bits(images))
+    if method == "auto":
+        names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]
+        if any(one.apart for one in pairs):  # a hand that rotates once does so in every pair
+            found = [
+                improve(*one, B, A, as_light)
+                for one, (_, B, _, A) in zip(
+                    zip(pairs, names, strict=True), photograph_pairs(images), strict=True
+                )
+            ]
+            pairs, names = tuple(one for one, _ in found), [name for _, name in found]
+        method = next((name for name in ("homography", "cerman", "mtb") if name in names), "none")
+    order = [pairs[0].moving, *(one.fixed for one in pairs)] if pairs else [0]
+    return Registration(warp.chain_homographies(order, [one.step for one in pairs]), pairs, method)
 
 
-def register_by_bits(images: Array, *, bits: int = 6) -> Iterator[Validation]:
+def photograph_pairs(images: Array, bits: int = BITS) -> Iterator[tuple[int, Photograph, int, Photograph]]:
+    """Yield the numbers and Photographs of neighbours from dark to bright, two at a time in memory."""
+    taken = ((image, Photograph(images[image], bits=bits)) for image in mtb.by_brightness(images))
+    yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
+
+
+def register_by_bits(images: Array, *, bits: int = BITS) -> Iterator[Validation]:
     """Yield the Validation of pair after pair from dark to bright, by median threshold bitmaps."""
-    order = mtb.by_brightness(images)
-    taken = ((image, Photograph(images[image], bits=bits)) for image in order)
-    for (moving, B), (fixed, A) in pairwise(taken):  # two at a time in memory
-        yield best_percentile(moving, B, fixed, A)
+    yield from (best_percentile(*both) for both in photograph_pairs(images, bits))
+
+
+def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator[Validation]:
+    """Yield the Validation of pair after pair from dark to bright, by one of SEARCHES at full resolution."""
+    Z = images if images.ndim == 3 else images[..., 1]
+    for moving, fixed in pairwise(mtb.by_brightness(images)):
+        pyramid = as_light(moving, fixed, Z[moving], Z[fixed])
+        pair = judgement.compare_light(moving, fixed, pyramid[0])
+        yield judgement.validate(pair, last(SEARCHES[method](pyramid)).H)
+
+
+def improve(
+    best: Validation, name: str, B: Photograph, A: Photograph, as_light: AsLight
+) -> tuple[Validation, str]:
+    """Return the Validation of a pair by the simplest method that serves, and its name."""
+    scale = 2**A.overview
+    pyramid = as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
+    pair = judgement.compare_light(best.moving, best.fixed, pyramid[0], scale)
+    d = pair.differences(best.step)
+    for method, search in SEARCHES.items():
+        found = judgement.validate(pair, homography.enlarge(last(search(pyramid)).H, scale))
+        left = pair.differences(found.H)
+        if found.known and pair.lower(left, d)[-1]:
+            best, name, d = found, method, left
+        if not best.apart:
+            break
+    return best, name
 
 
 def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:
@@ -115,10 +163,11 @@ def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Va
         if q is None:
             return judgement.uninformative(moving, fixed)
 
-        def count(offset: tuple[int, int], every: int) -> Array:
-            return B.count_differences(A, offset, every, q)
+        def count(offset: Array, level: int) -> Array:
+            return B.count_differences(A, (int(offset[0]), int(offset[1])), level, q)
 
-        both = judgement.compare_bits(moving, fixed, A.Y[0], A.threshold(q), count)
+        t = A.threshold(q, A.overview)
+        both = judgement.compare_bits(moving, fixed, A.Y, A.overview, t, count)
         H = warp.as_homographies([B.offset_onto(A, q)])[0]
         return judgement.validate(both, H, limit=2 ** len(A.Y) - 1)
 
@@ -130,83 +179,33 @@ def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Va
     return first
 
 
-def light_pairs(
-    images: Array, times: ArrayLike | None, g: ArrayLike | None
-) -> Iterator[tuple[int, int, list[F32]]]:
-    """Yield (moving, fixed, pyramid of their light) from dark to bright, with one pyramid in memory.
+def light_scale(images: Array, times: ArrayLike | None, g: ArrayLike | None) -> AsLight:
+    """Return the function that brings the light of two photographs to one scale, at every size.
 
     Without a response the darker photograph is brought to the brighter one by histograms alone, both are read
     by the curve of sRGB, and each pixel is divided by the mean around it: what is wrong with that is wrong in
     both alike, and cancels.
     """
-    n, Z = levels(images), images if images.ndim == 3 else images[..., 1]
+    n = levels(images)
     seconds = None if times is None else as_times(times, len(images))
-    f_inv = decode_srgb(np.arange(n) / (n - 1))
+    table = decode_srgb(np.arange(n) / (n - 1))
     if g is not None:
-        f_inv = np.exp(as_table(g, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
-    for moving, fixed in pairwise(mtb.by_brightness(images)):
+        table = np.exp(as_table(g, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
+
+    def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
+        f_inv = table[:: (n - 1) // np.iinfo(dark.dtype).max]  # an overview has 8 bits
         if g is None:
-            T = brightness_transfer(*histograms(Z[[moving, fixed]])[0])
-            T[0], T[-1] = 0, n - 1
-            z, known = np.arange(n), np.flatnonzero(np.isfinite(T))
+            T = brightness_transfer(*histograms([dark, bright])[0])
+            T[0], T[-1] = 0, len(f_inv) - 1
+            z, known = np.arange(len(f_inv)), np.flatnonzero(np.isfinite(T))
             matched = np.interp(np.interp(z, known, T[known]), z, f_inv)
-            pyramid = light.pair(Z[fixed], Z[moving], f_inv, matched)
-            yield moving, fixed, [np.stack([x / light.local_mean(x) for x in X]) for X in pyramid]
-            continue
-        if seconds is None:
-            k = light.exposure_ratio(Z[moving], Z[fixed], np.log(f_inv))
-        else:
+            return [
+                np.stack([x / light.local_mean(x) for x in X])
+                for X in light.pair(bright, dark, f_inv, matched)
+            ]
+        k = light.exposure_ratio(dark, bright, np.log(f_inv))
+        if seconds is not None:
             k = seconds[fixed] / seconds[moving]
-        yield moving, fixed, light.pair(Z[fixed], Z[moving], f_inv, k * f_inv)
+        return light.pair(bright, dark, f_inv, k * f_inv)
 
-
-def _validated(moving: int, fixed: int, pyramid: list[F32], method: str) -> Validation:
-    """Return the Validation of what a method finds for a pair."""
-    pair = judgement.compare_light(moving, fixed, pyramid[0])
-    return judgement.validate(pair, last(SEARCHES[method](pyramid)).H)
-
-
-def choose(
-    images: Array, times: ArrayLike | None, g: ArrayLike | None
-) -> tuple[str, tuple[Validation, ...], dict[str, float]]:
-    """Return the simplest method whose error is within SLACK of the least, its pairs, and the errors of all.
-
-    A homography is tried only where there is a reason not to trust a pair of what is chosen without.
-    """
-    images = as_stack(images)
-    shifts = [one.H for one in register_by_bits(images)]
-    name, pairs, errors = _choose_among(CHOICES[:3], images, times, g, shifts)
-    if all(one.reliable for one in pairs):
-        return name, pairs, errors
-    return _choose_among(CHOICES, images, times, g, shifts)
-
-
-def _choose_among(
-    names: Sequence[str], images: Array, times: ArrayLike | None, g: ArrayLike | None, shifts: Sequence[F64]
-) -> tuple[str, tuple[Validation, ...], dict[str, float]]:
-    found: dict[str, list[Validation]] = {name: [] for name in names}
-    errors = []
-    for (moving, fixed, pyramid), by_bits in zip(light_pairs(images, times, g), shifts, strict=True):
-        pair = judgement.compare_light(moving, fixed, pyramid[0])
-        answers = {"none": np.eye(3), "mtb": by_bits}
-        answers |= {name: last(SEARCHES[name](pyramid)).H for name in names if name in SEARCHES}
-        for name, H in answers.items():
-            found[name].append(judgement.validate(pair, H))
-        d = np.array([pair.differences(found[name][-1].H) for name in names])
-        alike = np.isfinite(d).all(axis=0)
-        errors.append([light.error(np.where(alike, one, np.nan)) for one in d])
-    e = dict(zip(names, np.mean(errors, axis=0).tolist() if errors else [0.0] * len(names), strict=True))
-    name = simplest(e)
-    return name, tuple(found[name]), e
-
-
-def simplest(e: dict[str, float]) -> str:
-    """Return the simplest method whose error is within SLACK of the least.
-
-    Examples
-    --------
-    >>> simplest({"none": 0.2, "mtb": 0.101, "cerman": 0.1})
-    'mtb'
-    """
-    least = min(e.values())
-    return next(name for name in CHOICES if name in e and e[name] <= (1 + SLACK) * least)
+    return as_light

@@ -1,5 +1,8 @@
 """The photographs brought to lie on each other, by a method of `align` or a function of yours."""
 
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+
 import numpy as np
 
 from hdrlab.align.resample import photographs
@@ -7,38 +10,52 @@ from hdrlab.align.shift import as_offsets, shift
 from hdrlab.core import warp
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.types import F64, Array
-from hdrlab.diagnostics.registration import LOST, Validation
+from hdrlab.diagnostics.registration import Validation
 from hdrlab.pipeline import alignment
 from hdrlab.pipeline.assembly import Assembly, Method
 from hdrlab.pipeline.recovery import find_validated_method
 
-# these compare light, so they need times and a response
-BY_LIGHT = ("auto", *alignment.SEARCHES)
-# what to do where photographs do not lie on each other, by whether they were rotated, too
-ADVICE = {
-    False: 'no shift clearly lays one on the other; align by "auto", which turns them too, or leave one out',
-    True: "no homography clearly lays one on the other; leave one out",
-}
+# what to do where photographs do not lie on each other, by the method
+ADVICE = {"mtb": 'align by "auto", which rotates them too, or leave one out'}
+LEAVE = 'leave one out, or align by "none" if it is the scene that moved'
 
 
 def aligned(bracket: Bracket, align: Method, response: Method = "auto") -> Assembly:
     """Return the Assembly after alignment: by a method's name, a function, or "none"."""
-    by_light = align in BY_LIGHT
-    g = provisional(bracket, response) if by_light else None
-    H, pairs, notes = registered(bracket, align, g)
-    if H.ndim == 3 and not by_light:
-        g = provisional(bracket, response)
-    lost = [one for one in pairs if one.informative and one.confidence < LOST]
-    notes += tuple(_about(one, bracket) for one in pairs if one.failure and one not in lost)
-    doubts = tuple(f"{_about(one, bracket)}: {ADVICE[by_light]}" for one in lost)
+    curve = cache(partial(provisional, bracket, response))  # found where it is asked for, and once
+    H, pairs, notes = registered(bracket, align, curve)
+    g = curve() if H.ndim == 3 else None
+    doubts, more = describe(pairs, bracket.names, ADVICE.get(str(align), LEAVE))
     taken, H = moved(bracket, H, g), warp.as_homographies(H)
     middle = (np.array(bracket.images.shape[2:0:-1]) - 1) / 2
     offsets = np.rint(warp.apply(H, [middle])[:, 0] - middle).astype(np.int64)[:, ::-1]
-    return Assembly("align", taken, offsets, notes=notes, doubts=doubts, homographies=H)
+    return Assembly("align", taken, offsets, notes=notes + more, doubts=doubts, homographies=H)
+
+
+def describe(
+    pairs: tuple[Validation, ...], names: Sequence[str], advice: str
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Return doubts and notes on the pairs of a bracket, one sentence at most in both together.
+
+    A pair of which nothing is known is no reason for a doubt: it stays as it is, and where its neighbours
+    stand still this is where it belongs.
+    """
+
+    def which(found: list[Validation]) -> str:
+        first, more = found[0], len(found) - 1
+        and_more = f" (and {more} more pair{'s' * (more > 1)})" if more else ""
+        return f"{names[first.moving]} and {names[first.fixed]}{and_more}"
+
+    if apart := [one for one in pairs if one.apart]:
+        return (f"{which(apart)} do not lie on each other: {apart[0].failure}; {advice}",), ()
+    unknown = [one for one in pairs if not one.known]
+    if unknown and any(np.any(one.step != np.eye(3)) for one in pairs):
+        return (), (f"{which(unknown)}: too dark or too bright to be laid on each other; moved as one",)
+    return (), ()
 
 
 def registered(
-    bracket: Bracket, align: Method, g: F64 | None
+    bracket: Bracket, align: Method, g: Callable[[], F64 | None]
 ) -> tuple[Array, tuple[Validation, ...], tuple[str, ...]]:
     """Return offsets (P, 2) or homographies (P, 3, 3), the validation of each pair, and notes."""
     images, times = bracket.images, bracket.times
@@ -48,13 +65,10 @@ def registered(
         answer = np.asarray(align(images))
         return (warp.as_homographies if answer.ndim == 3 else as_offsets)(answer, len(images)), (), ()
     found = alignment.register(images, align, times=times, g=g)
-    if align == "mtb":
+    if found.method in ("none", "mtb"):
         return found.homographies[:, 1::-1, 2].astype(np.int64), found.pairs, ()
-    if align != "auto":
-        return found.homographies, found.pairs, ()
-    off, still = (100 * np.sqrt(found.errors[one]) for one in (found.method, "none"))
-    said = f'aligned by "{found.method}": light that differs by {off:.1f} %, and by {still:.1f} % as it was'
-    return found.homographies, found.pairs, (said,)
+    rotated = f'aligned by "{found.method}", since no shift lays the photographs on each other'
+    return found.homographies, found.pairs, (rotated,) if align == "auto" else ()
 
 
 def provisional(bracket: Bracket, response: Method) -> F64 | None:
@@ -83,11 +97,3 @@ def moved(bracket: Bracket, H: Array, g: F64 | None = None) -> Bracket:
     if valid is not None:
         valid = shift(valid.view(np.uint8), H).view(bool)
     return bracket._replace(images=shift(images, H), valid=valid)
-
-
-def _about(pair: Validation, bracket: Bracket) -> str:
-    """Return the sentence on a pair whose alignment is not to be trusted."""
-    moving, fixed = bracket.names[pair.moving], bracket.names[pair.fixed]
-    by = "({:.3g}, {:.3g}) pixels".format(*pair.offset)
-    by += f" and rotated by {pair.degrees:.2f} degrees" if pair.degrees else ""
-    return f"{moving} against {fixed}, moved by {by}: {pair.failure}"

@@ -56,8 +56,8 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         A method of `align`, "none", or your own `align(images)` -> offsets (P, 2) of whole pixels or
         homographies (P, 3, 3). "mtb" shifts by whole pixels and leaves every pixel as it is. "cerman" turns
         too, and "homography" takes scale and tilt; both resample light, by a provisional response
-        out of the histograms. "auto" takes whichever lays the photographs on each other best, see
-        `pipeline.alignment`.
+        out of the histograms. "auto" is "mtb", and "cerman" or "homography" for the photographs that no
+        shift lays on each other, see `pipeline.alignment`.
     response : str or function
         A method of `response`, "auto" (linear where the bracket is, else see `response_choice`), or your own
         `recover(images, times, *, valid) -> g`.
@@ -103,7 +103,7 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
 def assemble_steps(
     bracket: Bracket,
     *,
-    align: Method = "mtb",
+    align: Method = "auto",
     response: Method = "auto",
     weight: str = "gaussian",
     method: str = "log",

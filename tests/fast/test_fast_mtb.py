@@ -15,12 +15,23 @@ from hdrlab.fast import mtb
 @given(st.integers(1, 12), st.integers(1, 140), st.integers(0, 2**32 - 1), st.data())
 @settings(max_examples=30, deadline=None)
 def test_counting_in_words_is_counting_pixel_by_pixel(rows, columns, seed, data):
-    rng = np.random.default_rng(seed)
-    fixed, moving = rng.random((2, 2, rows, columns)) < 0.6
-    y, x = data.draw(st.tuples(st.integers(-15, 15), st.integers(-150, 150)))
-    found = mtb._errors(mtb._pack(fixed), mtb._pack(moving), (y, x))
-    for (dy, dx), error in lesson.step(fixed, moving, (y, x)).items():
-        assert found[dy - y + 1, dx - x + 1] == error
+    fixed, moving = np.random.default_rng(seed).integers(0, 256, (2, rows, columns), dtype=np.uint8)
+    offset = data.draw(st.tuples(st.integers(-15, 15), st.integers(-150, 150)))
+    both = mtb.Photograph(moving), mtb.Photograph(fixed)
+    differ, compared = both[0].count_differences(both[1], offset, 0).sum(axis=0)
+    assert differ / max(compared, 1) == lesson.error(lesson.bitmaps(fixed), lesson.bitmaps(moving), offset)
+
+
+@pytest.mark.parametrize("offset", [(0, 0), (7, -4), (-90, 33)])
+def test_of_a_large_picture_some_rows_tell_what_all_of_them_would(offset):
+    Y = zoom(camera(), 2.5, order=1)
+    (dy, dx), shape = offset, (1000, 1100)
+    fixed, moving = Y[100:1100, 100:1200], Y[100 + dy : 1100 + dy, 100 + dx : 1200 + dx] // 2
+    assert mtb.align(np.stack([moving, fixed]), bits=8)[0].tolist() == [dy, dx]
+    both = mtb.Photograph(moving), mtb.Photograph(fixed)
+    some = both[0].count_differences(both[1], (dy + 2, dx), 0).sum(axis=0)
+    all_ = lesson.error(lesson.bitmaps(fixed), lesson.bitmaps(moving), (dy + 2, dx))
+    assert some[1] < shape[0] * shape[1] / 2 and some[0] / some[1] == pytest.approx(all_, rel=0.1)
 
 
 @given(st.integers(1, 5), st.integers(1, 200), st.integers(-210, 210), st.integers(0, 2**32 - 1))

@@ -1,0 +1,82 @@
+"""What `assemble` says of alignment: a doubt where photographs do not lie on each other, and nowhere else."""
+
+import numpy as np
+import pytest
+from brackets import MARGIN, H, W, photograph, radiance
+from brackets import bracket as shoot
+from skimage.data import astronaut, coffee
+
+from hdrlab import pipeline
+from hdrlab.core.bracket import bracket
+from hdrlab.pipeline.alignment import register
+
+STILL = [(0, 0)] * 7
+HAND = [(4, -3), (1, 2), (0, 0), (-2, 5), (3, 3), (6, -1), (2, 2)]
+# ends that are nearly black and nearly white
+TIMES = 4.0 ** np.linspace(-6, 3, 7)
+
+
+def aligned(images, align="auto"):
+    """Return the first stage of `assemble` of photographs a factor of 16 apart."""
+    return pipeline.aligned(bracket(images, 16.0 ** np.arange(len(images))), align)
+
+
+def night(offsets, seed=0):
+    """Return photographs of a street at night: nearly black but for lamps, and noisy."""
+    rng = np.random.default_rng(seed)
+    E = 1e-3 * radiance(coffee(), 1.0)
+    for y, x in rng.integers(MARGIN, (MARGIN + H, MARGIN + W), (12, 2)):
+        E[y : y + 4, x : x + 4] += 3
+    return np.stack([photograph(E, 4.0**k, o, rng=rng, noise=0.02) for k, o in enumerate(offsets)])
+
+
+@pytest.mark.parametrize("align", ["auto", "mtb"])
+@pytest.mark.parametrize("texture", [astronaut, coffee])
+def test_a_tripod_is_not_doubted_for_frames_that_are_nearly_black_or_white(texture, align):
+    images = shoot(STILL, TIMES, texture=texture(), decades=3.0)
+    assert np.mean(images[0] < 12) > 0.8 and np.mean(images[-1] > 243) > 0.8
+    found = aligned(images, align)
+    assert not found.offsets.any() and found.doubts == () and found.notes == ()
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_tripod_at_night_is_not_doubted(seed):
+    found = aligned(night([(0, 0)] * 4, seed))
+    assert not found.offsets.any() and found.doubts == ()
+
+
+def test_a_frame_that_cannot_be_aligned_goes_with_its_neighbour_and_is_named():
+    images = shoot(HAND[1:4], [1, 4, 16])
+    black = np.random.default_rng(0).integers(0, 3, images[:1].shape, dtype=np.uint8)
+    found = aligned(np.concatenate([black, images]))
+    assert np.array_equal(found.offsets[0], found.offsets[1]) and found.offsets[1].any()
+    (note,) = found.notes
+    assert "frame 1 and frame 2" in note and "too dark or too bright" in note and found.doubts == ()
+
+
+def test_pairs_that_do_not_lie_on_each_other_are_one_doubt_that_says_what_to_do():
+    shots = [shoot([(0, 0)], [1, 4, 16][j : j + 1], texture=[astronaut, coffee][j % 2]()) for j in range(3)]
+    (doubt,) = aligned(np.concatenate(shots), "mtb").doubts
+    assert "and 1 more pair" in doubt and "leave one out" in doubt
+
+
+def test_the_range_of_the_search_grows_with_the_picture():
+    E = np.kron(radiance(astronaut()), np.ones((2, 2, 1)))
+    rng = np.random.default_rng(0)
+    views = [0.2 * t * E[y : y + 700, x : x + 900] for t, y, x in ((1, 10, 5), (4, 110, 95))]
+    images = np.stack(
+        [(255 * np.clip(one + 0.002 * rng.standard_normal(one.shape), 0, 1) ** 0.45) for one in views]
+    )
+    found = register(images.astype(np.uint8), "mtb")
+    assert np.abs(np.subtract(found.pairs[0].offset, (-100, -90))).max() <= 1 and found.pairs[0].reliable
+
+
+def test_a_verdict_is_the_same_at_every_size():
+    rng = np.random.default_rng(3)
+    images = shoot([(0, 0), (0, 0)], [1, 4], noise=0.02)
+    for times in (1, 2, 4):
+        large = np.kron(images, np.ones((1, times, times, 1))) + rng.normal(
+            0, 2 * times, (2, H * times, W * times, 1)
+        )
+        (one,) = register(np.clip(large, 0, 255).astype(np.uint8), "mtb").pairs
+        assert one.known and not one.apart and one.confidence > 0.9
