@@ -1,7 +1,7 @@
 """Which well-known mistake an answer comes from: it agrees with a wrong file, and not with the library.
 
-The folder `mistakes` holds a file for each mistake: a docstring that says to the student
-what is wrong, the id of its TASK, and the wrong function. All of them are asked what the student was asked.
+The folder `mistakes` holds a file for each mistake, whose name begins with the id of its task: a docstring
+that says to the student what is wrong, and the wrong function. All are asked what the student was asked.
 Wrong files are ours, and run here.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
@@ -44,8 +44,20 @@ def known() -> tuple[Misconception, ...]:
 
 def _read(path: Path) -> Misconception:
     names = runpy.run_path(str(path))
-    sentence = " ".join(names["__doc__"].split())
-    return Misconception(path.stem, names["TASK"], sentence, names[names["TASK"]])
+    task, sentence = task_of(path.stem), " ".join(names["__doc__"].split())
+    return Misconception(path.stem, task, sentence, names[task])
+
+
+def task_of(name: str) -> str:
+    """Return the id of the task that a wrong file is of: the longest that its name begins with.
+
+    Examples
+    --------
+    >>> task_of("scale_steps_no_threshold"), task_of("scale_too_low")
+    ('scale_steps', 'scale')
+    """
+    ids = [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
+    return max((id for id in ids if name.startswith(f"{id}_")), key=len)
 
 
 def recognise(task: str, calls: Sequence[Call]) -> str | None:

@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks import MISTAKES
+from hdrlab.course.checks.misconceptions import task_of
 from hdrlab.course.code import inline, names, source
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework
@@ -63,12 +64,10 @@ def mistake(name: str) -> Mistake:
     text = file.read_text(encoding="utf8")
     body = ast.parse(text).body[1:]
     house: dict[str, str] = {}
-    kept, task = [], ""
+    kept = []
     for node in body:
         if isinstance(node, ast.ImportFrom) and str(node.module).startswith(source.HOUSE):
             house |= {one.asname or one.name: f"{node.module}.{one.name}" for one in node.names}
-        elif isinstance(node, ast.Assign) and names.bound(node) == ["TASK"]:
-            task = ast.literal_eval(node.value)
         else:
             kept.append(node)
     calls = {}
@@ -78,7 +77,9 @@ def mistake(name: str) -> Mistake:
             calls[use.node.id] = _home(home, name)
         else:
             calls[ast.unparse(use.whole)] = _home(house[use.node.id], use.attribute)
-    return Mistake(task, "\n\n\n".join(str(ast.get_source_segment(text, node)) for node in kept), calls)
+    return Mistake(
+        task_of(file.stem), "\n\n\n".join(str(ast.get_source_segment(text, node)) for node in kept), calls
+    )
 
 
 def _home(module: str, name: str) -> str:

@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.tonemap import ward
 
-TASK = "adjust_steps"
-
 
 def adjust_steps(h, db, D, *, tolerance=0.025):
     return ward.adjust_steps(h, db, D / np.log(10), tolerance=tolerance)

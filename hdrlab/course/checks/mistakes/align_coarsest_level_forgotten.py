@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.align import mtb
 
-TASK = "align"
-
 
 def align(images, *, bits=6, luma=False):
     return mtb.align(images, bits=bits - 1, luma=luma) if bits > 1 else np.zeros((len(images), 2), int)

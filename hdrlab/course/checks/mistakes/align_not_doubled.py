@@ -4,8 +4,6 @@ from itertools import pairwise
 
 from hdrlab.align import mtb
 
-TASK = "align"
-
 
 def align(images, *, bits=6, luma=False):
     order = mtb.by_brightness(images)

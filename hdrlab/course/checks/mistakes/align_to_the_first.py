@@ -2,8 +2,6 @@
 
 from hdrlab.align import mtb
 
-TASK = "align"
-
 
 def align(images, *, bits=6, luma=False):
     offsets = mtb.align(images, bits=bits, luma=luma)

@@ -3,8 +3,6 @@ middle: change the sign."""
 
 from hdrlab.align import mtb
 
-TASK = "align"
-
 
 def align(images, *, bits=6, luma=False):
     return -mtb.align(images, bits=bits, luma=luma)

@@ -5,8 +5,6 @@ import numpy as np
 from hdrlab.core import pyramid
 from hdrlab.tonemap import fattal
 
-TASK = "attenuation_steps"
-
 
 def attenuation_steps(lL, *, alpha=0.1, beta=0.9, noise=0.01):
     levels = pyramid.gaussian(lL, pyramid.depth(lL.shape, 32))

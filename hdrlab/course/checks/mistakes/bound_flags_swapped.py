@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.radiance import merge as merging
 
-TASK = "bound"
-
 
 def bound(Z, B, g, top, shown):
     E, flags = merging.bound(Z, B, g, top, shown)

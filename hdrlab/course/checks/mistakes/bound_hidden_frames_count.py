@@ -2,8 +2,6 @@
 
 from hdrlab.radiance import merge as merging
 
-TASK = "bound"
-
 
 def bound(Z, B, g, top, shown):
     return merging.bound(Z, B, g, top, shown | True)

@@ -3,8 +3,6 @@ their logarithms."""
 
 import numpy as np
 
-TASK = "bound"
-
 
 def bound(Z, B, g, top, shown):
     clipped, dark = shown & (Z >= top), shown & (Z == 0)

@@ -3,8 +3,6 @@
 
 import numpy as np
 
-TASK = "compress"
-
 
 def compress(base, low, high, *, contrast=50.0):
     return min(1.0, np.log10(contrast) / (high - low)) * (base - low)

@@ -3,8 +3,6 @@ contrast."""
 
 import numpy as np
 
-TASK = "compress"
-
 
 def compress(base, low, high, *, contrast=50.0):
     return min(1.0, np.log(contrast) / (high - low)) * (base - high)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "compress"
-
 
 def compress(base, low, high, *, contrast=50.0):
     return np.log10(contrast) / (high - low) * (base - high)

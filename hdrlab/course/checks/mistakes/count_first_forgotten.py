@@ -2,8 +2,6 @@
 
 import math
 
-TASK = "count"
-
 
 def count(scene, usable, overlap):
     return max(math.ceil(scene / (usable - overlap)), 1)

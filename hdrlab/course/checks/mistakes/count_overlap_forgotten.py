@@ -2,8 +2,6 @@
 
 import math
 
-TASK = "count"
-
 
 def count(scene, usable, overlap):
     return max(1 + math.ceil((scene - usable) / usable), 1)

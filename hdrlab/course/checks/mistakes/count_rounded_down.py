@@ -2,8 +2,6 @@
 
 import math
 
-TASK = "count"
-
 
 def count(scene, usable, overlap):
     return max(1 + math.floor((scene - usable) / (usable - overlap)), 1)

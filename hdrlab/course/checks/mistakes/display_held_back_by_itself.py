@@ -2,8 +2,6 @@
 
 from hdrlab.tonemap import reinhard
 
-TASK = "display"
-
 
 def display(Lm, adaptation, white=float("inf")):
     return reinhard.display(Lm, Lm, white)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "display"
-
 
 def display(Lm, adaptation, white=np.inf):
     return Lm / (1 + adaptation) * (1 + Lm / white**2)

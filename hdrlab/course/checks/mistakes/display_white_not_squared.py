@@ -3,8 +3,6 @@ before."""
 
 import numpy as np
 
-TASK = "display"
-
 
 def display(Lm, adaptation, white=np.inf):
     return np.minimum(Lm / (1 + adaptation) * (1 + Lm / white), 1)

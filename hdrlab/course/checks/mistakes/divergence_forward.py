@@ -3,8 +3,6 @@ drifts by a pixel."""
 
 import numpy as np
 
-TASK = "divergence"
-
 
 def divergence(G):
     Gy, Gx = (np.pad(g, ((0, 1), (0, 1))) for g in G)

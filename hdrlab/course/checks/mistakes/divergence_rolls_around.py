@@ -3,8 +3,6 @@ there is nothing."""
 
 import numpy as np
 
-TASK = "divergence"
-
 
 def divergence(G):
     Gy, Gx = G[0].copy(), G[1].copy()

@@ -2,8 +2,6 @@
 
 from hdrlab.core import poisson
 
-TASK = "divergence"
-
 
 def divergence(G):
     return -poisson.divergence(G)

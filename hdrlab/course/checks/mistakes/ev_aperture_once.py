@@ -3,8 +3,6 @@ log2 F."""
 
 import numpy as np
 
-TASK = "ev"
-
 
 def ev(F, T, *, S=100.0):
     return np.log2(F) - np.log2(T) - np.log2(S / 100)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "ev"
-
 
 def ev(F, T, *, S=100.0):
     return 2 * np.log(F) - np.log(T) - np.log(S / 100)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "ev"
-
 
 def ev(F, T, *, S=100.0):
     return 2 * np.log2(F) - np.log2(T) + np.log2(S / 100)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "exclusion"
-
 
 def exclusion(Y, t):
     return np.abs(Y.astype(int) - t) <= 4

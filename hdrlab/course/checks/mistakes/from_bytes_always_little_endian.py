@@ -3,8 +3,6 @@ endian."""
 
 from hdrlab.io import pfm
 
-TASK = "from_bytes"
-
 
 def from_bytes(data):
     head = pfm.from_bytes(data)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "from_bytes"
-
 
 def from_bytes(data):
     kind, width, height, scale, rest = data.split(None, 4)

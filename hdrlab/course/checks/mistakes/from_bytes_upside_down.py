@@ -2,8 +2,6 @@
 
 from hdrlab.io import pfm
 
-TASK = "from_bytes"
-
 
 def from_bytes(data):
     return pfm.from_bytes(data)[::-1]

@@ -3,8 +3,6 @@ divide."""
 
 from hdrlab.response import debevec
 
-TASK = "gsolve"
-
 
 def gsolve(Z, B, smoothness, w):
     return debevec.gsolve(Z, B, 1 / smoothness, w)

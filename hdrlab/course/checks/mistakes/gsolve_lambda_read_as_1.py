@@ -3,8 +3,6 @@ nothing."""
 
 from hdrlab.response import debevec
 
-TASK = "gsolve"
-
 
 def gsolve(Z, B, smoothness, w):
     return debevec.gsolve(Z, B, 1.0, w)

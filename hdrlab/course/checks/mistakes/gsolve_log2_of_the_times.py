@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.response import debevec
 
-TASK = "gsolve"
-
 
 def gsolve(Z, B, smoothness, w):
     return debevec.gsolve(Z, B / np.log(2), smoothness, w)

@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.response import debevec
 
-TASK = "gsolve"
-
 
 def gsolve(Z, B, smoothness, w):
     A, b = debevec.system(Z, B, smoothness, np.ones(len(w)))

@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.response import debevec
 
-TASK = "gsolve"
-
 
 def gsolve(Z, B, smoothness, w):
     A, b = debevec.system(Z, B, smoothness, w)

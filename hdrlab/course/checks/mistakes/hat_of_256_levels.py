@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "hat"
-
 
 def hat(n=256):
     z = np.arange(n)

@@ -3,8 +3,6 @@ is clipped."""
 
 import numpy as np
 
-TASK = "hat"
-
 
 def hat(n=256):
     z = np.arange(n)

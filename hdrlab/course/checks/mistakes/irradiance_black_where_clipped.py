@@ -3,8 +3,6 @@ a dark sun."""
 
 import numpy as np
 
-TASK = "irradiance"
-
 
 def irradiance(Z, t, f_inv, w):
     below = w[Z] @ t**2

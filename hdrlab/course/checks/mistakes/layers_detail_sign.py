@@ -3,8 +3,6 @@ to the picture."""
 
 from hdrlab.tonemap import durand
 
-TASK = "layers"
-
 
 def layers(lL, *, sigma_s, sigma_r=0.4):
     base, detail = durand.layers(lL, sigma_s=sigma_s, sigma_r=sigma_r)

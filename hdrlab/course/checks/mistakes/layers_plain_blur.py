@@ -3,8 +3,6 @@ difference in lL too."""
 
 from scipy.ndimage import gaussian_filter
 
-TASK = "layers"
-
 
 def layers(lL, *, sigma_s, sigma_r=0.4):
     base = gaussian_filter(lL, sigma_s)

@@ -3,8 +3,6 @@ widths are not those asked for."""
 
 from hdrlab.core.bilateral import bilateral
 
-TASK = "layers"
-
 
 def layers(lL, *, sigma_s, sigma_r=0.4):
     base = bilateral(lL, sigma_s=sigma_s**0.5, sigma_r=sigma_r**0.5).mean

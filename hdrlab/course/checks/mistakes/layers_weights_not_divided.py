@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.core.bilateral import bilateral
 
-TASK = "layers"
-
 
 def layers(lL, *, sigma_s, sigma_r=0.4):
     mean, k = bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r)

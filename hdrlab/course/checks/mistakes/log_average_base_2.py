@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "log_average"
-
 
 def log_average(L, *, delta=1e-6):
     return float(np.exp(np.log2(L + delta).mean(dtype=float)))

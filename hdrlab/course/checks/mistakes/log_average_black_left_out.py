@@ -3,8 +3,6 @@ is there for them."""
 
 import numpy as np
 
-TASK = "log_average"
-
 
 def log_average(L, *, delta=1e-6):
     return float(np.exp(np.log(L[L > 0]).mean(dtype=float)))

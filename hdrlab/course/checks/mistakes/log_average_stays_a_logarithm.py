@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "log_average"
-
 
 def log_average(L, *, delta=1e-6):
     return float(np.log(L + delta).mean(dtype=float))

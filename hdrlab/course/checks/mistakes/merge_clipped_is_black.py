@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.core import weights
 
-TASK = "merge"
-
 
 def merge(images, times, g, w=None):
     w = weights.hat() if w is None else w

@@ -2,8 +2,6 @@
 
 from hdrlab.radiance import merge as merging
 
-TASK = "merge"
-
 
 def merge(images, times, g, w=None):
     return merging.merge(images, times, g[:, 1] if g.ndim == 2 else g, w)

@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.radiance import merge as merging
 
-TASK = "merge"
-
 
 def merge(images, times, g, w=None):
     return merging.merge(images, np.exp(np.log2(times)), g, w)

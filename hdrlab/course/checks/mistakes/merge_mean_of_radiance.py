@@ -2,8 +2,6 @@
 
 from hdrlab.radiance import merge as merging
 
-TASK = "merge"
-
 
 def merge(images, times, g, w=None):
     return merging.merge_with_quality(images, times, g, w, method="mean", repair=False).E

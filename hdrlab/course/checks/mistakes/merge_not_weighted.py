@@ -4,8 +4,6 @@ in full."""
 from hdrlab.core import weights
 from hdrlab.radiance import merge as merging
 
-TASK = "merge"
-
 
 def merge(images, times, g, w=None):
     return merging.merge(images, times, g, weights.flat())

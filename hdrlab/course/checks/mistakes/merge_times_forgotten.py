@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.radiance import merge as merging
 
-TASK = "merge"
-
 
 def merge(images, times, g, w=None):
     return merging.merge(images, np.ones(len(times)), g, w)

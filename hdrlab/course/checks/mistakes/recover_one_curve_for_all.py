@@ -3,8 +3,6 @@ alone."""
 
 from hdrlab.response import mitsunaga
 
-TASK = "recover"
-
 
 def recover(images, times, *, order=5, eps=1e-3):
     gray = images[..., 1] if images.ndim == 4 else images

@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.response import mitsunaga
 
-TASK = "recover"
-
 
 def recover(images, times, *, order=5, eps=1e-3):
     return np.exp(mitsunaga.recover(images, times, order=order, eps=eps))

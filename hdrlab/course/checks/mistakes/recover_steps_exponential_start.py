@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.response import robertson
 
-TASK = "recover_steps"
-
 
 def recover_steps(Z, times, w, *, tolerance=1e-4, max_iterations=200):
     t = times / times.max()

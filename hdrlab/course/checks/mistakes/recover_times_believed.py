@@ -5,8 +5,6 @@ import numpy as np
 
 from hdrlab.response import mitsunaga
 
-TASK = "recover"
-
 
 def recover(images, times, *, order=5, eps=1e-3):
     by_time = np.argsort(times)

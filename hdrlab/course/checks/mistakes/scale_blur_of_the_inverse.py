@@ -2,8 +2,6 @@
 
 from scipy.ndimage import gaussian_filter
 
-TASK = "scale"
-
 
 def scale(L, *, headroom=8.0, sigma=None):
     return gaussian_filter(1 / L, sigma) / headroom

@@ -3,8 +3,6 @@ room."""
 
 from hdrlab.tonemap import chiu
 
-TASK = "scale"
-
 
 def scale(L, *, headroom=8.0, sigma=None):
     return headroom * chiu.scale(L, headroom=1.0, sigma=sigma)

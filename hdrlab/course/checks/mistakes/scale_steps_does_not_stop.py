@@ -3,9 +3,6 @@ to be even again, across the edge."""
 
 import numpy as np
 
-TASK = "scale_steps"
-
-
 WIDTHS = 1.6 ** np.arange(9)
 
 

@@ -2,9 +2,6 @@
 
 import numpy as np
 
-TASK = "scale_steps"
-
-
 WIDTHS = 1.6 ** np.arange(9)
 
 

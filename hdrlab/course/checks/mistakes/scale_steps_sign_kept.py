@@ -3,9 +3,6 @@ below. Take |V|."""
 
 import numpy as np
 
-TASK = "scale_steps"
-
-
 WIDTHS = 1.6 ** np.arange(9)
 
 

@@ -3,8 +3,6 @@ a misprint, and makes L^2 of the picture."""
 
 from hdrlab.tonemap import chiu
 
-TASK = "scale"
-
 
 def scale(L, *, headroom=8.0, sigma=None):
     return L * chiu.scale(L, headroom=headroom, sigma=sigma)

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "shift"
-
 
 def shift(images, offsets):
     return np.stack([np.roll(image, tuple(o), axis=(0, 1)) for image, o in zip(images, offsets, strict=True)])

@@ -2,8 +2,6 @@
 
 from hdrlab.align import shift as moving
 
-TASK = "shift"
-
 
 def shift(images, offsets):
     return moving.shift(images, -offsets)

@@ -1,7 +1,5 @@
 """Cutting off the fraction makes every level three eighths of a code darker on the average: round instead."""
 
-TASK = "shrink"
-
 
 def shrink(Y):
     rows, columns = Y.shape[0] // 2 * 2, Y.shape[1] // 2 * 2

@@ -3,8 +3,6 @@ type."""
 
 import numpy as np
 
-TASK = "shrink"
-
 
 def shrink(Y):
     rows, columns = Y.shape[0] // 2 * 2, Y.shape[1] // 2 * 2

@@ -1,8 +1,6 @@
 """You take every second pixel and drop the others: noise stays, and fine texture turns into patterns.
 Average four."""
 
-TASK = "shrink"
-
 
 def shrink(Y):
     rows, columns = Y.shape[0] // 2 * 2, Y.shape[1] // 2 * 2

@@ -3,8 +3,6 @@ each other. Use cosines."""
 
 import numpy as np
 
-TASK = "solve"
-
 
 def solve(divG):
     factors = np.add.outer(*(2 * np.cos(2 * np.pi * np.arange(n) / n) - 2 for n in divG.shape))

@@ -2,8 +2,6 @@
 
 from hdrlab.core import poisson
 
-TASK = "solve"
-
 
 def solve(divG):
     return -poisson.solve(divG)

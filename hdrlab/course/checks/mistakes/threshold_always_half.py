@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "threshold"
-
 
 def threshold(h, q):
     below = np.cumsum(h)

@@ -3,8 +3,6 @@ above it."""
 
 import numpy as np
 
-TASK = "threshold"
-
 
 def threshold(h, q):
     return int(np.sum(np.arange(256) * h) / np.sum(h))

@@ -1,7 +1,5 @@
 """The values of a PFM file are float32, of 4 bytes; you wrote float64, of 8."""
 
-TASK = "to_bytes"
-
 
 def to_bytes(E):
     head = f"{'PF' if E.ndim == 3 else 'Pf'}\n{E.shape[1]} {E.shape[0]}\n-1.0\n"

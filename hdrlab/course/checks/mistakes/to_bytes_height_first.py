@@ -1,7 +1,5 @@
 """The second line is the width and then the height; arrays have it the other way round."""
 
-TASK = "to_bytes"
-
 
 def to_bytes(E):
     head = f"{'PF' if E.ndim == 3 else 'Pf'}\n{E.shape[0]} {E.shape[1]}\n-1.0\n"

@@ -2,8 +2,6 @@
 
 from hdrlab.io import pfm
 
-TASK = "to_bytes"
-
 
 def to_bytes(E):
     return pfm.to_bytes(E[::-1])

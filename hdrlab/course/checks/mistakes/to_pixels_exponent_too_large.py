@@ -3,8 +3,6 @@ of the precision is gone."""
 
 import numpy as np
 
-TASK = "to_pixels"
-
 
 def to_pixels(E):
     _, exponent = np.frexp(E.max(axis=-1, keepdims=True))

@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "to_radiance"
-
 
 def to_radiance(pixels):
     e = pixels[..., 3:].astype(float)

@@ -3,8 +3,6 @@ slide's second triple."""
 
 import numpy as np
 
-TASK = "to_radiance"
-
 
 def to_radiance(pixels):
     e = pixels[..., 3:].astype(int)

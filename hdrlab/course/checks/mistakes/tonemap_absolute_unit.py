@@ -3,8 +3,6 @@ Scale it by its log average first."""
 
 import numpy as np
 
-TASK = "tonemap"
-
 
 def tonemap(L):
     L = np.asarray(L, float)

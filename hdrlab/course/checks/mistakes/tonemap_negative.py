@@ -2,8 +2,6 @@
 
 from hdrlab.tonemap import reinhard
 
-TASK = "tonemap"
-
 
 def tonemap(L):
     return 1 - reinhard.tonemap(L)

@@ -4,8 +4,6 @@ import numpy as np
 
 from hdrlab.tonemap import reinhard
 
-TASK = "tonemap"
-
 
 def tonemap(L):
     return np.asarray(reinhard.tonemap(L), float) * 1.5

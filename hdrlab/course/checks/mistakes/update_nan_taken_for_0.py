@@ -2,8 +2,6 @@
 
 import numpy as np
 
-TASK = "update"
-
 
 def update(Z, t, E, n=256):
     X = np.nan_to_num(E)[:, None] * t

@@ -3,8 +3,6 @@ another curve."""
 
 import numpy as np
 
-TASK = "update"
-
 
 def update(Z, t, E, n=256):
     known = ~np.isnan(E)
