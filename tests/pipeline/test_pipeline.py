@@ -282,3 +282,13 @@ def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(s
     taken = bracket(images[order], 2.0 ** np.arange(7), [paths[j].name for j in order])
     (doubt,) = (doubt for doubt in assemble(taken).doubts if "do not lie on each other" in doubt)
     assert "more pair" in doubt and "leave one out" in doubt and ".jpeg" in doubt
+
+
+def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
+    taken = camera.shoot(room, camera.times_around(room, 6, stops=1.5), rng=1)
+    images = taken.images.copy()
+    images[2] = images[2, ::-1, ::-1]  # another scene, of the same brightness
+    found = assemble(taken._replace(images=images, names=tuple("abcdef")), align="none", times="stated")
+    assert found.bracket.names == tuple("abdef") and found.offsets.shape == (5, 2)
+    assert any("left out" in note and " c;" in note for note in found.notes)
+    assert found.spread < 0.02 and assemble(taken).bracket.images.shape[0] == 6
