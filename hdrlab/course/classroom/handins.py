@@ -59,7 +59,8 @@ def find(folder: str | Path, roster: Roster, received: Mapping[str, datetime] | 
     folder, teams = Path(folder), roster.teams()
     if not folder.is_dir():
         raise ValueError(f"{folder}: expected the folder of what was handed in")
-    rows, notes, refused = dict(received or {}), [], {}
+    rows, notes = dict(received or {}), []
+    refused: dict[str, str] = {}
     handins: dict[str, Handin] = {}
     for path, why in _files(folder):
         name = path.relative_to(folder).as_posix()
