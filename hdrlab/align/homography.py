@@ -70,8 +70,9 @@ def match_points(X: F32) -> F64:
             sift.detect_and_extract(detail(x))
         except RuntimeError:  # scikit-image's word for no point at all
             return np.empty((2, 0, 2))
-        largest = np.argsort(-sift.sigmas, kind="stable")[:MOST]
-        found.append((np.asarray(sift.keypoints)[largest, ::-1].astype(float), sift.descriptors[largest]))
+        largest = np.argsort(-np.asarray(sift.sigmas), kind="stable")[:MOST]
+        points, descriptors = np.asarray(sift.keypoints), np.asarray(sift.descriptors)
+        found.append((points[largest, ::-1].astype(float), descriptors[largest]))
     (q, one), (p, other) = found
     both = match_descriptors(one, other, max_ratio=0.8, cross_check=True)
     return np.stack([q[both[:, 0]], p[both[:, 1]]])

@@ -130,8 +130,8 @@ class Checking:
             return
         if not self._is_hidden(item):
             self.failed.add(_task(item))
-        silent = isinstance(raised, NoAnswer)
-        told = {"outcome": "no answer" if silent else "fails", "kind": raised.kind if silent else ""}
+        kind = raised.kind if isinstance(raised, NoAnswer) else ""
+        told = {"outcome": "no answer" if kind else "fails", "kind": kind}
         differs = _differs(raised) if self.job["draw"] else None
         self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
 
