@@ -16,9 +16,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_most, near, spread
 from hdrlab.core.steps import last
-from hdrlab.diagnostics import ambiguity
-from hdrlab.response import marginal, mitsunaga, polynomial, selection
+from hdrlab.response import marginal, mitsunaga, selection
 from hdrlab.response.self_calibration import average
+from hdrlab.show.plots.lectures import ambiguity
 
 Float = NDArray[np.float64]
 STATED = np.full(3, 0.5)
@@ -63,7 +63,7 @@ def marginal_error(one: ambiguity.Trial) -> float:
 
 def figure4(*, seed: int = SEED, sigma: float = 0.0) -> ambiguity.Valley:
     """Return the error along the ratio of two frames, truth 0.7, and what a search from 0.625 finds."""
-    return ambiguity.scan_valley(polynomial.random(np.random.default_rng(seed)), sigma=sigma)
+    return ambiguity.scan_valley(ambiguity.draw_curve(np.random.default_rng(seed)), sigma=sigma)
 
 
 def canon(*, seed: int = SEED) -> tuple[Float, Float]:

@@ -10,7 +10,7 @@ from numpy.polynomial.chebyshev import chebder, chebval
 from numpy.typing import ArrayLike
 
 from hdrlab.core.types import F64
-from hdrlab.response.mitsunaga import terms, value
+from hdrlab.response.mitsunaga import value
 
 GRID = np.linspace(0, 1, 2049)
 
@@ -50,18 +50,3 @@ def limit_slope(c: ArrayLike, *, least: float = 0.01) -> F64:
     c = np.asarray(c, np.float64)
     lowest = slope(GRID, c).min()
     return c if lowest >= least else c * (1 - least) / (1 - lowest)
-
-
-def random(rng: np.random.Generator, *, order: int = 5, least: float = 0.02) -> F64:
-    """Return c of a rising polynomial drawn at random.
-
-    Powers M ... M^N get coefficients uniform in -1 ... 1, scaled to f^-1(1) = 1; drawn again until the slope
-    is `least` or more.
-    """
-    n = np.arange(1, order + 1)
-    while True:
-        a = rng.uniform(-1, 1, order)
-        if np.min(GRID[:, None] ** (n - 1) @ (n * a / a.sum())) >= least:
-            break
-    M = (np.arange(order - 1) + 0.5) / (order - 1)  # N - 1 points fix the N - 1 numbers c
-    return np.asarray(np.linalg.solve(terms(M, order)[:, 1:], M[:, None] ** n @ (a / a.sum()) - M))

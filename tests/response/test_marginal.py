@@ -6,9 +6,9 @@ import pytest
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.steps import last
-from hdrlab.diagnostics import ambiguity
-from hdrlab.response import likelihood, marginal, mitsunaga, polynomial
+from hdrlab.response import likelihood, marginal, mitsunaga
 from hdrlab.response.self_calibration import average
+from hdrlab.show.plots.lectures import ambiguity
 
 STATED = np.full(3, 0.5)
 SIGMA = 0.005
@@ -17,7 +17,7 @@ SIGMA = 0.005
 def model(seed=0, count=60):
     """Return c, tau and nodes of a random camera."""
     rng = np.random.default_rng(seed)
-    c, tau = polynomial.random(rng), np.array([-2.1, -1.4, -0.7, 0])
+    c, tau = ambiguity.draw_curve(rng), np.array([-2.1, -1.4, -0.7, 0])
     return c, tau, likelihood.nodes(c, tau, count)
 
 

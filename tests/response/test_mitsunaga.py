@@ -10,13 +10,13 @@ from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.metrics import response_rmse
 from hdrlab.core.steps import last
-from hdrlab.diagnostics import ambiguity
 from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import recovery
 from hdrlab.response import mitsunaga, polynomial, self_calibration
 from hdrlab.response.families import invert_curves
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms
 from hdrlab.response.self_calibration import HIGHEST, average, calibrate, choose_order
+from hdrlab.show.plots.lectures import ambiguity
 
 STATED = np.full(3, 0.5)
 CANON, CANON_STATED = np.array([0.419, 0.292, 0.570, 0.512]), np.array([0.5, 0.25, 0.5, 0.5])
@@ -60,7 +60,7 @@ def test_the_basis_keeps_the_digits_that_powers_lose():
 def test_a_random_curve_rises_as_steeply_as_promised():
     rng = np.random.default_rng(0)
     for _ in range(20):
-        assert polynomial.slope(polynomial.GRID, polynomial.random(rng, least=0.05)).min() > 0.05 - 1e-6
+        assert polynomial.slope(polynomial.GRID, ambiguity.draw_curve(rng, least=0.05)).min() > 0.05 - 1e-6
 
 
 def test_a_curve_that_dips_is_drawn_to_the_line_just_so_far_that_it_rises():
@@ -98,7 +98,7 @@ def test_the_matrices_of_halves_add_up_and_orders_are_nested():
 
 def test_one_turn_is_the_scheme_on_the_page():
     """The literal scheme, in powers and with c_0, finds the same polynomial and ratios from clean samples."""
-    c = polynomial.random(np.random.default_rng(3))
+    c = ambiguity.draw_curve(np.random.default_rng(3))
     R = np.array([0.47, 0.53, 0.5])
     M = clean(c, R)[0]
     M = M[in_range(M).all(axis=1)]
@@ -128,7 +128,7 @@ def test_groups_with_many_clipped_members_are_left_out():
 def test_ratios_are_shared_by_the_channels():
     rng = np.random.default_rng(4)
     R = np.array([0.5, 0.45])
-    M = np.concatenate([clean(polynomial.random(rng), R) for _ in range(3)])
+    M = np.concatenate([clean(ambiguity.draw_curve(rng), R) for _ in range(3)])
     state = last(mitsunaga.fit_steps(M, R * 1.01, 5))
     assert state.c.shape == (3, 4) and state.R.shape == (2,)
     assert np.allclose(state.R, R, rtol=0.011)
@@ -152,7 +152,7 @@ def test_the_order_of_a_power_law_is_not_that_of_the_line_which_other_ratios_wou
 def test_an_order_that_only_one_part_of_the_picture_asks_for_is_not_taken():
     """One of five parts shows a scene that moved: the fit to it swings, and the other four know better."""
     rng = np.random.default_rng(9)
-    c = polynomial.random(rng, order=3)
+    c = ambiguity.draw_curve(rng, order=3)
     parts = [clean(c, STATED, 80) + 0.001 * rng.standard_normal((1, 80, 4)) for _ in range(5)]
     parts[2][..., 1] += 0.01 * np.sin(12 * parts[2][..., 1])
     assert choose_order(parts, STATED) == 3
@@ -225,13 +225,13 @@ def test_the_literal_scheme_slides_along_the_u_ambiguity():
 
 @pytest.mark.parametrize("seed", range(5))
 def test_figure_4_the_line_search_finds_the_ratio(seed):
-    valley = ambiguity.scan_valley(polynomial.random(np.random.default_rng(seed)))
+    valley = ambiguity.scan_valley(ambiguity.draw_curve(np.random.default_rng(seed)))
     assert abs(valley.found - 0.7) < 0.01
     assert np.abs(valley.minima - 0.7).min() < 0.01 and len(valley.minima) > 1
 
 
 def test_figure_4_noise_moves_the_minimum():
-    c = polynomial.random(np.random.default_rng(0))
+    c = ambiguity.draw_curve(np.random.default_rng(0))
     quiet, noisy = ambiguity.scan_valley(c), ambiguity.scan_valley(c, sigma=0.005)
     assert quiet.error.min() < 0.05 * noisy.error.min()
 

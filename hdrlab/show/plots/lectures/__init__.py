@@ -1,1 +1,1 @@
-"""The drawings of single lectures: what one notebook, or two, show and nothing else needs."""
+"""The drawings and experiments of single lectures: what one notebook, or two, show and nothing else needs."""

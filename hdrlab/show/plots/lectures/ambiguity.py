@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.types import F64, Indices
-from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, value
-from hdrlab.response.polynomial import brightness, misfit, random
+from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms, value
+from hdrlab.response.polynomial import GRID, brightness, misfit
 from hdrlab.response.self_calibration import average
 
 
@@ -48,6 +48,21 @@ class Valley(NamedTuple):
     found: float
 
 
+def draw_curve(rng: np.random.Generator, *, order: int = 5, least: float = 0.02) -> F64:
+    """Return c of a rising polynomial drawn at random.
+
+    Powers M ... M^N get coefficients uniform in -1 ... 1, scaled to f^-1(1) = 1; drawn again until the slope
+    is `least` or more.
+    """
+    n = np.arange(1, order + 1)
+    while True:
+        a = rng.uniform(-1, 1, order)
+        if np.min(GRID[:, None] ** (n - 1) @ (n * a / a.sum())) >= least:
+            break
+    M = (np.arange(order - 1) + 0.5) / (order - 1)  # N - 1 points fix the N - 1 numbers c
+    return np.asarray(np.linalg.solve(terms(M, order)[:, 1:], M[:, None] ** n @ (a / a.sum()) - M))
+
+
 def draw_trial(
     rng: np.random.Generator,
     *,
@@ -61,9 +76,9 @@ def draw_trial(
 
     The paper leaves the distributions open. Here: ratios uniform in 0.45 ... 0.55; radiance uniform in its
     logarithm, `decades` wide, the brightest just filling the longest exposure; the curve as
-    `polynomial.random` draws it.
+    `draw_curve` draws it.
     """
-    c = random(rng, order=order)
+    c = draw_curve(rng, order=order)
     R = rng.uniform(0.45, 0.55, 3) if ratios is None else np.asarray(ratios, dtype=np.float64)
     exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
     E = 10 ** rng.uniform(-decades, 0, pixels)
