@@ -59,34 +59,6 @@ def mixing_ratios(rows: int = 3, columns: int = 5, steps: int = 15) -> F64:
     return np.arange(1, rows * columns + 1).reshape(rows, columns) / steps
 
 
-def frames_per_step(refresh: float = 60.0, exposure: float = 1.0, steps: int = 15) -> int:
-    """Return how many frames of the display a picture stands: refresh exposure / T, whole and even.
-
-    Even, since liquid crystals are driven by a voltage whose sign changes every frame: brightness may differ
-    between the two, and a picture should hold as many of either.
-
-    Raises
-    ------
-    ValueError
-        Where it is not; the message names exposures that would do.
-
-    Examples
-    --------
-    >>> frames_per_step(60, 1, 15)
-    4
-    """
-    if not (refresh > 0 and exposure > 0 and steps > 0):
-        raise ValueError(f"expected positive numbers, got {refresh=}, {exposure=}, {steps=}")
-    frames = refresh * exposure / steps
-    nearest = max(2 * round(frames / 2), 2)
-    if abs(frames - nearest) > 1e-6 * nearest:
-        raise ValueError(
-            f"expected an even number of frames per step, got {frames:.4g}: "
-            f"expose for {nearest * steps / refresh:.6g} s, which makes it {nearest}"
-        )
-    return nearest
-
-
 def draw_patches(
     values: NDArray[np.uint8], *, patch: int, border: int, shape: tuple[int, int]
 ) -> NDArray[np.uint8]:

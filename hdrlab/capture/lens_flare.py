@@ -90,24 +90,3 @@ def reflect(E: ArrayLike, *, place: float = -0.6, radius: float = 12.0, share: f
         scaled = affine_transform(whole, [1 / place] * 2, middle - middle / place, order=1)
         out[..., c] = np.float32(share) * np.maximum(scaled, 0)
     return out.reshape(E.shape)
-
-
-def add_flare(
-    E: ArrayLike,
-    spread: GlareSpread = GlareSpread(0.05),  # noqa: B008
-    *,
-    places: tuple[float, ...] = (-0.6, 0.35),
-    radius: float = 12.0,
-    share: float = 1e-4,
-) -> F32:
-    """Return the radiance behind a lens that scatters and reflects: glare, and a reflection at each place.
-
-    Examples
-    --------
-    >>> add_flare(np.ones((20, 30)), places=()).shape
-    (20, 30)
-    """
-    F = add_glare(E, spread)
-    for place in places:
-        F = F + reflect(E, place=place, radius=radius, share=share)
-    return F

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from hdrlab.pipeline.assembly import Assembly
 
 METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
-SUFFIXES = ".csv, .npz, .m (pfstools) or .luminance.csv (Luminance HDR)"
+SUFFIXES = ".csv, .npz or .m (pfstools)"
 
 
 class Response(click.ParamType):

@@ -1,11 +1,10 @@
-"""Response curves in the files of pfstools and of Luminance HDR, and what every text file of curves needs.
+"""Response curves in the files of pfstools, and what every text file of curves needs.
 
 f  f^-1      (n, channels), the exposure of each level, in any unit; each channel may have its own
 g  response  (n,) or (n, 3), ln f
 
 pfstools writes a block of Octave's text format per channel (IR, IG, IB; IY for gray), each line log10 f,
-level, f; and a block W of weights, without which it refuses the file. Luminance HDR writes log10 f and f of
-red, green and blue, without levels: 4096 lines for pixel values from 0 to 1.
+level, f; and a block W of weights, without which it refuses the file.
 """
 
 import re
@@ -13,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hdrlab.core.arrays import as_table, describe
+from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64
 from hdrlab.core.weights import gaussian
 
@@ -23,8 +22,6 @@ WEIGHTS = (
     "# Weighting function\n# data layout: weight | camera output\n"
     "# name: W\n# type: matrix\n# rows: {}\n# columns: 2\n"
 )
-LUMINANCE = "log10(Ir),Ir,log10(Ig),Ig,log10(Ib),Ib"
-BINS = np.arange(256) * 4095 // 255  # where Luminance HDR looks up the 256 levels
 
 
 def write_pfstools(path: Path, g: F64) -> None:
@@ -66,24 +63,6 @@ def _read_block(text: str, rows: int) -> F64:
     if not np.array_equal(table[:, 1], np.arange(rows)):
         raise ValueError(f"expected the levels 0 to {rows - 1}, got {len(table)} lines: is it cut short?")
     return table[:, 2]
-
-
-def write_luminance(path: Path, g: F64) -> None:
-    """Write g, read at 256 levels, as Luminance HDR does, with 9 decimals and lines between the levels."""
-    columns = as_table(g, 256).reshape(256, -1)
-    fine = np.stack([np.interp(np.arange(4096), BINS, one) for one in columns.T], axis=-1)
-    fine = np.repeat(fine, 3 // fine.shape[1], axis=1)  # the program knows no gray
-    pairs = np.stack([fine / np.log(10), np.exp(fine)], axis=-1).reshape(4096, 6)
-    lines = [",".join(f"{value:.9f}" for value in row) for row in pairs.tolist()]
-    path.write_text("\n".join([LUMINANCE, *lines, ""]), encoding="ascii")
-
-
-def from_luminance(body: str) -> F64:
-    """Return g (256, 3): what the program finds for the 256 levels of a photograph."""
-    table = numbers(body, 6, ",")
-    if len(table) != 4096:
-        raise ValueError(f"expected the 4096 lines of Luminance HDR, got {len(table)}: is it cut short?")
-    return ln_exposure(table[BINS, 1::2])
 
 
 def squeeze_gray(columns: F64) -> F64:

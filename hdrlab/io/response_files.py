@@ -1,15 +1,13 @@
-"""Response curves by their suffix: tables of our own, and the files of pfstools and of Luminance HDR.
+"""Response curves by their suffix: tables of our own, and the files of pfstools.
 
 g  response  (n,) or (n, 3), ln exposure of each pixel level, g[n // 2] = 0
 f  f^-1      exp g, the exposure of each level, in any unit
 
-.csv            a line per level: the level, then g of red, green and blue, or of gray; the header says so
-.npz            NumPy's archive, with g in it
-.m              pfstools, see `pfscurves`
-.luminance.csv  Luminance HDR, see there
+.csv  a line per level: the level, then g of red, green and blue, or of gray; the header says so
+.npz  NumPy's archive, with g in it
+.m    pfstools, see `pfscurves`
 
-What is read is known by its content: a .csv of Luminance HDR needs no second suffix. The first two keep every
-bit, the third 10 digits; the last is for 256 levels, and keeps 9 decimals of the exposure.
+The first two keep every bit, the third 10 digits.
 """
 
 import zipfile
@@ -45,8 +43,8 @@ def write_curve(path: str | Path, g: ArrayLike) -> None:
 
     Parameters
     ----------
-    path : a .csv, .npz, .m or .luminance.csv file; what it held is replaced
-    g : (n,) or (n, 3) float, n = 256 or 65536, ln exposure of each level; Luminance HDR gets 256 of them
+    path : a .csv, .npz or .m file; what it held is replaced
+    g : (n,) or (n, 3) float, n = 256 or 65536, ln exposure of each level
 
     Raises
     ------
@@ -72,14 +70,13 @@ def read_curve(path: str | Path) -> F64:
 
     Parameters
     ----------
-    path : a .csv, .npz, .m or .luminance.csv file
+    path : a .csv, .npz or .m file
 
     Returns
     -------
     (n,) or (n, 3) float64
-        g, ln exposure of each level, 0 at level n // 2 in every channel: pfstools and Luminance HDR leave
-        the channels in other proportions. Levels of no exposure, where those programs found nothing, are
-        filled from their neighbours.
+        g, ln exposure of each level, 0 at level n // 2 in every channel: pfstools leaves the channels in
+        other proportions. Levels of no exposure, where it found nothing, are filled from their neighbours.
 
     Raises
     ------
@@ -107,11 +104,10 @@ def read_curve(path: str | Path) -> F64:
 
 def suffix_of(path: str | Path) -> str:
     """Return the suffix that names a file's format, or raise a ValueError."""
-    name = Path(path).name.lower()
-    for suffix in FORMS:
-        if name.endswith(suffix):
-            return suffix
-    raise ValueError(f"{path}: expected a response curve ({', '.join(FORMS)})")
+    suffix = Path(path).suffix.lower()
+    if suffix not in FORMS:
+        raise ValueError(f"{path}: expected a response curve ({', '.join(FORMS)})")
+    return suffix
 
 
 def insert_name(path: str | Path, name: str) -> Path:
@@ -119,11 +115,10 @@ def insert_name(path: str | Path, name: str) -> Path:
 
     Examples
     --------
-    >>> insert_name("room.luminance.csv", "mann").name
-    'room-mann.luminance.csv'
+    >>> insert_name("room.csv", "mann").name
+    'room-mann.csv'
     """
-    path, suffix = Path(path), suffix_of(path)
-    return path.with_name(f"{path.name[: -len(suffix)]}-{name}{path.name[-len(suffix) :]}")
+    return Path(path).with_stem(f"{Path(path).stem}-{name}")
 
 
 def as_curve(g: ArrayLike) -> F64:
@@ -148,8 +143,6 @@ def _write_csv(path: Path, g: F64) -> None:
 
 def _read_csv(path: Path) -> F64:
     header, _, body = path.read_text(encoding="latin-1").partition("\n")
-    if header.replace(" ", "").strip() == pfscurves.LUMINANCE:
-        return pfscurves.from_luminance(body)
     names = [name.strip().removesuffix(UNIT) for name in header.split(",")]
     if tuple(names[1:]) not in CHANNELS.values() or names[0] != "level" or UNIT not in header:
         raise ValueError(f"expected the columns level, red, green and blue{UNIT}, got {header[:80]!r}")
@@ -177,7 +170,6 @@ def _read_npz(path: Path) -> F64:
 
 
 FORMS = {
-    ".luminance.csv": Form(pfscurves.write_luminance, _read_csv),
     ".csv": Form(_write_csv, _read_csv),
     ".npz": Form(_write_npz, _read_npz),
     ".m": Form(pfscurves.write_pfstools, pfscurves.read_pfstools),

@@ -14,7 +14,6 @@ Frames of different apertures differ, away from the middle, by their vignetting 
 do not.
 """
 
-from itertools import product
 from typing import NamedTuple
 
 import numpy as np
@@ -22,7 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import uniform_filter
 from scipy.stats import chi2, f
 
-from hdrlab.core.arrays import as_mask, as_stack, describe, to_256
+from hdrlab.core.arrays import as_stack, describe, to_256
 
 Float = NDArray[np.float64]
 Mask = NDArray[np.bool_]
@@ -96,48 +95,15 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     True
     """
     if size < 2 or not sigma > 0:
-        raise ValueError(
-            f"expected a patch of at least 2 x 2 pixels and positive noise, got {size} and {sigma}"
-        )
+        raise ValueError(f"expected a patch of 2 x 2 pixels or more, noise above 0, got {size} and {sigma}")
     mean, variance, t = temporal_average(A, sigma=sigma)
     s = size**2
     estimated = s * (t - 1) if t > 1 else np.inf
-    noise = (
-        uniform_filter(variance, size) / t
-    )  # as sigma_t is even over a flat patch, its s estimates are one
+    # as sigma_t is even over a flat patch, its s estimates are one
+    noise = uniform_filter(variance, size) / t
     _, spread = spatial_average(mean, size=size)
     passed = s * spread <= threshold(s, psi=psi, estimated=estimated) * noise
     return passed & _inner(passed.shape, size // 2)
-
-
-def by_flatness(
-    images: ArrayLike,
-    count: int,
-    *,
-    valid: ArrayLike | None = None,
-    size: int = 5,
-    psi: float = 0.05,
-    sigma: float = 0.01,
-) -> NDArray[np.intp]:
-    """Return Z (N, P[, 3]), means of patches that every frame shows flat: a `choose` for other methods.
-
-    An even choice of `count` of them, or all there are.
-    """
-    stack = as_stack(images)
-    pixels = to_256(stack).reshape(*stack.shape[:3], -1)
-    mask = as_mask(valid, stack)
-    even = np.ones(stack.shape[1:3], bool) if mask is None else mask.all(axis=0)
-    means: NDArray[np.intp] = np.empty(pixels.shape, np.intp)
-    for j, c in product(range(len(pixels)), range(pixels.shape[-1])):
-        A = pixels[j, ..., c] / 255
-        even &= flat(A[None], size=size, psi=psi, sigma=sigma)
-        means[j, ..., c] = np.round(255 * spatial_average(A, size=size)[0])
-    found = np.flatnonzero(even)
-    if len(found) == 0:
-        raise ValueError("expected patches that are flat in every frame, got none; a larger sigma finds more")
-    chosen = found[np.linspace(0, len(found) - 1, min(count, len(found))).astype(int)]
-    Z = means.reshape(len(means), -1, means.shape[-1])[:, chosen].swapaxes(0, 1)
-    return Z.reshape(Z.shape[:2] + stack.shape[3:])
 
 
 def radius(shape: tuple[int, int]) -> Float:

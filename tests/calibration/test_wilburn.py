@@ -65,12 +65,6 @@ def test_patches_stand_in_black_and_in_the_middle():
     assert np.count_nonzero(shown[0]) == 30 * 30 * 30 and set(np.unique(shown[0])) == {0, 100, 220}
 
 
-def test_a_picture_stands_for_an_even_number_of_frames():
-    assert display.frames_per_step(60, 1, 15) == 4
-    with pytest.raises(ValueError, match=r"expose for 1 s, which makes it 4"):
-        display.frames_per_step(60, 0.75, 15)
-
-
 def test_the_grid_is_read_back_from_a_photograph_of_it():
     schedule = Schedule((250, 100))
     shown = display.draw_schedule(schedule, shape=(380, 320))
@@ -280,7 +274,6 @@ def test_what_is_no_blend_is_refused(tmp_path):
         lambda: motion_blur.find_ramps(image, low=0.5, high=0.4),
         lambda: motion_blur.compare_edges(image),
         lambda: display.mixing_ratios(3, 5, 14),
-        lambda: display.frames_per_step(0),
         lambda: display.draw_schedule(Schedule((300,))),
         lambda: display.draw_schedule(Schedule((100,), low=100)),
         lambda: display.draw_schedule(shape=(100, 100)),

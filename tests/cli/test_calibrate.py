@@ -35,7 +35,7 @@ def photographs(tmp_path_factory):
     return home / "photographs", home / "times.csv", responses.true_g("srgb")
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".npz", ".m", ".luminance.csv"])
+@pytest.mark.parametrize("suffix", [".csv", ".npz", ".m"])
 def test_a_bracket_becomes_a_curve_in_every_format(suffix, photographs, tmp_path, capsys):
     folder, times, true = photographs
     out = tmp_path / f"g{suffix}"
@@ -132,7 +132,7 @@ def test_a_saved_curve_takes_the_place_of_a_method(photographs, tmp_path):
 @pytest.mark.parametrize(
     ("arguments", "expected"),
     [
-        (["calibrate", "nowhere", "-o", "g.txt"], ".luminance.csv"),
+        (["calibrate", "nowhere", "-o", "g.txt"], ".csv, .npz, .m"),
         (["calibrate", "nowhere", "--plot", "g.pdf"], ".svg"),
         (["calibrate", "nowhere"], "nowhere"),
         (["calibrate", "nowhere", "--response", "magic"], "magic"),

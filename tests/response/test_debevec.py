@@ -62,7 +62,7 @@ def test_the_solution_satisfies_the_normal_equations(solve):
 @pytest.mark.parametrize("solve", [debevec.gsolve, fast.gsolve])
 @pytest.mark.parametrize("name", CURVES)
 def test_lE_is_where_the_samples_lie_on_the_curve(name, solve):
-    Z, B = samples(60, response=name, noise=0)
+    Z, B = samples(60, response=responses.RESPONSES[name], noise=0)
     g, lE = solve(Z, B, 1, CUT)
     error = np.where(CUT[Z] > 0.5, g[Z] - lE[:, None] - B, 0)
     assert abs(g[128]) < 1e-12 and np.abs(error).max() < 0.03  # half a level in the middle of a curve

@@ -1,7 +1,10 @@
 """A display's part in a calibration: the pictures of one exposure, as files and as a page that plays them.
 
 pictures  (T, H, W) uint8   of `calibration.display.draw_schedule`
-frames    of the display    that each picture stands, see `calibration.display.frames_per_step`
+frames    of the display    that each picture stands: refresh rate x exposure time / T, an even number
+
+Even, since liquid crystals are driven by a voltage whose sign changes every frame: brightness may differ
+between the two, and a picture should hold as many of either.
 
 The page fills the screen, draws a picture's pixel on a pixel of the display, changes only where a new frame
 begins, and counts the frames that the browser missed: a calibration with a missed one is not to be trusted.
