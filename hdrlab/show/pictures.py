@@ -5,7 +5,7 @@ alt    alt text: what is in the picture, in a sentence
 """
 
 import sys
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from html import escape
 from typing import Any, NamedTuple
 
@@ -45,30 +45,20 @@ def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
     return Picture((encode(drawn),), (require_alt(alt),), (caption,))
 
 
-def radiance(
-    E: ArrayLike,
-    *more: ArrayLike,
-    alt: str,
-    captions: Sequence[str] = (),
-    stops: tuple[int, int] | None = None,
-) -> Picture:
-    """Return a radiance map, or several side by side, in false colour above one legend in stops and decades.
+def radiance(E: ArrayLike, *, alt: str) -> Picture:
+    """Return a radiance map in false colour above a legend in stops and decades; all but 0.1 % of it fits.
 
     Parameters
     ----------
-    E, *more : (H, W) or (H, W, 3)
+    E : (H, W) or (H, W, 3)
         Radiance; a map larger than 1000 pixels is shown by means of k x k pixels.
     alt : str
-        What the maps show; to each one's its caption and the range of its luminance are added.
-    captions : a str for each map, or none
-        What stands below each.
-    stops : (low, high), optional
-        Ends of the colours, in stops from a map's median; by default all but 0.1 % of the pixels fit.
+        What the map shows; the range of its luminance is added.
 
     Raises
     ------
     ValueError
-        For maps without light, captions that are not one for each, or an empty alt text.
+        For a map without light, or an empty alt text.
 
     Examples
     --------
@@ -76,18 +66,11 @@ def radiance(
     >>> radiance(E, alt="A wedge, ever brighter")
     A wedge, ever brighter, 12.0 stops from the darkest to the brightest
     """
-    each = [figures.stops(one) for one in (E, *more)]
-    captions = tuple(captions) or ("",) * len(each)
-    if len(captions) != len(each):
-        raise ValueError(f"expected a caption for each of {len(each)} maps, got {captions!r}")
-    ends = [stops or figures.limits(ev) for ev in each]
-    low, high = min(end[0] for end in ends), max(end[1] for end in ends)
-    if not low < high:
-        raise ValueError(f"expected stops as (low, high) with low < high, got {stops}")
-    frames = [encode(figures.false_colour(figures.fit(ev, SIDE), low, high)) for ev in each]
-    ranges = [f"{np.nanmax(ev) - np.nanmin(ev):.1f} stops from the darkest to the brightest" for ev in each]
-    said = [", ".join(filter(None, (require_alt(alt), *two))) for two in zip(captions, ranges, strict=True)]
-    return Picture(tuple(frames), tuple(said), captions, _legend(low, high))
+    ev = figures.stops(E)
+    low, high = figures.limits(ev)
+    frame = encode(figures.false_colour(figures.fit(ev, SIDE), low, high))
+    reach = f"{np.nanmax(ev) - np.nanmin(ev):.1f} stops from the darkest to the brightest"
+    return Picture((frame,), (f"{require_alt(alt)}, {reach}",), ("",), _legend(low, high))
 
 
 def strip(

@@ -3,11 +3,8 @@
 The benchmarks run the published experiments in full; here are fewer cameras and trials, and the same limits.
 """
 
-import re
-
 import numpy as np
 import pytest
-from PIL import Image
 
 from hdrlab.calibration import display, joining, motion_blur, wilburn
 from hdrlab.calibration.blends import (
@@ -22,7 +19,6 @@ from hdrlab.calibration.blends import (
 from hdrlab.calibration.display import Schedule
 from hdrlab.capture.responses import RESPONSES, as_response, true_g
 from hdrlab.io.emor import read_curves
-from hdrlab.show.pages.display import write_display
 
 ALPHA = np.arange(1, 16) / 15
 SOLVERS = {"simplex": wilburn.join, "spline": joining.join}
@@ -72,16 +68,6 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
     read = display.read_blends(image, corners, schedule, low=0, high=1)
     for one, high in zip(read[0], (250, 100), strict=True):
         assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(one.I, ALPHA)
-
-
-def test_the_page_holds_every_picture_and_fetches_nothing(tmp_path):
-    shown = display.draw_schedule(Schedule(patch=4, border=4), shape=(48, 40))
-    page = write_display(tmp_path, shown, frames=4)
-    text = page.read_text(encoding="utf8")
-    assert text.count("data:image/webp;base64,") == 15 and not re.search(r"https?://|src=\"", text)
-    assert "frames = 4" in text and 'width="40" height="48"' in text
-    for number, picture in enumerate(shown, 1):
-        assert np.array_equal(np.asarray(Image.open(tmp_path / f"step-{number:02d}.png")), picture)
 
 
 # Joining
@@ -278,8 +264,6 @@ def test_what_is_no_blend_is_refused(tmp_path):
         lambda: display.draw_schedule(Schedule((100,), low=100)),
         lambda: display.draw_schedule(shape=(100, 100)),
         lambda: display.find_corners(np.zeros((5, 5))),
-        lambda: write_display(tmp_path, image),
-        lambda: write_display(tmp_path, image[None], frames=3),
     ):
         with pytest.raises(ValueError, match="expected"):
             call()

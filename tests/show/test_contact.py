@@ -30,7 +30,7 @@ def texts(figure):
 
 
 def test_every_operator_stands_on_the_sheet_under_its_name_with_its_figures():
-    sheet = contact.contact_sheet(SCENE, title="a scene")
+    sheet = draw(contact.entry_steps(SCENE), title="a scene")
     said = texts(sheet)
     assert said[0] == "a scene" and len(sheet.axes) == len(catalogue.names("tonemap"))
     for name in catalogue.names("tonemap"):
@@ -164,9 +164,9 @@ def test_operators_that_there_are_not_are_refused_before_the_first_has_run(opera
         "hdrlab.tonemap.reinhard.tonemap", lambda L: pytest.fail("the first operator was run")
     )
     with pytest.raises(ValueError, match=said):
-        contact.contact_sheet(SCENE, operators)
+        next(contact.entry_steps(SCENE, operators))
 
 
 def test_what_is_no_radiance_is_refused():
     with pytest.raises(ValueError, match="negative"):
-        contact.contact_sheet(-SCENE, ["reinhard"])
+        next(contact.entry_steps(-SCENE, ["reinhard"]))

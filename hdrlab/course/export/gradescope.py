@@ -50,7 +50,7 @@ def export(
     secret : the course's, from which each student's inputs are drawn; without it all get the same
     """
     folder.mkdir(parents=True, exist_ok=True)
-    library = dict(_library())
+    library, own = dict(_library()), sorted(hidden.glob("*.py")) if hidden else []
     for name in plan.homeworks:
         files = {
             **library,
@@ -59,11 +59,7 @@ def export(
             "requirements.txt": "\n".join(requirements()).encode() + b"\n",
             "plan.toml": (plan_file or plans.PLAN).read_bytes(),
             "settings.json": json.dumps({"homework": name, "secret": secret}).encode(),
-            **(
-                {f"hidden/{one.name}": one.read_bytes() for one in sorted(hidden.glob("*.py"))}
-                if hidden
-                else {}
-            ),
+            **{f"hidden/{one.name}": one.read_bytes() for one in own},
         }
         yield _zipped(folder / f"{name}_autograder.zip", files)
 

@@ -20,7 +20,6 @@ from hdrlab.course import submission
 from hdrlab.course.code import inline
 from hdrlab.course.material import handouts, materials, stubs
 from hdrlab.course.plan import Homework, Plan, Task
-from hdrlab.io.files import replacing
 
 SCHEMA = 3  # of nbgrader's metadata, which 0.6 to 0.9 write
 CONFIG = '''"""nbgrader's configuration, made by hdrlab course export."""
@@ -45,8 +44,8 @@ def export(plan: Plan, folder: Path) -> Iterator[Path]:
         if not handout.is_file():
             raise ValueError(f"expected the handout {handout}; make it by: hdrlab course build")
         notebook = source(json.loads(handout.read_text(encoding="utf8")), homework)
-        yield _written(folder / "source" / name / f"{name}.ipynb", notebook)
-    yield _written(folder / "nbgrader_config.py", CONFIG)
+        yield handouts.write_text(folder / "source" / name / f"{name}.ipynb", notebook)
+    yield handouts.write_text(folder / "nbgrader_config.py", CONFIG)
 
 
 def source(handout: dict[str, Any], homework: Homework) -> str:
@@ -100,10 +99,3 @@ def _body(source: str) -> str:
     assert isinstance(node, ast.FunctionDef)
     first = node.body[0].end_lineno if ast.get_docstring(node) else node.body[0].lineno - 1
     return "\n".join(source.splitlines()[first:])
-
-
-def _written(file: Path, text: str) -> Path:
-    file.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(file) as temporary:
-        temporary.write_text(text, encoding="utf8")
-    return file

@@ -8,8 +8,7 @@ import os
 from pathlib import Path
 from typing import NamedTuple
 
-import numpy as np
-
+from hdrlab.core.arrays import to_256
 from hdrlab.io import photos, web
 from hdrlab.io.decode import look
 from hdrlab.io.files import replacing
@@ -47,9 +46,7 @@ def prepare(path: str | Path) -> Prepared:
         raise ValueError(
             f"{path.name}: expected at most {MOST_PIXELS} pixels, its header claims {header.shape}"
         )
-    image = photos.read_photo(path)
-    if image.dtype == np.uint16:
-        image = (image // 257).astype(np.uint8)
+    image = to_256(photos.read_photo(path))
     brought = {name: fit(image, side) for name, side in SIZES.items()}
     height, width = brought["large"].shape[:2]
     return Prepared({name: web.encode_webp(one, quality=88) for name, one in brought.items()}, width, height)

@@ -8,7 +8,7 @@ WAL with full synchronisation. An artifact that another replaces stays with its 
 
 import sqlite3
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from datetime import UTC, datetime
 from pathlib import Path
 from secrets import token_bytes
@@ -95,7 +95,7 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
         raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
     (folder / PICTURES).mkdir(parents=True, exist_ok=True)
     (folder / DATABASE).touch(mode=0o600)
-    with _opened(folder) as db:
+    with closing(connect(folder)) as db:
         db.executescript(f"BEGIN; {SCHEMA} COMMIT;")
         db.execute(
             "INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", (title, closes.isoformat(), marks, token_bytes(32))
@@ -114,18 +114,9 @@ def connect(folder: str | Path) -> sqlite3.Connection:
 
 
 @contextmanager
-def _opened(folder: str | Path) -> Iterator[sqlite3.Connection]:
-    db = connect(folder)
-    try:
-        yield db
-    finally:
-        db.close()
-
-
-@contextmanager
 def writing(folder: str | Path) -> Iterator[sqlite3.Connection]:
     """Yield a connection within a transaction, which counts when the block ends well."""
-    with _opened(folder) as db, transaction(db):
+    with closing(connect(folder)) as db, transaction(db):
         yield db
 
 

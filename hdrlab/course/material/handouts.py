@@ -162,9 +162,8 @@ def build_steps(
                 f"expected the prose of {name} in {source}; it is in a clone of hdrlab, in solutions/"
             )
         made.append(handout(source.read_text(encoding="utf8"), homework, lateness(plan)))
-    assignments.mkdir(parents=True, exist_ok=True)
     for one in made:
-        yield _written(assignments / f"{one.homework}.ipynb", to_text(one.assignment))
+        yield write_text(assignments / f"{one.homework}.ipynb", to_text(one.assignment))
     if solutions is not None:
         yield from _solved(made, solutions, jobs)
 
@@ -173,13 +172,12 @@ def _solved(made: Sequence[Handout], solutions: Path, jobs: int) -> Iterator[Pat
     """Run the solutions, and yield each file when it is written."""
     from hdrlab.course.site import execute
 
-    solutions.mkdir(parents=True, exist_ok=True)
     scratch = Path(tempfile.mkdtemp(prefix="hdrlab-solutions-"))
     try:
-        sources = [_written(scratch / f"{one.homework}.ipynb", to_text(one.solution)) for one in made]
+        sources = [write_text(scratch / f"{one.homework}.ipynb", to_text(one.solution)) for one in made]
         for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
             ran = json.loads(done.executed.read_text(encoding="utf8"))
-            yield _written(solutions / done.source.name, to_text(_tidy(ran)))
+            yield write_text(solutions / done.source.name, to_text(_tidy(ran)))
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
 
@@ -193,7 +191,9 @@ def _tidy(ran: dict[str, Any]) -> dict[str, Any]:
     return {**ran, "cells": cells, "metadata": KERNEL}
 
 
-def _written(file: Path, text: str) -> Path:
+def write_text(file: Path, text: str) -> Path:
+    """Write a file of the course, whole or not at all, and return it."""
+    file.parent.mkdir(parents=True, exist_ok=True)
     with replacing(file) as temporary:
         temporary.write_text(text, encoding="utf8")
     return file

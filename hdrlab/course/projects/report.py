@@ -9,10 +9,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
 from markupsafe import Markup
 
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import to_256
 from hdrlab.course.projects import words
 from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
 from hdrlab.io import photos, radiance, response_files
@@ -96,9 +95,7 @@ def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
 
 
 def _artifact(path: Path) -> figures.Illustration:
-    return figures.photograph(
-        _eight_bits(photos.read_photo(path)), 1600, "The artifact: the map as a picture"
-    )
+    return figures.photograph(to_256(photos.read_photo(path)), 1600, "The artifact: the map as a picture")
 
 
 def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
@@ -106,7 +103,7 @@ def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
     frames = []
     for path in paths:
         header = look(path)
-        small = figures.fit(_eight_bits(photos.read_photo(path)), 400)
+        small = figures.fit(to_256(photos.read_photo(path)), 400)
         time = header.exposure.seconds
         alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")
         shown = figures.photograph(small, 400, alt)
@@ -135,10 +132,6 @@ def _curves(path: Path) -> dict[str, Any]:
 def _map(path: Path) -> dict[str, Any]:
     E = radiance.read_radiance(path, clean=True)
     return sections.radiance(E) | {"size": f"{E.shape[1]} x {E.shape[0]}", "name": path.name}
-
-
-def _eight_bits(image: Array) -> figures.Image:
-    return (image // 257).astype(np.uint8) if image.dtype == np.uint16 else image
 
 
 def _parts(said: words.Words, found: dict[str, Any]) -> Iterator[Part]:

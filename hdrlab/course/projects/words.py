@@ -12,11 +12,11 @@ from pathlib import Path
 from typing import Any, NamedTuple
 from urllib.parse import unquote
 
-import numpy as np
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
 from markupsafe import Markup, escape
 
+from hdrlab.core.arrays import to_256
 from hdrlab.course.wording import plain
 from hdrlab.io import photos, web
 from hdrlab.show.plots import figures
@@ -166,5 +166,4 @@ def _decoded(source: str, folder: Path, pictures: Pictures) -> figures.Image:
     path = (folder / source).resolve()
     if "://" in source or not path.is_relative_to(folder.resolve()) or not path.is_file():
         raise ValueError("expected a picture in the project's folder")
-    image = photos.read_photo(path)
-    return (image // 257).astype(np.uint8) if image.dtype == np.uint16 else image
+    return to_256(photos.read_photo(path))

@@ -77,11 +77,6 @@ def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterat
             await _run(source, kept, cache)
         return Done(source, kept, True)
 
-    async def any_of(
-        tasks: set[asyncio.Task[Done]],
-    ) -> tuple[set[asyncio.Task[Done]], set[asyncio.Task[Done]]]:
-        return await asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED)
-
     async def begin() -> set[asyncio.Task[Done]]:
         return {asyncio.create_task(one(*each)) for each in waiting}
 
@@ -95,7 +90,7 @@ def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterat
         tasks = runner.run(begin())
         try:
             while tasks:
-                done, tasks = runner.run(any_of(tasks))
+                done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
                 for task in done:
                     yield task.result()
         finally:  # an error, or Ctrl-C: no kernel outlives it

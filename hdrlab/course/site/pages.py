@@ -187,17 +187,8 @@ def _sphinx(source: Path, html: Path) -> list[str]:
     from hdrlab.course.site.sphinx import SETTINGS
 
     complaints = io.StringIO()
-    app = Sphinx(
-        source,
-        None,
-        html,
-        html.parent / "doctrees",
-        "html",
-        confoverrides=SETTINGS,
-        status=None,
-        warning=complaints,
-    )
-    app.build()
+    notes = html.parent / "doctrees"
+    Sphinx(source, None, html, notes, "html", SETTINGS, status=None, warning=complaints).build()
     return [line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()]
 
 

@@ -16,13 +16,7 @@ SETTINGS: dict[str, Any] = {
     "version": __version__,
     "release": __version__,
     "language": "en",
-    "extensions": [
-        "sphinx.ext.autodoc",
-        "sphinx.ext.viewcode",
-        "numpydoc",
-        "myst_nb",
-        "hdrlab.course.site.sphinx",
-    ],
+    "extensions": ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "numpydoc", "myst_nb", __name__],
     "autosummary_generate": False,  # numpydoc loads it, and it would look for its lists in every page
     "default_role": "py:obj",
     "autodoc_typehints": "none",  # shapes and units stand in the text

@@ -9,7 +9,6 @@ The time is that of the operator alone: luminance in, display luminance out. `sh
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from time import perf_counter
 
-from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab import pipeline
@@ -18,7 +17,7 @@ from hdrlab.core.arrays import as_radiance
 from hdrlab.core.picture import statistics
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
-from hdrlab.show.pages.sheet import SIDE, Entry, draw
+from hdrlab.show.pages.sheet import Entry
 from hdrlab.tonemap import quality
 
 
@@ -29,27 +28,7 @@ def entry_steps(
     way: str = "hue",
     clock: Callable[[], float] = perf_counter,
 ) -> Iterator[Entry]:
-    """Yield the Entry of each operator; the parameters are those of `contact_sheet`."""
-    E = as_radiance(E)
-    L = colour.luminance(E)
-    for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
-        begun = clock()
-        Ld = tonemap(L)
-        seconds = clock() - begun
-        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap), way=way)
-        yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
-
-
-def contact_sheet(
-    E: ArrayLike,
-    operators: Sequence[str] | Mapping[str, Method] | None = None,
-    *,
-    way: str = "hue",
-    title: str = "",
-    columns: int | None = None,
-    side: int = SIDE,
-) -> Figure:
-    """Return one scene through every operator, with time, TMQI and statistics under each picture.
+    """Yield the Entry of each operator: its picture, time, TMQI and statistics.
 
     Parameters
     ----------
@@ -60,16 +39,8 @@ def contact_sheet(
         `tonemap(L) -> Ld` in [0, 1].
     way : {"hue", "ratio", "chroma"}
         What becomes of colours that a display does not have: see `core.colour.render`.
-    title : str
-        Above the sheet, and in its alt text.
-    columns : int, optional
-        Pictures in a row; so many that the sheet is broad rather than tall, unless told.
-    side : int
-        Pixels of a picture's longer side on the sheet. Operators work on all pixels of `E`.
-
-    Returns
-    -------
-    Figure, labelled with its alt text
+    clock : function
+        Returns seconds.
 
     Raises
     ------
@@ -83,11 +54,19 @@ def contact_sheet(
     Examples
     --------
     >>> from hdrlab import scenes
-    >>> sheet = contact_sheet(scenes.room((48, 72)), ["reinhard"], title="the room")
-    >>> sheet.get_label()[:68]
+    >>> from hdrlab.show.pages import sheet
+    >>> drawn = sheet.draw(entry_steps(scenes.room((48, 72)), ["reinhard"]), title="the room")
+    >>> drawn.get_label()[:68]
     'Contact sheet of the room: one scene through 1 tone-mapping operator'
     """
-    return draw(entry_steps(E, operators, way=way), title=title, columns=columns, side=side)
+    E = as_radiance(E)
+    L = colour.luminance(E)
+    for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
+        begun = clock()
+        Ld = tonemap(L)
+        seconds = clock() - begun
+        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap), way=way)
+        yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
 def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str, Callable[..., NDArray]]:

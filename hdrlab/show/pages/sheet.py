@@ -112,9 +112,14 @@ def grid(shape: tuple[int, ...], count: int, *, columns: int | None = None, side
 def draw(
     entries: Iterable[Entry], *, title: str = "", columns: int | None = None, side: int = SIDE
 ) -> Figure:
-    """Return the sheet of these entries, in their order; the parameters are those of `contact.contact_sheet`.
+    """Return the sheet of these entries, in their order; its alt text is the label, `figure.get_label()`.
 
-    Its alt text is the figure's label, `figure.get_label()`.
+    Parameters
+    ----------
+    entries : pictures of one size, with their figures
+    title : above the sheet, and in its alt text
+    columns : pictures in a row; so many that the sheet is broad rather than tall, unless told
+    side : pixels of a picture's longer side on the sheet
     """
     entries = list(entries)
     if not entries:

@@ -1,28 +1,25 @@
 """Arrays -> matplotlib Axes, with units on every axis and colours that colour-blind readers tell apart.
 
-E    radiance        (H, W[, 3]), any linear unit
 g    response        (256,) or (256, 3), ln exposure of each pixel level
 Z    pixel levels    (N, P): sample i in frame j
 lE   ln irradiance   (N,)
 B    ln exposure times (P,)
 
-A stop is a factor of 2, a decade one of 10. Every function draws on `ax`, or on a new figure of its own, and
+Every function draws on `ax`, or on a new figure of its own, and
 returns the Axes; nothing is shown or written here.
 """
 
 from collections.abc import Sequence
 from itertools import chain
 
-import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_stack, describe, levels
+from hdrlab.core.arrays import Array, describe, to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.show.plots import figures, reuse
+from hdrlab.show.plots import reuse
 
 Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
 
@@ -37,8 +34,6 @@ SAMPLES = (
     ("#E69F00", "v"),
     ("#56B4E9", "*"),
 )
-UNITS = {"stops": 1.0, "decades": float(np.log10(2))}  # of a stop
-SIDE = 1000  # pixels: a larger map is drawn by means of k x k pixels
 
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
@@ -159,43 +154,6 @@ def system(A: ArrayLike, *, ax: Axes | None = None) -> Axes:
     return ax
 
 
-def histogram(image: ArrayLike, *, ax: Axes | None = None) -> Axes:
-    """Draw how many pixels of a photograph (H, W[, 3]) have each level, on a logarithmic scale."""
-    pixels = as_stack(np.asarray(image)[None])[0]
-    n, ax = levels(pixels), ax or axes()
-    columns = _columns(pixels.reshape(-1, *pixels.shape[2:]))
-    for (name, colour, style), channel in zip(_channels(pixels.ndim == 3), columns, strict=True):
-        counts = np.bincount(channel, minlength=n).reshape(256, -1).sum(axis=1)
-        ax.plot(np.arange(256) * (n // 256), counts, style, color=colour, drawstyle="steps-mid", label=name)
-    ax.set(xlabel="pixel level Z", ylabel="number of pixels", yscale="symlog")
-    ax.set(xlim=(0, n - 1), ylim=(0, None))
-    if pixels.ndim == 3:
-        ax.legend(loc="lower right", bbox_to_anchor=(1, 1), ncols=3, frameon=False, borderaxespad=0.1)
-    return ax
-
-
-def radiance(
-    E: ArrayLike, *, stops: tuple[int, int] | None = None, unit: str = "stops", ax: Axes | None = None
-) -> Axes:
-    """Draw a radiance map in false colour, from its median luminance, with the scale in stops or decades.
-
-    `stops` fixes the ends of the scale, else all but the outermost 0.1 % of the pixels fit. No light is gray.
-    """
-    if unit not in UNITS:
-        raise ValueError(f"expected unit as {' or '.join(UNITS)}, got {unit!r}")
-    ev = figures.fit(figures.stops(E), SIDE)
-    low, high = stops or figures.limits(ev)
-    ax = ax or _frame(ev.shape, beside=1.1)
-    colours = matplotlib.colormaps["viridis"].with_extremes(bad=figures.MISSING)
-    shown = ax.imshow(ev * UNITS[unit], cmap=colours, interpolation="nearest")
-    shown.set_clim(low * UNITS[unit], max(high, low + 1) * UNITS[unit])
-    place = ax.get_position()
-    bar = ax.figure.add_axes((place.x1 + 0.02, place.y0, 0.025, place.height))
-    ticks = MaxNLocator(8, steps=[1, 2, 5, 10])
-    ax.figure.colorbar(shown, cax=bar, label=f"{unit} from the median luminance", ticks=ticks)
-    return bare(ax)
-
-
 def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: int = 3) -> Figure:
     """Draw the photographs in rows, each under its exposure time and, where given, its offset (dy, dx)."""
     count, (h, w) = len(bracket.images), bracket.images.shape[1:3]
@@ -207,18 +165,11 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
         place = (column / columns, 1 - (row + 1) / rows, 0.97 / columns, (1 - title / height) / rows)
         ax = figure.add_axes(place)
         step = max(1, w // 350)
-        ax.imshow(_eight_bits(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
+        ax.imshow(to_256(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
         moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
         ax.set_title(seconds(time) + moved, fontsize=11, pad=3)
         bare(ax)
     return figure
-
-
-def _frame(shape: tuple[int, ...], *, beside: float, height: float = 3.6) -> Axes:
-    """Return Axes that fit a picture of this shape, with room for a scale beside it, in inches."""
-    width = height * shape[1] / shape[0]
-    figure = Figure(figsize=(width + beside, height), dpi=100)
-    return figure.add_axes((0.01, 0.04, width / (width + beside) - 0.01, 0.92))
 
 
 def _exposure_axes(ax: Axes, span: tuple[float, float] | None, n: int) -> Axes:
@@ -234,7 +185,3 @@ def _channels(coloured: bool) -> tuple[tuple[str, str, str], ...]:
 
 def _columns(table: Array) -> list[Array]:
     return [table] if table.ndim == 1 else list(table.T)
-
-
-def _eight_bits(image: Array) -> Array:
-    return image if image.dtype == np.uint8 else (image // 257).astype(np.uint8)

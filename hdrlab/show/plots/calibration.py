@@ -29,13 +29,8 @@ from hdrlab.show.pictures import require_alt
 
 SUFFIXES = (".png", ".svg")
 COLOURS = ("#1A1A1A", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-STYLES = (
-    "-",
-    "--",
-    "-.",
-    ":",
-    (0, (5, 1, 1, 1, 1, 1)),
-)  # not as many as colours, so that no two look alike
+# not as many as colours, so that no two look alike
+STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 
 
 def doublings(g: ArrayLike) -> dict[int, float]:
@@ -191,7 +186,7 @@ def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
 
 def overlay(curves: Mapping[str, F64], *, title: str = "") -> Figure:
     """Draw responses over each other, channel by channel, and below how far each is from their median."""
-    tables = {name: as_table(g, 256).reshape(256, -1) for name, g in curves.items()}
+    tables = {name: _channels(g) for name, g in curves.items()}
     count = max(one.shape[1] for one in tables.values())
     figure = Figure(figsize=(2.2 + 4.2 * count, 6.8), dpi=100, layout="constrained")
     grid = figure.subplots(2, count, squeeze=False, sharey="row")

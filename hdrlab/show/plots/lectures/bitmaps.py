@@ -106,11 +106,8 @@ def surface(errors: ArrayLike, *, marks: dict[str, Offset] | None = None) -> Fig
     return figure
 
 
-def words(rows: dict[str, ArrayLike], *, marked: ArrayLike | None = None) -> Figure:
-    """Return rows of bits, each under the other beside its name: 1 is white and 0 dark, as in the pictures.
-
-    `marked` (N,) frames the columns that are True.
-    """
+def words(rows: dict[str, ArrayLike]) -> Figure:
+    """Return rows of bits, each under the other beside its name: 1 is white and 0 dark, as in pictures."""
     each = {name: np.asarray(row, bool) for name, row in rows.items()}
     lengths = {row.shape for row in each.values()}
     if len(lengths) != 1 or len(next(iter(lengths))) != 1:
@@ -123,8 +120,6 @@ def words(rows: dict[str, ArrayLike], *, marked: ArrayLike | None = None) -> Fig
             ax.add_patch(Rectangle((x, y), 1, 1, facecolor="#FFFFFF" if bit else "#404040", edgecolor=CENTRE))
             dark = "#1A1A1A" if bit else "#FFFFFF"
             ax.text(x + 0.5, y + 0.5, str(int(bit)), color=dark, fontsize=10, ha="center", va="center")
-    for x in np.flatnonzero([] if marked is None else marked).tolist():
-        ax.add_patch(Rectangle((x, 0), 1, len(each), fill=False, edgecolor=BEST, linewidth=2.5))
     ax.set(xlim=(-0.1, count + 0.1), ylim=(len(each) + 0.1, -0.1), xticks=())
     ax.set_yticks(np.arange(len(each)) + 0.5, list(each), fontsize=10)
     ax.tick_params(length=0)
