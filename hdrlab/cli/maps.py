@@ -7,9 +7,7 @@ import click
 from hdrlab.cli import common
 from hdrlab.pipeline import catalogue
 
-WAY = click.option(
-    "--way", type=click.Choice(["hue", "ratio", "chroma"]), default="hue", help="Of colour, see below."
-)
+WAY = click.option("--way", type=click.Choice(["hue", "ratio"]), default="hue", help="Of colour, see below.")
 
 
 @click.command()
@@ -40,7 +38,7 @@ def tonemap(
 
     Bright colours may want more of a channel than a display has. By --way hue they become a little darker and
     a little paler, and keep their hue. By --way ratio the channel is clipped: the picture stays colourful,
-    but a bright blue turns toward cyan. By --way chroma the colour pales as far as its luminance needs.
+    but a bright blue turns toward cyan.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed

@@ -6,15 +6,17 @@ Ld       display luminance   (H, W), linear, 1 = white
 display  linear display RGB  (H, W, 3) in [0, 1], or (H, W)
 s        saturation          1 keeps the colour's ratios, 0 is gray
 
-A saturated colour may want more of a channel than the display has. There are three policies, in `WAYS`:
+A saturated colour may want more of a channel than the display has. There are two policies, in `WAYS`:
 
-ratio    `recolour` clips the channel: the luminance drops and the hue turns, a blue sky toward cyan and a
-         flame from orange to yellow, but what is bright stays colourful
-chroma   `recolour_chroma` gives up saturation instead: luminance and hue stay, what is bright becomes pale
-hue      some of both: a colour darkens, by M^0.85 where its largest channel is M > 1, and then pales, by and
-         by before that channel meets 1: hue and gradation stay, and lamps and glass keep a colour
+ratio  `recolour` clips the channel: the luminance drops and the hue turns, a blue sky toward cyan and a flame
+       from orange to yellow, but what is bright stays colourful
+hue    C = (1 + s (E / L - 1)) Ld [Mantiuk09], a length along the direction away from gray. Where the largest
+       channel is M > 1 the colour darkens, by M^0.85, and then pales, by and by before that channel meets 1:
+       hue and gradation stay, and lamps and glass keep a colour
 
 Out-of-gamut colours, with a channel below 0, become gray as far as they must: `core.gamut`.
+
+Mantiuk et al., Color correction for tone mapping, Eurographics 2009.
 """
 
 from collections.abc import Callable
@@ -71,39 +73,6 @@ def recolour(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1
     return np.clip(Ld if E.ndim == 2 else _ratio(E, L, Ld, saturation), 0, 1)
 
 
-def recolour_chroma(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, *, saturation: float = 1.0) -> F32:
-    """Return C = (1 + s (E / L - 1)) Ld, with s lowered where a channel would leave [0, 1] [Mantiuk09].
-
-    The chroma E / L - 1 is a direction away from gray and only its length changes, so hue and luminance stay:
-    the luminance of the result is Ld in every pixel.
-
-    Parameters
-    ----------
-    E, L, Ld, saturation : as for `recolour`; L must be the luminance of E
-
-    Returns
-    -------
-    (H, W, 3) float32 linear display RGB in [0, 1], or (H, W) where E is gray.
-
-    Raises
-    ------
-    ValueError
-        As `recolour`.
-
-    References
-    ----------
-    Mantiuk et al., Color correction for tone mapping, Eurographics 2009.
-
-    Examples
-    --------
-    >>> E = np.array([[[0.0, 0.0, 5.0]]])
-    >>> recolour_chroma(E, luminance(E), np.array([[0.5]])) @ LUMINANCE
-    array([[0.5]], dtype=float32)
-    """
-    E, L, Ld = _as_fitting(E, L, Ld, saturation)
-    return np.clip(Ld if E.ndim == 2 else _chroma(E, L, Ld, saturation), 0, 1)  # takes off rounding alone
-
-
 def encode_srgb(linear: ArrayLike) -> Array:
     """Return 12.92 c up to c = 0.0031308 and 1.055 c^(1/2.4) - 0.055 above it [IEC 61966-2-1]."""
     c = np.asarray(linear)
@@ -130,7 +99,7 @@ def render(
 ) -> Array:
     """Return to_8bit(recolour(E, L, Ld)), band by band, so that the picture in floats never stands in memory.
 
-    Parameters, errors : as for `recolour`; way : "chroma" takes `recolour_chroma` instead
+    Parameters, errors : as for `recolour`; way : "ratio", or "hue" instead
 
     Returns
     -------
@@ -164,16 +133,6 @@ def _ratio(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
     return C
 
 
-def _chroma(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
-    Ld = np.minimum(Ld, 1)
-    chroma = np.where((L < DARK)[..., None], 0, E / np.maximum(L, DARK)[..., None] - 1)
-    up, down = np.maximum(chroma.max(axis=-1), DARK), np.maximum(-chroma.min(axis=-1), DARK)
-    # s at which the first channel meets 1, or 0
-    room = np.minimum((1 - Ld) / np.maximum(Ld * up, DARK), 1 / down)
-    s = np.minimum(np.float32(saturation), room)[..., None]
-    return np.maximum((1 + s * chroma) * Ld[..., None], 0)
-
-
 def _hue(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
     dark, s = L < DARK, np.float32(saturation)
     scale = s * Ld / np.maximum(L, DARK)
@@ -198,7 +157,7 @@ def _pale(C: F32, M: F32, Ld: F32) -> F32:
     return np.asarray(Ld + (C - Ld) * (1 + full**8) ** np.float32(-1 / 8), np.float32)
 
 
-WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "chroma": _chroma, "hue": _hue}
+WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "hue": _hue}
 
 
 def _codes(display: F32) -> Array:

@@ -36,10 +36,9 @@ def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.
     saturation : float, optional
         1 keeps the ratios of the channels, 0 is gray. By default "photograph" chooses it, and an operator
         has the SATURATION of its module, or else 1.
-    way : {"hue", "ratio", "chroma"}
+    way : {"hue", "ratio"}
         How colour comes back, and what becomes of colours beyond the display: "hue" darkens them a little
-        and makes them paler, "ratio" clips a channel, "chroma" makes them as pale as their luminance needs;
-        see `core.colour`.
+        and makes them paler, "ratio" clips a channel; see `core.colour`.
     **knobs
         Those of the operator; of "photograph" share, key, white and black, instead of what it chooses.
 

@@ -37,7 +37,7 @@ def entry_steps(
     operators : names, or labels with an operator each; optional
         Which, and in which order: all, sorted, unless told. A label's operator is a name or your own function
         `tonemap(L) -> Ld` in [0, 1].
-    way : {"hue", "ratio", "chroma"}
+    way : {"hue", "ratio"}
         What becomes of colours that a display does not have: see `core.colour.render`.
     clock : function
         Returns seconds.
