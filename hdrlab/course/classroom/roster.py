@@ -117,42 +117,35 @@ def read(path: str | Path) -> Roster:
     rows = sheets.read_csv(path)
     if not rows or "student" not in rows[0]:
         raise ValueError(f"{path}: expected the column student, and name, email, team where wanted")
-    students, lines = tuple(_students(path, rows)), list(_names(rows))
-    _check_names(path, lines)
+    students = []
+    names: list[Name] = []
+    for line, row in enumerate(rows, 2):
+        id, team, name = (plain(row.get(column, ""), NAME) for column in ("student", "team", "name"))
+        owner = f"team {team}" if team else f"line {line}"
+        names.append(Name(id, "student's id", line, owner))
+        names += [Name(team, "team's name", line, owner)] if team else []
+        students.append(Student(id, name or id, team or id, plain(row.get("email", ""), 200)))
+    _check_names(path, names)
     large = [team for team, count in Counter(one.team for one in students).items() if count > TEAM]
     if large:
         raise ValueError(f"{path}: expected teams of {TEAM} at most, got more in {', '.join(large)}")
-    return Roster(students)
-
-
-def _students(path: str | Path, rows: list[dict[str, str]]) -> Iterator[Student]:
-    for line, row in enumerate(rows, 2):
-        id = plain(row["student"], NAME)
-        team = plain(row.get("team", ""), NAME) or id
-        for what, name in (("student's id", id), ("team's name", team)):
-            if not name or name[0] in ".-" or FORBIDDEN & set(name):
-                raise ValueError(f"{path}, line {line}: expected a {what} that can name a file, got {name!r}")
-        yield Student(id, plain(row.get("name", ""), NAME) or id, team, plain(row.get("email", ""), 200))
-
-
-def _names(rows: list[dict[str, str]]) -> Iterator[Name]:
-    """Yield each id and each team that is written, with who hands in under it."""
-    for line, row in enumerate(rows, 2):
-        id, team = (plain(row.get(column, ""), NAME) for column in ("student", "team"))
-        owner = f"team {fold(team)}" if team else f"student {fold(id)}"
-        yield Name(id, "student", line, owner)
-        if team:
-            yield Name(team, "team", line, owner)
+    return Roster(tuple(students))
 
 
 def _check_names(path: str | Path, names: list[Name]) -> None:
-    """Raise a ValueError for two names of which one is the other, or begins with it and goes on by a sign."""
+    """Raise a ValueError for a name that no file can have, and for two of which one could begin the other's.
+
+    That is so where one is the other, or begins with it and goes on by a sign.
+    """
+    for text, kind, line, _ in names:
+        if not text or text[0] in ".-" or FORBIDDEN & set(text):
+            raise ValueError(f"{path}, line {line}: expected a {kind} that can name a file, got {text!r}")
     known: dict[str, Name] = {}
     for one in sorted(names, key=lambda one: len(fold(one.text))):
         key = fold(one.text)
         for other in (known[name] for name in _beginnings(key) if name in known):
-            same = one.kind == other.kind and key == fold(other.text)
-            if one.owner != other.owner or (same and (one.kind == "student" or one.text != other.text)):
+            twice = one.kind == other.kind == "student's id" and key == fold(other.text)
+            if twice or one.owner != other.owner:
                 first, second = sorted((one, other), key=lambda name: name.line)
                 raise ValueError(
                     f"{path}, lines {first.line} and {second.line}: expected each name once, and none that "
