@@ -37,8 +37,8 @@ def temporary_folder() -> Iterator[Path]:
 @contextlib.contextmanager
 def locked_folder() -> Iterator[Path]:
     """Make a new folder, and remove those that killed processes have left."""
-    for old in Path(tempfile.gettempdir()).glob(f"{PREFIX}*"):
-        with contextlib.suppress(OSError), _locked(old, wait=False):
+    for old in Path(tempfile.gettempdir()).glob(f"{PREFIX}*") if os.name == "posix" else ():
+        with contextlib.suppress(OSError), locked(old):
             shutil.rmtree(old, ignore_errors=True)
     with contextlib.ExitStack() as stack:
         name = ""
@@ -46,18 +46,16 @@ def locked_folder() -> Iterator[Path]:
             made = tempfile.TemporaryDirectory(prefix=PREFIX, ignore_cleanup_errors=True)
             name = stack.enter_context(made)
             with contextlib.suppress(FileNotFoundError):
-                stack.enter_context(_locked(Path(name)))
+                stack.enter_context(locked(Path(name), wait=True))
         yield Path(name)
 
 
 @contextlib.contextmanager
-def _locked(folder: Path, *, wait: bool = True) -> Iterator[None]:
-    """Lock a folder, or raise an OSError where another process holds it."""
+def locked(folder: Path, *, wait: bool = False) -> Iterator[None]:
+    """Lock a folder, or raise a BlockingIOError where another process holds it."""
     try:
         import fcntl
-    except ImportError:  # on Windows, nothing is removed but by the one who made it
-        if not wait:
-            raise OSError("no locks here") from None
+    except ImportError:  # on Windows, where nothing is locked
         yield
         return
     handle = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)

@@ -15,6 +15,9 @@ from pathlib import Path
 from types import TracebackType
 from typing import NamedTuple, Protocol, Self
 
+from hdrlab.course import scratch
+from hdrlab.io.files import replacing
+
 TRIES = 3
 
 
@@ -91,13 +94,10 @@ def place(folder: Path, piece: Piece) -> Path:
 
 def write(path: Path, data: bytes) -> None:
     """Write a file for its owner's eyes; after a power failure, too, it is there whole or not at all."""
-    temporary = path.with_name(f".hdrlab-{os.getpid()}-{path.name}")
-    temporary.touch(mode=0o600)
-    with open(temporary, "wb") as file:
+    with replacing(path, private=True) as temporary, open(temporary, "wb") as file:
         file.write(data)
         file.flush()
         os.fsync(file.fileno())
-    os.replace(temporary, path)
     if hasattr(os, "O_DIRECTORY"):
         handle = os.open(path.parent, os.O_DIRECTORY)
         try:
@@ -123,27 +123,14 @@ def lock_folder(folder: Path) -> Iterator[None]:
         Where another run holds it. Who is killed holds nothing.
     """
     folder.mkdir(mode=0o700, parents=True, exist_ok=True)
-    with _locked(folder):
+    with contextlib.ExitStack() as held:
+        try:
+            held.enter_context(scratch.locked(folder.resolve()))
+        except BlockingIOError:
+            raise ValueError(f"{folder}: another run is writing to it") from None
         for rest in folder.rglob(".hdrlab-*"):
             rest.unlink(missing_ok=True)
         yield
-
-
-@contextlib.contextmanager
-def _locked(folder: Path) -> Iterator[None]:
-    try:
-        import fcntl
-    except ImportError:  # on Windows; there, two runs at once are the instructor's affair
-        yield
-        return
-    handle = os.open(folder, os.O_RDONLY)
-    try:
-        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        yield
-    except BlockingIOError:
-        raise ValueError(f"{folder}: another run is writing to it") from None
-    finally:
-        os.close(handle)
 
 
 def forget(folder: Path, pieces: Sequence[Piece]) -> None:
@@ -162,14 +149,10 @@ def parted(folder: Path, pieces: Sequence[Piece]) -> tuple[list[Done], list[Piec
     """
     if len({piece.owner for piece in pieces}) < len(pieces):
         raise ValueError("expected each owner once")
-    there = {path.name for path in folder.glob("*.json")}
-    names = [place(folder, piece) for piece in pieces]
-    before = [
-        Done(piece, path, fresh=False)
-        for piece, path in zip(pieces, names, strict=True)
-        if path.name in there
-    ]
-    return before, [piece for piece, path in zip(pieces, names, strict=True) if path.name not in there]
+    there = set(folder.glob("*.json"))
+    before = [Done(piece, place(folder, piece), fresh=False) for piece in pieces]
+    rest = [one.piece for one in before if one.result not in there]
+    return [one for one in before if one.result in there], rest
 
 
 def done_steps(pieces: Sequence[Piece], executor: Executor, folder: Path) -> Iterator[Done]:
