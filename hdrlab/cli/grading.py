@@ -28,9 +28,7 @@ SECRET = click.option(
 @click.argument("submission", type=click.Path(path_type=Path))
 @HOMEWORK
 @click.option("--task", metavar="NAME", help="Only this one, such as gsolve.")
-@click.option(
-    "--hints", type=click.IntRange(0, 3), default=0, help="How many hints to show of what does not hold."
-)
+@click.option("--hints", type=click.IntRange(0, 3), default=0, help="So many hints of what does not hold.")
 @click.option("--page", type=common.FILE, help="The same as a page with pictures: a .html file.")
 @PLAN
 def check(
@@ -42,14 +40,19 @@ def check(
     """
     from hdrlab.course.grading import Conditions
     from hdrlab.course.reports import feedback
+    from hdrlab.io.files import replacing
 
     asked = _homework(submission, homework, plan)
     if task is not None:
-        asked = _only(asked, task)
+        tasks = {one.id: one for one in asked.tasks}
+        if task not in tasks:
+            raise ValueError(f"expected a task out of {', '.join(tasks)}, got {task!r}")
+        asked = asked._replace(tasks=(tasks[task],))
     result = _graded(submission, asked, Conditions(tier="practice", draw=page is not None))
     click.echo(feedback.text(result, hints=hints))
     if page is not None:
-        _write(page, feedback.page(result))
+        with replacing(page) as temporary:
+            temporary.write_text(feedback.page(result), encoding="utf8")
         click.echo(page)
 
 
@@ -73,9 +76,7 @@ def check(
     help="Seconds for one answer; a check has 3 times, a submission 20 times as many.",
 )
 @click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
-@click.option(
-    "--received", type=FILE, help="Of a class: CSV with file and received, instead of files' times."
-)
+@click.option("--received", type=FILE, help="Of a class: CSV with file and received, for files' own times.")
 @click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
 @click.option("--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable.")
 @click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
@@ -107,10 +108,8 @@ def grade(
     from hdrlab.course.scratch import temporary_folder
 
     if student and secret_file is None:
-        raise ValueError(
-            "expected --secret-file with --student: without it anybody could draw the same inputs"
-        )
-    secret, word = _secret(secret_file)
+        raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
+    secret = _secret(secret_file)
     conditions = Conditions(tier, student, secret, hidden, timeout)
     if submission.is_dir():
         from hdrlab.cli import classroom
@@ -119,15 +118,11 @@ def grade(
         course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
         with temporary_folder():
             classroom.grade_folder(submission, out, course, options)
-        if word:
-            click.echo(word, err=True)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
         click.echo(f"note: for practice. {result.why_practice}", err=True)
-    if secret and word:
-        click.echo(word, err=True)
     gradebook.write_results(out, result)
     click.echo(out / "feedback.html")
 
@@ -138,9 +133,8 @@ def doctor() -> None:
     from hdrlab.course.sandbox import doctor as visiting
 
     for tier, works, credit, says, remedy in visiting.report():
-        click.echo(
-            f"{tier:<10}{'yes' if works else 'no ':<5}{'for credit' if credit else 'practice':<12}{says}"
-        )
+        answer, worth = "yes" if works else "no", "for credit" if credit else "practice"
+        click.echo(f"{tier:<10}{answer:<5}{worth:<12}{says}")
         if remedy:
             click.echo(f"{'':<10}{remedy}")
 
@@ -169,9 +163,7 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Pat
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None
     except ImportError as error:
-        raise ValueError(
-            f'expected {error.name}, which reads the prose: pip install "hdrlab[course]"'
-        ) from None
+        raise ValueError(f'expected {error.name}: pip install "hdrlab[course]"') from None
 
 
 @course.command()
@@ -199,9 +191,7 @@ def export(
         for file in to_nbgrader.export(read, nbgrader):
             click.echo(file)
     if gradescope is not None:
-        secret, word = _secret(secret_file)
-        if word:
-            click.echo(word, err=True)
+        secret = _secret(secret_file)
         for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
             click.echo(file)
 
@@ -230,32 +220,24 @@ def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homewor
     if name is None:
         fitting = [one for one in homeworks if one in submission.stem.lower()]
         if len(fitting) != 1:
-            raise ValueError(
-                f"expected --homework, one of {', '.join(homeworks)}: {submission.name} does not say"
-            )
+            names = ", ".join(homeworks)
+            raise ValueError(f"expected --homework, one of {names}: {submission.name} does not say")
         (name,) = fitting
     if name not in homeworks:
         raise ValueError(f"expected a homework out of {', '.join(homeworks)}, got {name!r}")
     return homeworks[name]
 
 
-def _only(homework: "Homework", task: str) -> "Homework":
-    tasks = tuple(one for one in homework.tasks if one.id == task)
-    if not tasks:
-        raise ValueError(
-            f"expected a task out of {', '.join(one.id for one in homework.tasks)}, got {task!r}"
-        )
-    return homework._replace(tasks=tasks)
-
-
-def _secret(file: Path | None) -> tuple[str, str]:
-    """Return the course's secret, and a word about it where it was made, or where there is none."""
+def _secret(file: Path | None) -> str:
+    """Return the course's secret, and say where it was made, or that there is none."""
     from hdrlab.course import plan as plans
 
-    if file is None:
-        return "", "note: for practice: without --secret-file the inputs are public, for credit they are not"
-    secret, made = plans.read_secret(file)
-    return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
+    secret, made = plans.read_secret(file) if file else ("", False)
+    if not file:
+        click.echo("note: for practice: without --secret-file the inputs are public", err=True)
+    if made:
+        click.echo(f"note: {file}: a new secret for the course; keep it, and keep it to yourself", err=True)
+    return secret
 
 
 def _graded(submission: Path, homework: "Homework", conditions: "Conditions") -> "Result":
@@ -273,10 +255,3 @@ def _graded(submission: Path, homework: "Homework", conditions: "Conditions") ->
             return last(common.progress(steps, homework.name))
     except Unavailable as error:
         raise common.no_tier(str(error)) from None
-
-
-def _write(page: Path, text: str) -> None:
-    from hdrlab.io.files import replacing
-
-    with replacing(page) as temporary:
-        temporary.write_text(text, encoding="utf8")
