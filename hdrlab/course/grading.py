@@ -44,7 +44,6 @@ class Conditions(NamedTuple):
     student, secret : what the inputs are drawn from; without a student they are the public ones
     hidden : folder with checks of the instructor's own, test_<task>.py
     timeout : seconds for one answer
-    whole : seconds for all of it
     draw : whether differences are drawn
     """
 
@@ -53,7 +52,6 @@ class Conditions(NamedTuple):
     secret: str = ""
     hidden: Path | None = None
     timeout: float = PATIENCE
-    whole: float = WHOLE
     draw: bool = True
 
 
@@ -91,7 +89,7 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
         folder = Path(name)
         job = _job(folder, read, homework, conditions)
         heard: list[dict[str, Any]] = []
-        for line in running.run(folder, job, files, conditions.whole):
+        for line in running.run(folder, job, files, WHOLE):
             if "unavailable" in line:
                 raise Unavailable(line["unavailable"])
             heard.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
@@ -104,10 +102,9 @@ def _files(homework: Homework, hidden: Path | None) -> list[Path]:
     """Return the files with the checks of a homework, in its order, the hidden ones after each task's own."""
     folders = [SPECIFICATION, *([] if hidden is None else [hidden.resolve()])]
     files = [folder / f"test_{task.id}.py" for task in homework.tasks for folder in folders]
-    present = [file for file in files if file.is_file()]
-    if not present:
-        raise ValueError(f"expected checks for {homework.name} in {SPECIFICATION}, got none")
-    return present
+    if present := [file for file in files if file.is_file()]:
+        return present
+    raise ValueError(f"expected checks for {homework.name} in {SPECIFICATION}, got none")
 
 
 def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions) -> Path:
@@ -130,10 +127,8 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
 
 def _seeds(homework: Homework, conditions: Conditions) -> dict[str, str]:
     """Return each task's seed, as text: it has more bits than JSON's numbers."""
-    if not conditions.student:
-        return {task.id: "0" for task in homework.tasks}
-    drawn = {t.id: plan.seed(conditions.secret, conditions.student, t.id) for t in homework.tasks}
-    return {task: str(seed) for task, seed in drawn.items()}
+    _, student, secret, *_ = conditions
+    return {one.id: str(plan.seed(secret, student, one.id) if student else 0) for one in homework.tasks}
 
 
 def _seed_id(homework: Homework, conditions: Conditions) -> str:

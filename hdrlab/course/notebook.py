@@ -73,7 +73,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     result = None
     for result in grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE):
         if len(tasks) > 1:
-            shown = _show(feedback.bar(*_done(result), f"{homework.name}, checking"), shown)
+            shown = _show(feedback.bar(*results.points(result.checks), f"{homework.name}, checking"), shown)
     assert result is not None  # the last one always comes
     if shown is not None:
         _show("", shown)
@@ -94,10 +94,6 @@ def find_tasks(name: str) -> tuple[Homework, list[str]]:
     raise ValueError(
         f"expected a homework ({', '.join(homeworks)}) or a task ({', '.join(tasks)}), got {name!r}"
     )
-
-
-def _done(result: Result) -> tuple[float, float]:
-    return results.points(result.checks)
 
 
 def _history() -> Sequence[Cell]:

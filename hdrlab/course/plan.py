@@ -152,9 +152,7 @@ def read_secret(path: Path) -> tuple[str, bool]:
             file.write(secrets.token_urlsafe(32) + "\n")
     secret = path.read_text(encoding="utf8").strip()
     if not secret:
-        raise ValueError(
-            f"{path}: expected a line that nobody else knows, it is empty; without it one is made"
-        )
+        raise ValueError(f"{path}: expected a line that nobody else knows, it is empty")
     return secret, made
 
 

@@ -127,8 +127,6 @@ def cells_of(data: bytes, name: str) -> tuple[list[Cell], list[str]]:
     except (UnicodeError, LookupError, SyntaxError):
         return [], [f"{name} is neither a notebook nor Python text; save it in UTF-8"]
     looks_like = text.lstrip()[:1] == "{"
-    if not looks_like and len(text) > MOST_CODE:
-        return [], [f"{name} holds more than {MOST_CODE:,} characters of code"]
     cells, problems = _notebook(text, name) if looks_like else (_percent(text), [])
     if name.lower().endswith(".ipynb") and not looks_like:
         problems = [f"{name} is not a notebook, and was read as Python text"]
@@ -181,9 +179,8 @@ def _percent(text: str) -> list[Cell]:
     line, counted = 1, 0
     for fence, start, end in zip(fences, (one.end() for one in fences), ends[1:], strict=True):
         if not fence["kind"]:
-            task = re.search(r'task="(\w+)"', fence["rest"])
+            marked = re.search(r'task="(\w+)"', fence["rest"])
+            task, given = marked[1] if marked else "", "given=" in fence["rest"]
             line, counted = line + text.count("\n", counted, start), start
-            cells.append(
-                Cell(text[start:end], task[1] if task else "", "given=" in fence["rest"], f"line {line}")
-            )
+            cells.append(Cell(text[start:end], task, given, f"line {line}"))
     return [cell for cell in cells if cell.text.strip()]

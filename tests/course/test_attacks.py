@@ -78,7 +78,7 @@ def honest():
             """Return a tier's, tried out; where it cannot be had, the reason is the machine's."""
             if tier not in waiting:
                 try:
-                    subject = Subject({"double": siege.HONEST}, {}, tiers.choose(tier))
+                    subject = Subject({"double": siege.HONEST}, tiers.choose(tier))
                     stack.enter_context(subject).double(1.0)
                 except tiers.Unavailable as reason:
                     pytest.skip(str(reason))
@@ -121,7 +121,7 @@ def test_an_attack_gains_nothing_and_leaves_nothing(tier, name, honest, tmp_path
     files, processes = siege.listing(place), supervisor.children()
     timeout = 0.5 if name.startswith(SLOW) else 20.0
     source = {"double": siege.armed(name, place, port)}
-    with Subject(source, {}, tiers.choose(tier), timeout) as subject:
+    with Subject(source, tiers.choose(tier), timeout) as subject:
         held, said = points(subject)
         assert points(other, "another") == (2, []), "another's submission was harmed"
     assert held == 0

@@ -44,7 +44,7 @@ KINDS = {  # of no answer; the others answer with something that is compared
 def strict():
     """The strict tier, or the machine's reason why there is none."""
     try:
-        with Subject({"hat": hostile.HAT}, {}, tiers.choose("strict")) as subject:
+        with Subject({"hat": hostile.HAT}, tiers.choose("strict")) as subject:
             subject.hat(3)
         return tiers.choose("strict")
     except tiers.Unavailable as reason:
@@ -53,8 +53,10 @@ def strict():
 
 @pytest.mark.parametrize("name", hostile.CODE)
 def test_a_function_costs_its_call_and_no_more(name, strict):
-    late = KINDS.get(name, ()) == ("late",)
-    with Subject({"hat": hostile.CODE[name]}, {}, strict, 0.3 if late else 20.0) as subject:
+    kinds = KINDS.get(name, ())
+    late = kinds == ("late",)
+    patience = 0.3 if late else 3.0 if "late" in kinds else 20.0
+    with Subject({"hat": hostile.CODE[name]}, strict, patience) as subject:
         try:
             kind = bool(subject.hat(8) is None)
         except NoAnswer as error:
@@ -67,7 +69,7 @@ def test_a_function_costs_its_call_and_no_more(name, strict):
 def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict):
     source = "import time\ndef hat(n):\n    time.sleep(0.08)\n    return n\n"
     said = []
-    with Subject({"hat": source}, {}, strict, 0.1) as subject:
+    with Subject({"hat": source}, strict, 0.1) as subject:
         for _ in range(12):
             subject.fresh()
             for _ in range(6):
@@ -80,7 +82,7 @@ def test_a_check_and_a_submission_have_a_time_of_their_own_and_it_is_said(strict
 
 
 def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
-    with Subject({"hat": hostile.CODE["computes in each call"]}, {}, strict, 0.3) as subject:
+    with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 0.3) as subject:
         subject._running.left = 0.1
         said = []
         for _ in range(2):
@@ -96,7 +98,7 @@ def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
 
 
 def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_killed(strict):
-    with Subject({"hat": hostile.CODE["computes in each call"]}, {}, strict, 20.0) as subject:
+    with Subject({"hat": hostile.CODE["computes in each call"]}, strict, 20.0) as subject:
         subject._running.left = 0.5
         with pytest.raises(NoAnswer, match="hat took longer than 1 s of a processor") as raised:
             subject.hat(8)
@@ -104,12 +106,12 @@ def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_kille
 
 
 def test_a_function_whose_process_is_killed_from_outside_is_told_from_one_that_ends_itself(strict):
-    with Subject({"hat": hostile.CODE["ends by itself"]}, {}, strict, 5.0) as subject:
+    with Subject({"hat": hostile.CODE["ends by itself"]}, strict, 5.0) as subject:
         with pytest.raises(NoAnswer) as raised:
             subject.hat(8)
         assert raised.value.kind == "died"
     source = "import time\ndef hat(n):\n    time.sleep(30)\n"
-    with Subject({"hat": source}, {}, strict, 20.0) as subject:
+    with Subject({"hat": source}, strict, 20.0) as subject:
         subject._running.wait()
         subject._running._launched.process.kill()  # as a system that is out of memory does
         subject._running._launched.process.wait()
@@ -159,7 +161,7 @@ def shown(text):
 
 @pytest.mark.parametrize("name", hostile.TEXTS)
 def test_whatever_a_function_says_is_told_as_harmless_text_in_every_form(name, strict, tmp_path):
-    with Subject({"hat": hostile.TEXTS[name]}, {}, strict, 10.0) as subject:
+    with Subject({"hat": hostile.TEXTS[name]}, strict, 10.0) as subject:
         message = ""
         try:
             subject.hat()

@@ -64,11 +64,11 @@ def test_nine_in_ten_are_recognised_by_name_for_any_student():
 def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
     subject = inprocess.library()
     scoring.score(task, subject)
-    assert misconceptions.recognise(task, subject.calls) is None
+    assert misconceptions.closest(task, subject.calls) is None
     stub = inprocess.Subject({task: lambda *given, **named: None})
     scoring.score(task, stub)
-    assert misconceptions.recognise(task, stub.calls) is None
-    assert misconceptions.recognise(task, []) is None
+    assert misconceptions.closest(task, stub.calls) is None
+    assert misconceptions.closest(task, []) is None
 
 
 def test_nonsense_is_no_known_mistake():
@@ -76,7 +76,7 @@ def test_nonsense_is_no_known_mistake():
     given = (Z, np.arange(4.0), 10.0, np.ones(256))
     answers = (np.arange(256.0), np.zeros(30)), (np.zeros(3), np.zeros(2)), "no", [1.0], (np.zeros(256),)
     for answer in answers:
-        assert misconceptions.recognise("gsolve", [(given, {}, answer)]) is None
+        assert misconceptions.closest("gsolve", [(given, {}, answer)]) is None
 
 
 def test_no_two_sentences_are_the_same():

@@ -70,7 +70,7 @@ NAMES = re.findall(r"^def (\w+)", FUNCTIONS, re.MULTILINE)
 def opened(tier, sources=None, timeout=30.0):
     """Return a Subject in a tier, or skip with the machine's reason."""
     try:
-        return Subject(sources or dict.fromkeys(NAMES, FUNCTIONS), {}, tiers.choose(tier), timeout)
+        return Subject(sources or dict.fromkeys(NAMES, FUNCTIONS), tiers.choose(tier), timeout)
     except tiers.Unavailable as reason:
         pytest.skip(str(reason))
 
@@ -274,7 +274,7 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
 def test_where_processes_cannot_fork_each_check_has_a_process_of_its_own():
     """As on Windows, but for the way in which the process is handed its socket."""
     tier = practice.sandbox()._replace(forks=False)
-    with Subject(dict.fromkeys(NAMES, FUNCTIONS), {}, tier, 30) as subject:
+    with Subject(dict.fromkeys(NAMES, FUNCTIONS), tier, 30) as subject:
         assert [int(subject.counted(1.0)) for _ in range(2)] == [1, 2]
         subject.fresh()
         assert subject.counted(1.0) == 1
@@ -366,7 +366,7 @@ def test_a_bubblewrap_that_does_not_work_is_an_error_that_says_why(without, scri
 
 def strict_anyway():
     """Return a Subject of the strict tier, or raise."""
-    return Subject({"scaled": FUNCTIONS}, {}, tiers.choose("strict"))
+    return Subject({"scaled": FUNCTIONS}, tiers.choose("strict"))
 
 
 def test_a_user_number_is_given_to_one_sandbox_at_a_time():
@@ -388,7 +388,7 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
             "from hdrlab.course.checks.subject import Subject\n"
             "from hdrlab.course.sandbox import tiers\n"
             f"tier, source = tiers.choose({tier!r}), 'def f():\\n while True: pass'\n"
-            "with Subject({'f': source}, {}, tier, 60) as subject:\n"
+            "with Subject({'f': source}, tier, 60) as subject:\n"
             "    subject._running.check(); print('begun', flush=True); subject.f()\n"
         )
         before = supervisor.children()
@@ -420,7 +420,7 @@ def test_root_and_an_ordinary_user_have_the_same_strict_tier():
     code = (
         "from hdrlab.course.checks.subject import Subject\n"
         "from hdrlab.course.sandbox import tiers\n"
-        "with Subject({'f': 'def f(x): return 2 * x'}, {}, tiers.choose('strict'), 60) as s: print(s.f(21))\n"
+        "with Subject({'f': 'def f(x): return 2 * x'}, tiers.choose('strict'), 60) as s: print(s.f(21))\n"
     )
     user, held = users.lease()
     with held:
@@ -550,7 +550,7 @@ def test_a_subject_has_the_tasks_that_were_handed_in_and_is_used_while_open(subj
     with pytest.raises(channel.Refused, match="class function"):
         subject.scaled(lambda x: x)
     subject.fresh()
-    closed = Subject({"f": ""}, {}, practice.sandbox())
+    closed = Subject({"f": ""}, practice.sandbox())
     with pytest.raises(RuntimeError, match="in a with statement"):
         closed.f()
 

@@ -98,9 +98,8 @@ def _check_entry(info: zipfile.ZipInfo) -> None:
     """Raise Refused for an entry that is a link or a device, or is encrypted."""
     kind = info.external_attr >> 28  # the file type of Unix, 0 where the archive was made elsewhere
     if kind not in (0, 0o10):
-        raise Refused(
-            f"{quote_name(info.filename)} is a {'link' if kind == 0o12 else 'device'}, expected plain files"
-        )
+        what = "link" if kind == 0o12 else "device"
+        raise Refused(f"{quote_name(info.filename)} is a {what}, expected plain files")
     if info.flag_bits & 0x1:
         raise Refused(f"{quote_name(info.filename)} is encrypted")
     if "\0" in info.orig_filename:

@@ -60,12 +60,6 @@ def task_of(name: str) -> str:
     return max((id for id in ids if name.startswith(f"{id}_")), key=len)
 
 
-def recognise(task: str, calls: Sequence[Call]) -> str | None:
-    """Return the sentence of the misconception that explains a student's answers, or None."""
-    found = closest(task, calls)
-    return found.sentence if found else None
-
-
 def closest(task: str, calls: Sequence[Call]) -> Misconception | None:
     """Return the misconception whose answers are those of the student in every call, or None.
 

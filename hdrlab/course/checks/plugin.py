@@ -30,9 +30,7 @@ from hdrlab.course.sandbox.running import Unavailable
 CALLS = 20  # of a task that are kept to recognise a mistake by
 LONGEST = 1500  # characters of a message
 SAID = 4000  # characters of what a function printed
-MARKER = (
-    "points(n, needs=''): what a promise is worth, and the promise of its task without which it earns nothing"
-)
+MARKER = "points(n, needs=''): what a promise is worth, and the one without which it earns nothing"
 WHERE = re.compile(r"\n *\+  where")  # begins what pytest adds to a plain assert
 ADDRESS = re.compile(r" at 0x[0-9a-fA-F]+")  # of an object: it is another in each run
 DRAWN = 3_000_000  # values of an image that is drawn, at most
@@ -74,7 +72,7 @@ class Checking:
         if os.getppid() != self.job["grader"]:
             pytest.exit("the grader has ended")
         sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])
-        subject = Subject(sources, {}, sandbox, self.job["timeout"], self.job["modules"])
+        subject = Subject(sources, sandbox, self.job["timeout"], self.job["modules"])
         self.submission = self.open.enter_context(subject)
 
     @pytest.fixture
@@ -97,7 +95,7 @@ class Checking:
             self._write(
                 check=_id(item),
                 task=_task(item),
-                name=item.originalname if isinstance(item, pytest.Function) else item.name,
+                name=_name(item),
                 promise=_promise(item),
                 points=str(Fraction(str(worth.args[0] if worth else 1))),
                 needs=worth.kwargs.get("needs", "") if worth else "",
@@ -123,11 +121,9 @@ class Checking:
             kept = self.calls.setdefault(_task(item), [])
             kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
         if isinstance(raised, Unavailable):  # nothing can be said of the submission
-            self._write(unavailable=str(raised))
-            return
+            return self._write(unavailable=str(raised))
         if raised is None:
-            self._write(ended=_id(item), outcome="holds", said=said)
-            return
+            return self._write(ended=_id(item), outcome="holds", said=said)
         if not self._is_hidden(item):
             self.failed.add(_task(item))
         kind = raised.kind if isinstance(raised, NoAnswer) else ""
@@ -138,11 +134,9 @@ class Checking:
     def pytest_sessionfinish(self) -> None:
         """Write down which well-known mistakes the answers show."""
         for task in sorted(self.failed):
-            sentence = None
             with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
-                sentence = misconceptions.recognise(task, self.calls.get(task, []))
-            if sentence:
-                self._write(recognised=task, sentence=sentence)
+                if found := misconceptions.closest(task, self.calls.get(task, [])):
+                    self._write(recognised=task, sentence=found.sentence)
 
     def pytest_unconfigure(self) -> None:
         """Close the sandbox."""
@@ -165,10 +159,13 @@ def _task(item: pytest.Item) -> str:
     return item.path.stem.removeprefix("test_")
 
 
+def _name(item: pytest.Item) -> str:
+    return item.originalname if isinstance(item, pytest.Function) else item.name
+
+
 def _promise(item: pytest.Item) -> str:
     """Return the promise in words, which is the name of the check."""
-    name = item.originalname if isinstance(item, pytest.Function) else item.name
-    words = name.removeprefix("test_").replace("_", " ")
+    words = _name(item).removeprefix("test_").replace("_", " ")
     return words[:1].upper() + words[1:]
 
 
@@ -182,10 +179,9 @@ def _message(raised: BaseException) -> str:
     said = ADDRESS.sub("", WHERE.split(str(raised))[0]).strip()
     if isinstance(raised, compare.Different) and raised.came is not None and np.ndim(raised.came):
         return f"{said[:LONGEST]}\nYours: {describe(raised.came)}"
-    if isinstance(raised, compare.Different | NoAnswer):
-        return said[:LONGEST]
     if isinstance(raised, AssertionError):
-        return (said or "The promise does not hold")[:LONGEST]
+        empty = "" if isinstance(raised, NoAnswer) else "The promise does not hold"
+        return (said or empty)[:LONGEST]
     return f"The answer could not be compared: {type(raised).__name__}: {said}"[:LONGEST]
 
 
@@ -196,7 +192,5 @@ def _differs(raised: BaseException) -> dict[str, Any] | None:
     if raised.expected is None or raised.came is None or raised.expected.size > DRAWN:
         return None
     both = [np.asarray(one, "<f8") for one in (raised.expected, raised.came)]
-    if both[0].shape != both[1].shape:  # which the message says
-        return None
     texts = [base64.b64encode(one.tobytes()).decode() for one in both]
     return {"kind": raised.kind, "shape": both[0].shape, "expected": texts[0], "came": texts[1]}

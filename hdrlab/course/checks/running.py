@@ -58,14 +58,8 @@ def _followed(process: "subprocess.Popen[bytes]", file: Path, patience: float) -
 def _command(job: Path, empty: Path, files: Sequence[Path]) -> list[str]:
     """Return the command: no configuration, no plugin and no conftest of this machine has a say."""
     options = [
-        *(
-            "-q",
-            "-q",
-            "--noconftest",
-            "--import-mode=importlib",
-            f"--rootdir={empty}",
-            f"--confcutdir={empty}",
-        ),
+        *("-q", "-q", "--noconftest", "--import-mode=importlib"),
+        *(f"--rootdir={empty}", f"--confcutdir={empty}"),
         *("-c", os.devnull, "-p", "no:cacheprovider", "-p", "hdrlab.course.checks.plugin", "-W", "ignore"),
         *("-o", f"pythonpath={SPECIFICATION}", "--tb=short", f"--job={job}"),
     ]

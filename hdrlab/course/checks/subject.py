@@ -16,7 +16,6 @@ from typing import Any, NamedTuple, NoReturn, Self
 
 from hdrlab.course import wording
 from hdrlab.course.checks import compare
-from hdrlab.course.code.names import imported
 from hdrlab.course.sandbox.inside import channel
 from hdrlab.course.sandbox.running import Running, Sandbox
 
@@ -35,15 +34,11 @@ class NoAnswer(AssertionError):
     Attributes
     ----------
     kind : "missing", "raised", "late", "died", "refused", "damaged", or "killed" from outside
-    error : the class of what was raised, such as "ValueError"
-    line, text : where in the submission it was raised, and the line itself; None and "" where nobody knows
     """
 
-    def __init__(
-        self, says: str, kind: str, error: str = "", line: int | None = None, text: str = ""
-    ) -> None:
+    def __init__(self, says: str, kind: str) -> None:
         super().__init__(says)
-        self.kind, self.error, self.line, self.text = kind, error, line, text
+        self.kind = kind
 
 
 class Call(NamedTuple):
@@ -62,8 +57,6 @@ class Subject:
     ----------
     sources : mapping
         The source text of each task, closed: with the imports and helpers that it needs.
-    names : mapping
-        The name of each task's function in its source; the task's own, unless told.
     sandbox : Sandbox
         Where they run, from `hdrlab.course.sandbox.tiers.choose`.
     timeout : float
@@ -82,7 +75,7 @@ class Subject:
     Examples
     --------
     >>> from hdrlab.course.sandbox import tiers
-    >>> with Subject({"twice": "def twice(x): return 2 * x"}, {}, tiers.choose("practice")) as subject:
+    >>> with Subject({"twice": "def twice(x): return 2 * x"}, tiers.choose("practice")) as subject:
     ...     int(subject.twice(21))
     42
     """
@@ -90,14 +83,12 @@ class Subject:
     def __init__(
         self,
         sources: Mapping[str, str],
-        names: Mapping[str, str],
         sandbox: Sandbox,
         timeout: float = TIMEOUT,
-        modules: Sequence[str] | None = None,
+        modules: Sequence[str] = (),
     ) -> None:
-        self._sources, self._names, self._sandbox = dict(sources), dict(names), sandbox
-        self._timeout = timeout
-        self._modules = imported(self._sources.values()) if modules is None else modules
+        self._sources, self._sandbox = dict(sources), sandbox
+        self._timeout, self._modules = timeout, modules
         self._left_of_check, self._left_of_all = CHECK * timeout, WHOLE * timeout
         self._running: Running | None = None
         self._link: socket.socket | None = None
@@ -142,13 +133,7 @@ class Subject:
     def _call(self, task: str, args: tuple[Any, ...], kwargs: dict[str, Any]) -> Any:
         """Return the student's answer, or raise NoAnswer."""
         self.calls.append(Call(task, args, kwargs, None))
-        order = {
-            "task": task,
-            "source": self._sources[task],
-            "function": self._names.get(task, task),
-            "args": args,
-            "kwargs": kwargs,
-        }
+        order = {"task": task, "source": self._sources[task], "args": args, "kwargs": kwargs}
         kind, value = self._exchange(task, order)
         if kind == "answer":
             value = compare.plain(value)  # as the library's answers are, where the specification asks it
@@ -197,9 +182,8 @@ class Subject:
             return f"the {PROCESSOR * self._timeout:g} s of a processor for a whole submission are used up"
         if self._left_of_all <= 0:
             return f"the {WHOLE * self._timeout:g} s for a whole submission are used up"
-        return (
-            f"the {CHECK * self._timeout:g} s for one check are used up" if self._left_of_check <= 0 else ""
-        )
+        over = self._left_of_check <= 0
+        return f"the {CHECK * self._timeout:g} s for one check are used up" if over else ""
 
     def _explain_silence(self, task: str, error: Exception) -> NoReturn:
         """Raise the NoAnswer of a call whose process is late, gone, or wrote what is no answer."""
@@ -210,8 +194,8 @@ class Subject:
         ended, used, granted = KILLED, 0.0, math.inf  # where the supervisor is gone, too
         with contextlib.suppress(OSError, EOFError, ValueError):
             if self._running is not None:
-                granted = self._running.granted if self._running.sandbox.forks else math.inf
                 ended, used = self._running.clear(SETTLE)
+                granted = self._running.granted if self._running.sandbox.forks else math.inf
         if used >= granted - 0.5 and ended == KILLED:
             raise NoAnswer(f"{task} took longer than {granted} s of a processor", "late") from None
         if isinstance(error, channel.Damaged):
@@ -240,26 +224,22 @@ def _checked(kind: str, value: Any) -> tuple[str, Any]:
     """Return (output, value) of an answer whose form is right, or raise Damaged."""
     if not (isinstance(value, tuple) and len(value) == 2 and isinstance(value[0], str)):
         raise channel.Damaged("an answer without its output")
-    output, inner = value
-    if kind == "refused" and isinstance(inner, str):
-        return output, inner
-    if kind == "raised" and isinstance(inner, dict) and set(inner) == {"error", "message", "line", "text"}:
-        words = all(isinstance(inner[word], str) for word in ("error", "message", "text"))
-        if words and (inner["line"] is None or isinstance(inner["line"], int)):
-            return output, inner
-    if kind == "answer":
-        return output, inner
-    raise channel.Damaged("an answer of no kind")
+    right = kind == "answer"
+    match value[1]:
+        case str():
+            right |= kind == "refused"
+        case {"error": str(), "message": str(), "text": str(), "line": int() | None, **rest}:
+            right |= kind == "raised" and not rest
+    if not right:
+        raise channel.Damaged("an answer of no kind")
+    return value
 
 
 def _explain(task: str, kind: str, value: Any) -> NoReturn:
     """Raise the NoAnswer of a call that raised, or whose answer cannot travel."""
     if kind == "refused":
-        raise NoAnswer(
-            f"{task} answered with something that is no array: it contains {wording.lines(value, 300)}",
-            "refused",
-        )
+        says = f"{task} answered with something that is no array: it contains {wording.lines(value, 300)}"
+        raise NoAnswer(says, "refused")
     error, message, text = (wording.lines(value[word], 2000) for word in ("error", "message", "text"))
     where = f" (line {value['line']}: {text})" if value["line"] is not None else ""
-    says = f"{task} raised {error}{': ' if message else ''}{message}{where}"
-    raise NoAnswer(says, "raised", error, value["line"], text) from None
+    raise NoAnswer(f"{task} raised {error}{': ' if message else ''}{message}{where}", "raised") from None

@@ -60,8 +60,8 @@ def find(folder: str | Path, roster: Roster, received: Mapping[str, datetime] | 
     if not folder.is_dir():
         raise ValueError(f"{folder}: expected the folder of what was handed in")
     rows, notes = dict(received or {}), []
-    refused: dict[str, str] = {}
     handins: dict[str, Handin] = {}
+    refused: dict[str, str] = {}
     for path, why in _files(folder):
         name = path.relative_to(folder).as_posix()
         team, when = roster.owner(name.partition("/")[0]), rows.pop(_key(name), None)
@@ -77,19 +77,13 @@ def find(folder: str | Path, roster: Roster, received: Mapping[str, datetime] | 
         notes += [f"{plain(name, 80)}: {unknown}"] if unknown else []
         when = when or datetime.fromtimestamp(path.stat().st_mtime, UTC)
         students = tuple(one.id for one in teams[team])
-        fresh, before = Handin(team, students, path, when, _digest(path), unknown), handins.get(team)
-        if before:
-            older = min(before, fresh, key=_age)
+        fresh = Handin(team, students, path, when, _digest(path), unknown)
+        if team in handins:
+            older, fresh = sorted((handins[team], fresh), key=lambda one: (one.received, one.path.name))
             notes.append(f"{plain(older.path.name, 80)}: {team} has handed in another, later")
-        handins[team] = fresh if before is None else max(before, fresh, key=_age)
-    notes += [
-        f"{plain(name, 80)}: the table of times has a row for it, and there is no such file" for name in rows
-    ]
+        handins[team] = fresh
+    notes += [f"{plain(name, 80)}: the table of times names it, there is no such file" for name in rows]
     return Found(handins, tuple(notes), {team: why for team, why in refused.items() if team not in handins})
-
-
-def _age(one: Handin) -> tuple[datetime, str]:
-    return one.received, one.path.name
 
 
 def _files(folder: Path) -> Iterator[tuple[Path, str]]:
@@ -145,9 +139,8 @@ def read_times(path: Path) -> dict[str, datetime]:
         try:
             name, when = _key(row["file"]), datetime.fromisoformat(row["received"])
         except (KeyError, ValueError):
-            raise ValueError(
-                f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
-            ) from None
+            says = f"{path}: expected the columns file and received, 2026-03-01T12:00+01:00"
+            raise ValueError(says) from None
         if when.tzinfo is None:
             raise ValueError(f"{path}: expected times with a zone, got {row['received']}")
         if name in came:

@@ -76,10 +76,8 @@ def marks(
         bill, work = mine[id], points.get(team, 0.0)
         note = "; ".join(filter(None, ("" if team in points else NOT_GRADED, handins[team].note, remark)))
         received = handins[team].received.isoformat(timespec="minutes")
-        row = Mark(
-            *who, received, bill.late, bill.excused, work, of, bill.penalty, bill.score, bill.left, note
-        )
-        rows.append(row)
+        days, costs = (bill.late, bill.excused), (bill.penalty, bill.score, bill.left)
+        rows.append(Mark(*who, received, *days, work, of, *costs, note))
     return rows
 
 

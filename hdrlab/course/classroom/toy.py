@@ -20,7 +20,6 @@ from hdrlab.course import plan
 from hdrlab.course.classroom import imitation
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
-from hdrlab.io.files import replacing
 
 HOMEWORK = "hw2"
 TEAM, MEMBERS = "t1", ("s03", "s04")
@@ -79,16 +78,12 @@ def hand_ins(homework: Homework) -> Iterator[Handed]:
     begun = homework._replace(tasks=tuple(task for task in homework.tasks if task.id in DONE))
     half = imitation.notebook(homework, imitation.texts(begun)).encode()
     yield Handed("s09_hw2.ipynb", half, -1, f"Not finished: {', '.join(DONE)} are right, 30 points.")
-    yield Handed(
-        "s10_hw2.ipynb", imitation.notebook(homework).encode(), -3, "As it was handed out: 0 points."
-    )
-    yield Handed(
-        "s11_hw2.zip", packed({"hw2.ipynb": right, "notes.txt": b"All tasks.\n"}), -5, "An archive: 100."
-    )
+    blank = imitation.notebook(homework).encode()
+    yield Handed("s10_hw2.ipynb", blank, -3, "As it was handed out: 0 points.")
+    archive = packed({"hw2.ipynb": right, "notes.txt": b"All tasks.\n"})
+    yield Handed("s11_hw2.zip", archive, -5, "An archive: 100.")
     trap = packed({"hw2.ipynb": right, "../s01_hw2.ipynb": b"{}"})
-    yield Handed(
-        "s12_hw2.zip", trap, -4, "An archive that would overwrite another's file: refused, 0 points."
-    )
+    yield Handed("s12_hw2.zip", trap, -4, "An archive that would overwrite another's file: refused, 0.")
     yield Handed("s13_hw2.py", HOSTILE.encode(), -6, "Attacks on the grader in place of functions: 0 points.")
 
 
@@ -115,11 +110,11 @@ def write(folder: Path) -> list[Path]:
     (folder / "submissions").mkdir(parents=True, exist_ok=True)
     each = list(hand_ins(homework))
     for one in each:
-        _write(folder / "submissions" / one.name, one.data)
+        (folder / "submissions" / one.name).write_bytes(one.data)
     roster = [(who, f"Student {who[1:]}", TEAM if who in MEMBERS else "") for who in STUDENTS]
     sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
     sheets.write_csv(folder / "received.csv", ("file", "received"), received(each, homework))
-    _write(folder / "README.md", _about(folder, each).encode())
+    (folder / "README.md").write_text(_about(folder, each), encoding="utf8")
     return [folder / "submissions" / one.name for one in each]
 
 
@@ -133,8 +128,3 @@ def _about(folder: Path, each: Sequence[Handed]) -> str:
     rows = [f"| {one.name} | {one.about} |" for one in each]
     head = ["| file | what it is |", "|---|---|"]
     return "\n".join(["# A toy class", "", f"    {COMMAND.format(folder=folder)}", "", *head, *rows, ""])
-
-
-def _write(file: Path, data: bytes) -> None:
-    with replacing(file) as temporary:
-        temporary.write_bytes(data)

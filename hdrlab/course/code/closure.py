@@ -13,17 +13,9 @@ from typing import NamedTuple
 
 from hdrlab.course.code import names
 
-STARRED = (
-    "numpy",
-    "scipy",
-    "math",
-    "cmath",
-    "random",
-    "itertools",
-    "functools",
-    "typing",
-)  # from ... import *
-TIMED = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")  # magics over plain Python
+# modules of which all names may be imported, and magics over plain Python
+STARRED = ("numpy", "scipy", "math", "cmath", "random", "itertools", "functools", "typing")
+TIMED = ("%%time", "%%timeit", "%%capture", "%%prun", "%%script python")
 
 
 class Cell(NamedTuple):
@@ -109,9 +101,8 @@ def _needed(task: Statement, name: str, binding: Mapping[str, Sequence[Statement
 
 def _givers(cell: Cell, near: Sequence[Statement]) -> Sequence[Statement]:
     """Return which of a name's bindings make what it stands for; those of the task's own cell come first."""
-    whole = [one for one in near if one.cell is cell and _is_whole(one)] or [
-        one for one in near if _is_whole(one)
-    ]
+    whole = [one for one in near if _is_whole(one)]
+    whole = [one for one in whole if one.cell is cell] or whole
     if not whole:
         return near
     if _is_import(whole[-1]):  # what is done to numpy is not part of a function
@@ -184,11 +175,9 @@ def _statements(cell: Cell, first: int) -> list[Statement]:
         needs = frozenset(use.node.id for use in names.free(node))
         if hasattr(node, "body"):  # a loop's own variable is nothing from another cell
             needs -= binds
-        needed = (
-            needs | changes,
-            frozenset(use.node.id for one in names.head(node) for use in names.free(one)),
-        )
-        found.append(Statement(first + len(found), _part(lines, start, node), binds | changes, *needed, cell))
+        head = frozenset(use.node.id for one in names.head(node) for use in names.free(one))
+        text, place = _part(lines, start, node), first + len(found)
+        found.append(Statement(place, text, binds | changes, needs | changes, head, cell))
     return found
 
 
@@ -249,8 +238,7 @@ def plain(text: str) -> str:
         return text  # such lines stand in a string
     except names.BROKEN:
         return "\n".join(
-            line[: len(line) - len(line.lstrip(" \t"))] + "pass" if _is_notebooks(line) else line
-            for line in lines
+            re.sub(r"[^ \t].*", "pass", one, count=1) if _is_notebooks(one) else one for one in lines
         )
 
 

@@ -62,15 +62,13 @@ def _block(order: Sequence[Key], names: dict[Key, str], done: set[str]) -> Block
     for key in order:
         imports |= set(_imports(key)) - done
         text = _text(key, names)
-        if (
-            text not in done or key == order[-1]
-        ):  # what is asked for is there, though an earlier one needed it
+        # what is asked for is there, though an earlier one needed it
+        if text not in done or key == order[-1]:
             texts.append(text)
             done.add(text)
     done |= imports
-    return Block(
-        order[-1], tuple(sorted(imports, key=_rank)), _joined(texts[:-1]), texts[-1] if texts else ""
-    )
+    *needed, source = texts
+    return Block(order[-1], tuple(sorted(imports, key=_rank)), _joined(needed), source)
 
 
 def _grouped(imports: Sequence[str]) -> list[str]:
@@ -161,9 +159,8 @@ def _text(key: Key, names: dict[Key, str]) -> str:
         first = min([statement.lineno, *(one.lineno for one in getattr(statement, "decorator_list", ()))])
         while first > 1 and lines[first - 2].startswith("#"):
             first -= 1
-        written = [
-            _edited(lines[n - 1], edits.get(n, [])) for n in range(first, (statement.end_lineno or 0) + 1)
-        ]
+        places = range(first, (statement.end_lineno or 0) + 1)
+        written = [_edited(lines[n - 1], edits.get(n, [])) for n in places]
         at = statement.lineno - first
         if renamed != key.name and isinstance(statement, ast.FunctionDef | ast.ClassDef):
             written[at] = written[at].replace(f" {key.name}", f" {renamed}", 1)

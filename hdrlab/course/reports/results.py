@@ -11,7 +11,16 @@ from typing import Any, Literal, NamedTuple
 VERSION = 1
 CREDIT = ("strict", "container")  # tiers that count
 # what a team's copy holds, and nothing else: of the whole, of a check, of a hidden one
-TEAM_SEES = ("version", "student", "homework", "title", "tier", "for_credit", "score", "max_score")
+TEAM_SEES: tuple[str, ...] = (
+    "version",
+    "student",
+    "homework",
+    "title",
+    "tier",
+    "for_credit",
+    "score",
+    "max_score",
+)
 TEAM_SEES += ("problems", "misconceptions", "checks", "submission", "specification", "seed", "versions")
 OF_HIDDEN = ("task", "promise", "points", "max_points", "outcome", "hidden")
 OF_OWN = (*OF_HIDDEN, "name", "message", "hints", "drawing", "said")
@@ -76,12 +85,12 @@ class Result(NamedTuple):
     @property
     def score(self) -> float:
         """Points earned."""
-        return _number(sum((one.points for one in self.checks), Fraction()))
+        return points(self.checks)[0]
 
     @property
     def max_score(self) -> float:
         """Points to be earned."""
-        return _number(sum((one.max_points for one in self.checks), Fraction()))
+        return points(self.checks)[1]
 
     @property
     def why_practice(self) -> str:
@@ -128,20 +137,11 @@ def to_json(result: Result) -> bytes:
     """
     whole = {
         "version": VERSION,
-        "student": result.student,
-        "homework": result.homework,
-        "title": result.title,
-        "tier": result.tier,
+        **result._asdict(),
         "for_credit": result.for_credit,
         "score": result.score,
         "max_score": result.max_score,
-        "problems": list(result.problems),
-        "misconceptions": result.misconceptions,
         "checks": [_check_to_json(one) for one in result.checks],
-        "submission": result.submission,
-        "specification": result.specification,
-        "seed": result.seed,
-        "versions": result.versions,
     }
     return (json.dumps(whole, indent=1, ensure_ascii=True) + "\n").encode()
 
@@ -157,13 +157,11 @@ def for_team(data: bytes) -> bytes:
 
 
 def _check_to_json(check: Check) -> dict[str, Any]:
-    exact = {"points": str(check.points), "max_points": str(check.max_points)}
     return {
         **check._asdict(),
         "points": _number(check.points),
         "max_points": _number(check.max_points),
-        "exact": exact,
-        "hints": list(check.hints),
+        "exact": {"points": str(check.points), "max_points": str(check.max_points)},
         "drawing": drawing_to_json(check.drawing),
     }
 

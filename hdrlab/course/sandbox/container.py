@@ -9,21 +9,11 @@ import os
 import sys
 from socket import socket
 
-from hdrlab.course.sandbox import descent, filters, users
+from hdrlab.course.sandbox import descent, filters, running, users
 from hdrlab.course.sandbox.contents import contents
-from hdrlab.course.sandbox.running import (
-    ENVIRONMENT,
-    PROGRAM,
-    Launched,
-    Sandbox,
-    Unavailable,
-    command,
-    packages,
-    start,
-)
 
 
-def sandbox() -> Sandbox:
+def sandbox() -> running.Sandbox:
     """Return the container tier.
 
     Raises
@@ -32,19 +22,19 @@ def sandbox() -> Sandbox:
         Where the system is not Linux with Landlock, this is not root, or libseccomp is missing.
     """
     if sys.platform != "linux":
-        raise Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
+        raise running.Unavailable(f"the container tier needs Linux, and this is {sys.platform}")
     if os.geteuid() != 0:
-        raise Unavailable("the container tier needs root, which alone can become another user")
+        raise running.Unavailable("the container tier needs root, which alone can become another user")
     if descent.landlock() == 0:
-        raise Unavailable("the container tier needs Landlock, which is kept back by this kernel or container")
-    return Sandbox("container", True, launch, program=filters.program("check"))
+        raise running.Unavailable("the container tier needs Landlock, which this kernel or container lacks")
+    return running.Sandbox("container", True, launch, program=filters.program("check"))
 
 
-def launch(control: socket) -> Launched:
+def launch(control: socket) -> running.Launched:
     """Start the supervisor behind the fence, as a spare user who reads what root has opened."""
-    inside, found = contents(), packages()
+    inside, found = contents(), running.packages()
     libraries = [folder for one in found.values() if os.path.isdir(folder := f"{one}.libs")]
-    homes = [inside.prefix, str(PROGRAM.parent), *found.values(), *libraries]
+    homes = [inside.prefix, str(running.PROGRAM.parent), *found.values(), *libraries]
     folders = {name: f"{{{j}}}" for j, name in enumerate(found, 2)}
     python = "{0}/" + os.path.relpath(inside.places[inside.python], inside.prefix)
     loaded = ":".join(["{0}/lib", *(f"{{{j}}}" for j in range(2 + len(found), len(homes)))])
@@ -54,11 +44,11 @@ def launch(control: socket) -> Launched:
         user=user,
         homes=homes,
         fence={"read": read, "walk": walk, "write": [os.devnull]},
-        command=command(python, f"{{1}}/{PROGRAM.name}", control.fileno(), folders),
-        environment=ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
+        command=running.command(python, f"{{1}}/{running.PROGRAM.name}", control.fileno(), folders),
+        environment=running.ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
     )
     try:
-        return Launched(start(words, {}, control.fileno()), held.close)
+        return running.Launched(running.start(words, {}, control.fileno()), held.close)
     except BaseException:
         held.close()
         raise

@@ -30,11 +30,7 @@ def tried(secret, target):
     return done
 """
 SWITCHES = (  # of Linux, which keep ordinary users from namespaces: file, the value that does, what helps
-    (
-        "kernel/apparmor_restrict_unprivileged_userns",
-        "1",
-        "give bwrap an AppArmor profile that allows userns",
-    ),
+    ("kernel/apparmor_restrict_unprivileged_userns", "1", "give bwrap a profile of AppArmor with userns"),
     ("kernel/unprivileged_userns_clone", "0", "sysctl kernel.unprivileged_userns_clone=1"),
     ("user/max_user_namespaces", "0", "sysctl user.max_user_namespaces=10000"),
 )
@@ -105,7 +101,7 @@ def _trial(tier: str) -> tuple[list[str], float]:
     secret, target = bytes(Path(__file__).resolve()), b"/tmp/hdrlab-doctor"
     began = time.perf_counter()
     sources = {"ready": "def ready(): return True", "tried": BREAK_OUT}
-    with Subject(sources, {}, tiers.choose(tier)) as subject:
+    with Subject(sources, tiers.choose(tier)) as subject:
         subject.ready()
         start = time.perf_counter() - began
         return (subject.tried(secret, target) if tier != "practice" else []), start

@@ -12,16 +12,7 @@ import tempfile
 from functools import partial
 from socket import socket
 
-from hdrlab.course.sandbox.running import (
-    ENVIRONMENT,
-    LIMITS,
-    PROGRAM,
-    Launched,
-    Sandbox,
-    command,
-    packages,
-    start,
-)
+from hdrlab.course.sandbox import running
 
 DOES_NOT_STOP = (
     "reading any file that you can read: tests, solutions, this library, your own files",
@@ -30,26 +21,28 @@ DOES_NOT_STOP = (
     "using the network",
     "starting programs, and ending or watching your other processes, the grader among them",
 )
-OWN_LIMITS = {name: most for name, most in LIMITS.items() if name != "NPROC"}  # it would count all of yours
+# processes are not counted, for all of yours would be
+OWN_LIMITS = {name: most for name, most in running.LIMITS.items() if name != "NPROC"}
 
 
-def sandbox() -> Sandbox:
+def sandbox() -> running.Sandbox:
     """Return the practice tier; where processes cannot fork, each check starts a process of its own."""
-    return Sandbox("practice", False, launch, forks=hasattr(os, "fork"), limits=OWN_LIMITS)
+    return running.Sandbox("practice", False, launch, forks=hasattr(os, "fork"), limits=OWN_LIMITS)
 
 
-def launch(control: socket) -> Launched:
+def launch(control: socket) -> running.Launched:
     """Start the supervisor with this interpreter, in an empty folder, without this process's environment."""
     scratch = tempfile.mkdtemp(prefix="hdrlab-check-")
     python = getattr(sys, "_base_executable", sys.executable)  # not the environment's, with all its packages
-    words = command(python, str(PROGRAM), control.fileno(), packages())
-    environment = ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
+    words = running.command(python, str(running.PROGRAM), control.fileno(), running.packages())
+    environment = running.ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
     environment |= {name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ}  # for Windows
     after = partial(shutil.rmtree, scratch, ignore_errors=True)
     try:
         if sys.platform == "win32":
-            return Launched(_shared(words, environment, control, scratch), after)
-        return Launched(start(words, environment, control.fileno(), folder=scratch), after, scratch)
+            return running.Launched(_shared(words, environment, control, scratch), after)
+        process = running.start(words, environment, control.fileno(), folder=scratch)
+        return running.Launched(process, after, scratch)
     except BaseException:
         after()
         raise
@@ -59,14 +52,7 @@ def _shared(
     words: list[str], environment: dict[str, str], control: socket, folder: str
 ) -> subprocess.Popen[bytes]:
     """Return the process of a command that is told its control on the standard input, as Windows does."""
-    process = subprocess.Popen(
-        words,
-        stdin=subprocess.PIPE,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        cwd=folder,
-        env=environment,
-    )
+    process = running.start(words, environment, folder=folder, stdin=subprocess.PIPE)
     if sys.platform == "win32" and process.stdin:
         process.stdin.write(control.share(process.pid))
         process.stdin.close()

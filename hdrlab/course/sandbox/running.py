@@ -36,14 +36,8 @@ ENVIRONMENT = {
     "PYTHONHASHSEED": "0",  # regrading gives the same bytes
     "LC_ALL": "C.UTF-8",
 }
-FLAGS = (
-    "-s",
-    "-P",
-    "-S",
-    "-B",
-    "-X",
-    "utf8",
-)  # no site-packages, no .pth, nothing from the folder it stands in
+# no site-packages, no .pth, nothing from the folder it stands in
+FLAGS = ("-s", "-P", "-S", "-B", "-X", "utf8")
 PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside worker.py and channel.py, which it needs
 
 
@@ -218,12 +212,16 @@ class Running:
 
 
 def start(
-    words: list[str], environment: dict[str, str], *inherited: int, folder: str = "/"
+    words: list[str],
+    environment: dict[str, str],
+    *inherited: int,
+    folder: str = "/",
+    stdin: int = subprocess.DEVNULL,
 ) -> subprocess.Popen[bytes]:
-    """Return the process of a command: it hears nothing, and what it says is kept in case it fails."""
+    """Return the process of a command: what it says is kept in case it fails."""
     return subprocess.Popen(
         words,
-        stdin=subprocess.DEVNULL,
+        stdin=stdin,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,
         cwd=folder,

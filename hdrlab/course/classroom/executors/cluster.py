@@ -31,9 +31,8 @@ from hdrlab.course.classroom.journal import Ending, Piece
 CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
 LONELY = 120.0  # seconds without any worker, after which the run ends
 TICK = 0.05  # seconds between two looks at what has ended
-WARNING = {
-    "distributed.admin.large-graph-warning-threshold": "4 GiB"
-}  # a submission may be of many photographs
+# a submission may be of many photographs
+WARNING = {"distributed.admin.large-graph-warning-threshold": "4 GiB"}
 
 
 class Seat(NamedTuple):
@@ -186,9 +185,8 @@ class Cluster:
             yield
         except (OSError, RuntimeError) as error:
             why = " ".join(str(error).split())[: process.LAST]
-            raise ValueError(
-                f"the cluster at {self._address} is lost; what is graded stays graded: {why}"
-            ) from None
+            says = f"the cluster at {self._address} is lost; what is graded stays graded: {why}"
+            raise ValueError(says) from None
 
     def _present(self) -> list[Seat]:
         """Return the workers that there are."""
@@ -230,9 +228,8 @@ class Cluster:
             except TimeoutError:
                 return None
         self._forget(future)
-        if answer[:1] == b"+":
-            return Ending(piece, answer[1:])
-        return Ending(piece, None, answer[1:].decode())
+        whole = answer[:1] == b"+"
+        return Ending(piece, answer[1:]) if whole else Ending(piece, None, answer[1:].decode())
 
     def _forget(self, future: Future) -> None:
         _, seat = self._running.pop(future)

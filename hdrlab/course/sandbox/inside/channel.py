@@ -101,12 +101,8 @@ def _label(name: int, array: np.ndarray | bytes) -> dict[str, Any]:
     """Return what the header says of the raw bytes that follow it."""
     if isinstance(array, bytes):
         return {"name": str(name), "dtype": BYTES, "shape": [len(array)], "bytes": len(array)}
-    return {
-        "name": str(name),
-        "dtype": array.dtype.name,
-        "shape": list(array.shape),
-        "bytes": array.nbytes,
-    }
+    shape = list(array.shape)
+    return {"name": str(name), "dtype": array.dtype.name, "shape": shape, "bytes": array.nbytes}
 
 
 def send(to: socket.socket, kind: str, value: Any = None, call: int = 0) -> None:
@@ -116,9 +112,8 @@ def send(to: socket.socket, kind: str, value: Any = None, call: int = 0) -> None
     if _is_large(tree):
         raise Refused(f"more than {VALUES} values outside of arrays")
     labels = [_label(j, array) for j, array in enumerate(arrays)]
-    header = json.dumps(
-        {"kind": kind, "call": call, "value": tree, "arrays": labels}, allow_nan=False
-    ).encode()
+    whole = {"kind": kind, "call": call, "value": tree, "arrays": labels}
+    header = json.dumps(whole, allow_nan=False).encode()
     if len(header) > HEADER:
         raise Refused(f"{len(header)} bytes of values outside of arrays, and not {HEADER} at most")
     if sum(label["bytes"] for label in labels) > BODY:

@@ -101,9 +101,9 @@ def answer(order: dict[str, Any], known: dict[str, dict[str, Any]]) -> Any:
     """Return what the student's function answers to the arguments of an order."""
     if order["source"] not in known:
         known[order["source"]] = run(order["source"], order["task"])
-    function = known[order["source"]].get(order["function"])
+    function = known[order["source"]].get(order["task"])
     if function is None:
-        raise NameError(f"there is no function {order['function']}")
+        raise NameError(f"there is no function {order['task']}")
     return drained(function(*order["args"], **order["kwargs"]))
 
 
