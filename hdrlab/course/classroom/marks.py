@@ -76,8 +76,8 @@ def marks(
         bill, work = mine[id], points.get(team, 0.0)
         note = "; ".join(filter(None, ("" if team in points else NOT_GRADED, handins[team].note, remark)))
         received = handins[team].received.isoformat(timespec="minutes")
-        days, costs = (bill.late, bill.excused), (bill.penalty, bill.score, bill.left)
-        rows.append(Mark(*who, received, *days, work, of, *costs, note))
+        paid, score, grace = bill.penalty, bill.score, bill.left
+        rows.append(Mark(*who, received, bill.late, bill.excused, work, of, paid, score, grace, note))
     return rows
 
 
