@@ -1,6 +1,6 @@
 """The arrays that everyone works on: a scene whose radiance is known, and its photographs.
 
-E        radiance (H, W, 3) float32: the room of `capture.room.view`, its contrast stretched to 6.5 decades
+E        radiance (H, W, 3) float32: the room of `scenes.computed.view`, its contrast stretched to 6.5 decades
 bracket  7 photographs, 2 stops apart, 8 bits, response of film, noise of a large sensor
 
 They are simulated once per folder and read from it afterwards, so that every process has the same ones.

@@ -38,9 +38,7 @@ def test_examples_run(name, monkeypatch, tmp_path):
 
 ALGORITHMS = ("align", "beyond", "capture", "core", "enhance", "radiance", "response", "tonemap")
 PARTS = {  # of something with examples
-    *(f"hdrlab.capture.room.{name}" for name in ("garden", "interior", "subjects")),
     "hdrlab.core.types",
-    "hdrlab.capture.room",
     "hdrlab.radiance.deghosting",
 }
 

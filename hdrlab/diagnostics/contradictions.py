@@ -117,7 +117,7 @@ def find_contradictions(
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.capture.room import view
+    >>> from hdrlab.scenes.computed import view
     >>> room = view.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> find_contradictions(taken.images, taken.times * [1, 1, 2, 1, 1]).wrong
@@ -167,7 +167,7 @@ def find_outlying_frames(
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.capture.room import view
+    >>> from hdrlab.scenes.computed import view
     >>> room = view.room((140, 210))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> find_outlying_frames(taken.images, taken.times * [1, 1, 1, 6, 6]), find_outlying_frames(*taken[:2])

@@ -3,12 +3,12 @@
 scenes.chapel(), scenes.workshop(), scenes.street()   radiance (H, W, 3) of a place
 scenes.layers("street")                               its depth as well, and somebody to walk through it
 scenes.compose(layers, (dy, dx))                      the place with that visitor, here or there
-scenes.room(), scenes.decades(E)                      `hdrlab.capture.room.view`
+scenes.room(), scenes.decades(E)                      `hdrlab.scenes.computed.view`
 
 How the places were made: `scenes.models`, and `python -m scenes.render`.
 """
 
-from hdrlab.capture.room.view import decades, room
+from hdrlab.scenes.computed.view import decades, room
 from hdrlab.scenes.places import PLACES, Layers, chapel, compose, layers, street, workshop
 
 __all__ = ["PLACES", "Layers", "chapel", "compose", "decades", "layers", "room", "street", "workshop"]

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from hdrlab.capture import autoexposure, exposure, metering
-from hdrlab.capture.room import subjects
 from hdrlab.core.colour import luminance
+from hdrlab.scenes.computed import subjects
 
 SHAPE = (80, 120)
 SCENES = {name: make((96, 144)) for name, make in subjects.SUBJECTS.items()}

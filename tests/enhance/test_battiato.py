@@ -7,10 +7,10 @@ from hypothesis import strategies as st
 from skimage import data
 
 from hdrlab.capture import exposure
-from hdrlab.capture.room import subjects
 from hdrlab.core.colour import decode_srgb, encode_srgb, to_8bit
 from hdrlab.core.steps import last
 from hdrlab.enhance import battiato, relight, skin
+from hdrlab.scenes.computed import subjects
 
 LEVELS = np.arange(256)
 

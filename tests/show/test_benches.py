@@ -5,8 +5,8 @@ import pytest
 
 from hdrlab import scenes
 from hdrlab.capture import autoexposure, metering, photon_transfer, planning, ranges, sensor
-from hdrlab.capture.room import subjects
 from hdrlab.core.colour import luminance
+from hdrlab.scenes.computed import subjects
 from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import benches, sensors
 

@@ -20,11 +20,11 @@ from hdrlab import pipeline
 from hdrlab.capture import autoexposure, camera, exposure, metering, ranges, responses
 from hdrlab.capture.autoexposure import State
 from hdrlab.capture.metering import At
-from hdrlab.capture.room.subjects import Subject
 from hdrlab.capture.sensor import Sensor
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.fast import debevec
+from hdrlab.scenes.computed.subjects import Subject
 from hdrlab.show.plots import curves
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.plots.lectures import sensors

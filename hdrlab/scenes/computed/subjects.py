@@ -11,9 +11,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.capture.room.textures import Points, cover, look_up, rgb, within
 from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32, Mask
+from hdrlab.scenes.computed.textures import Points, cover, look_up, rgb, within
 
 SHAPE = (256, 384)
 

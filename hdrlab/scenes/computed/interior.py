@@ -16,10 +16,10 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from hdrlab.capture.room.garden import EYE_HEIGHT, SUN, SUN_RADIUS, outside, sky
-from hdrlab.capture.room.illumination import Box, facing, from_globe, from_walls, from_window, length
-from hdrlab.capture.room.textures import Points, cover, hang, look_up, margin, rgb, within
 from hdrlab.core.types import Mask
+from hdrlab.scenes.computed.garden import EYE_HEIGHT, SUN, SUN_RADIUS, outside, sky
+from hdrlab.scenes.computed.illumination import Box, facing, from_globe, from_walls, from_window, length
+from hdrlab.scenes.computed.textures import Points, cover, hang, look_up, margin, rgb, within
 
 LEFT, RIGHT, FLOOR, CEILING, FRONT, BACK = range(6)
 

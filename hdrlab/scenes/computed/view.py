@@ -7,10 +7,10 @@ d  directions of sight (3, N), d_z = 1: x to the right, y up, z ahead
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.capture.room.interior import trace
-from hdrlab.capture.room.textures import Points
 from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32
+from hdrlab.scenes.computed.interior import trace
+from hdrlab.scenes.computed.textures import Points
 
 # lines of sight traced at a time: their arrays stay near the processor
 SIGHTS_PER_BAND = 2**16

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
-from hdrlab.capture.room import illumination, interior, textures, view
 from hdrlab.core.colour import luminance
+from hdrlab.scenes.computed import illumination, interior, textures, view
 
 
 @pytest.fixture(scope="module")
