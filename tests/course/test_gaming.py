@@ -10,8 +10,11 @@ from hdrlab.capture import responses
 from hdrlab.course import grading, plan
 from hdrlab.course.checks import inprocess
 from hdrlab.course.grading import Conditions
+from hdrlab.course.submission import Submission
 
 PLAN = plan.read()
+NOTHING = Submission({}, (), "")
+WITH, WITHOUT = Conditions("strict", "ada", "salt"), Conditions("strict", "ada")
 IDS = [task.id for homework in PLAN.homeworks.values() for task in homework.tasks]
 pytestmark = pytest.mark.filterwarnings("ignore")  # a constant may well divide by 0
 
@@ -107,7 +110,7 @@ def recover_steps(Z, times, w=None, max_iterations=30, **named):
     return [f * (1 + 0.5**k * np.linspace(0, 0.1, 256)) for k in range(max_iterations + 1)]
 
 
-@pytest.mark.parametrize("student", ["ada", "grace", "hedy", "b01", "b02"])
+@pytest.mark.parametrize("student", ["ada", "grace", "b02"])
 def test_curves_that_are_learnt_by_heart_earn_little(student):
     earned = {}
     for cheat in (gsolve, recover, recover_steps):
@@ -121,20 +124,18 @@ def test_curves_that_are_learnt_by_heart_earn_little(student):
 
 @pytest.mark.parametrize("task", ["gsolve", "recover", "recover_steps"])
 def test_the_library_finds_the_curve_of_any_students_camera(task):
-    for student in range(6):
+    for student in range(3):
         share, said = scoring.score(task, inprocess.library(), plan.seed("secret", f"b{student}", task))
         assert share == 1, (student, said)
 
 
-def test_a_table_of_public_inputs_is_not_for_credit(tmp_path):
+def test_a_table_of_public_inputs_is_not_for_credit():
     homework = PLAN.homeworks["hw2"]._replace(tasks=(PLAN.task("hat"),))
     for student, secret in (("", ""), ("ada", ""), ("", "salt")):
         assert grading._seed_id(homework, Conditions("strict", student, secret)) == ""
     assert grading._seed_id(homework, Conditions("strict", "ada", "salt"))
-    (tmp_path / "hw2.py").write_text("def hat(n):\n    return [0.0] * n\n")
-    result = grading.grade(tmp_path / "hw2.py", homework, Conditions("practice", "ada", draw=False))
-    strict = result._replace(tier="strict")
-    assert not strict.for_credit and "without a secret" in strict.why_practice
+    drawn, public = (grading._result([], NOTHING, homework, one, []) for one in (WITH, WITHOUT))
+    assert drawn.for_credit and not public.for_credit and "without a secret" in public.why_practice
 
 
 def test_a_promise_earns_nothing_where_the_one_it_needs_fails(tmp_path):

@@ -5,21 +5,16 @@ import os
 import hostile
 import pytest
 from hats import GOOD, PLAN
-from traps import TRAPS
 
 from hdrlab import cli
 from hdrlab.course.reports import sheets
 
-HONEST = {
-    "h1": ("h1_hw2.py", GOOD.encode()),
-    "h2": ("h2_hw2.ipynb", hostile.notebook(GOOD)),
-}
-CODE = ("ends otherwise each time",)
-FILES = ("empty dictionaries", "blank lines")
+HONEST = {"h1": ("h1_hw2.ipynb", hostile.notebook(GOOD))}
+CODE = ("ends by itself",)
+FILES = ("NUL",)
 TEXTS = ("half a character, raised",)
 NAMES = ("not UTF-8",)
 ODD = ("a huge sparse notebook", "a pipe", "a link to a device", "a folder in a folder")
-ARCHIVES = ("a bomb in a tar.xz",)
 
 
 def written(folder):
@@ -41,9 +36,6 @@ def written(folder):
         each[student := next(who)] = name
         ending, made = hostile.ODD[name]
         made(folder / f"{student}_hw2{ending}")
-    for name in ARCHIVES:
-        each[student := next(who)] = name
-        TRAPS[name](folder / f"{student}_hw2.zip")
     return each
 
 
@@ -82,7 +74,6 @@ def test_a_class_with_all_of_it_is_graded_to_the_end_and_the_honest_are_as_witho
     assert {name: files[name] for name in expected} == expected and len(expected) == 5 * len(HONEST)
     assert {student: rows[student] for student in HONEST} == alone
     for student, name in others.items():
-        right = name == "blank lines"  # with a right function at the end
-        assert float(rows[student]["work"]) == 10 * right, name
-        assert right or name in (*CODE, *TEXTS) or rows[student]["note"], name
+        assert float(rows[student]["work"]) == 0, name
+        assert name in (*CODE, *TEXTS) or rows[student]["note"], name
         assert rows[student]["note"].isprintable()
