@@ -115,6 +115,7 @@ def test_the_pictures_decode_to_the_size_that_the_page_says(page):
 def test_the_sections_stand_in_order(page):
     assert [heading for heading in page.headings if heading] == [
         "6 photographs, one radiance map",
+        "Good to know",
         "The bracket",
         "The response",
         "The radiance map",
@@ -191,8 +192,9 @@ def test_doubts_stand_before_the_picture_and_notes_are_told(tmp_path):
     assert "What is doubtful about this map" in shown.text and "a frame is dark" in shown.text
 
 
-def test_without_doubts_none_are_raised(page):
-    assert "trust" not in page.text and "Good to know" not in page.text
+def test_without_doubts_and_notes_none_are_raised(tmp_path):
+    shown = report(tmp_path, flat()._replace(doubts=(), notes=()))
+    assert "doubtful" not in shown.text and "Good to know" not in shown.text
 
 
 def test_names_and_notes_cannot_write_into_the_page(tmp_path):
