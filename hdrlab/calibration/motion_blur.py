@@ -140,11 +140,7 @@ def read_blends(image: ArrayLike, ramps: Sequence[Ramp]) -> list[Blend]:
 
 
 def join(
-    image: ArrayLike,
-    ramps: Sequence[Ramp] | None = None,
-    *,
-    smoothness: float = 1e-3,
-    ends: float = 0.025,
+    image: ArrayLike, ramps: Sequence[Ramp] | None = None, *, smoothness: float = 1e-3, ends: float = 0.025
 ) -> InverseResponse:
     """Return the inverse response that all ramps of an image (R, W) join in; see `joining.join`.
 

@@ -168,9 +168,7 @@ def _codes(display: F32) -> Array:
 def _as_fitting(E: ArrayLike, L: ArrayLike, Ld: ArrayLike, saturation: float) -> tuple[F32, F32, F32]:
     E, L, Ld = as_radiance(E), as_luminance(L), as_luminance(Ld)
     if not E.shape[:2] == L.shape == Ld.shape:
-        raise ValueError(
-            f"expected L and Ld of shape {E.shape[:2]}, got L: {describe(L)}, and Ld: {describe(Ld)}"
-        )
+        raise ValueError(f"expected L and Ld of shape {E.shape[:2]}, got {describe(L)} and {describe(Ld)}")
     if not 0 <= saturation < np.inf:
         raise ValueError(f"expected a saturation that is finite and not negative, got {saturation}")
     return E, L, Ld

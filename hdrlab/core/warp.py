@@ -114,9 +114,7 @@ def common_rectangle(homographies: ArrayLike, shape: tuple[int, ...]) -> tuple[s
     a *= np.sign(np.linalg.det(H[:, :2, :2]))[:, None, None] / np.hypot(*np.moveaxis(a, -1, 0))[..., None]
     left, top, right, bottom = _largest(a.reshape(-1, 2), np.einsum("pij,pij->pi", a, quads).ravel(), shape)
     if left > right or top > bottom:
-        raise ValueError(
-            f"expected images that overlap, got homographies that leave nothing of {shape[:2]} pixels"
-        )
+        raise ValueError("expected images that overlap, got homographies that leave them no pixel in common")
     return slice(top, bottom + 1), slice(left, right + 1)
 
 
@@ -172,14 +170,6 @@ def before(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 def read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
     """Return the picture (h, w) whose pixel p is `image` (H, W) at H p, interpolated to this order."""
-    return np.asarray(
-        warp(
-            image,
-            np.asarray(H, float),
-            output_shape=shape[:2],
-            order=order,
-            mode="edge",
-            clip=False,
-            preserve_range=True,
-        )
-    )
+    H, size = np.asarray(H, float), shape[:2]
+    found = warp(image, H, output_shape=size, order=order, mode="edge", clip=False, preserve_range=True)
+    return np.asarray(found)

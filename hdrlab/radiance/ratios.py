@@ -43,10 +43,7 @@ class Scheme(NamedTuple):
     limit: float
 
 
-SCHEMES = {
-    "paper": Scheme(literal_transfer, 1, 1, 3.0),
-    "mid-step": Scheme(brightness_transfer, 16, 64, 9.0),
-}
+SCHEMES = {"paper": Scheme(literal_transfer, 1, 1, 3.0), "mid-step": Scheme(brightness_transfer, 16, 64, 9.0)}
 
 
 class Equations(NamedTuple):

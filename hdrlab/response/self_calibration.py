@@ -147,9 +147,7 @@ def calibrate(
     parts, R = samples(images, times, valid=valid)
     M = np.concatenate(parts, axis=1)
     if not np.all(in_range(M).any(axis=(1, 2))):
-        raise ValueError(
-            "expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames; got none"
-        )
+        raise ValueError("expected pixels from 0.05 to 0.98 of the top level in two neighbours; got none")
     return last(fit_steps(M, R, choose_order(parts, R) if order is None else order, eps=eps))
 
 

@@ -137,9 +137,7 @@ def build_equations(Z: Indices, B: F64, w: F64, space: Space) -> tuple[F64, F64]
     W = W / np.maximum(W.sum(axis=1, keepdims=True), 1e-300)
     columns = [x - np.sum(W * x, axis=1, keepdims=True) for x in (B + 0 * Z, space.mean[Z], *space.H[:, Z])]
     if not np.any(W * columns[0] ** 2 > 1e-12):
-        raise ValueError(
-            "expected samples measured well in two exposures, which connect the levels; got none"
-        )
+        raise ValueError("expected samples seen well in two exposures, which connect the levels; got none")
     B, mean, *H = (w[Z] * column for column in columns)
     return np.stack(H, axis=-1).reshape(-1, len(H)), (B - mean).ravel()
 
@@ -208,9 +206,7 @@ def recover(
     times = as_times(times, len(stack), distinct=2)
     space = default_space() if basis is None else basis
     if space.mean.shape != (256,) or not noise > 0:
-        raise ValueError(
-            f"expected a basis of 256 levels and a positive noise, got {len(space.mean)} and {noise}"
-        )
+        raise ValueError(f"expected a basis of 256 levels and a noise > 0, got {len(space.mean)} and {noise}")
     w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
     Z = choose(stack, samples, valid=valid)
     channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)

@@ -36,9 +36,8 @@ WINDOW = np.exp(-0.5 * (np.arange(-5, 6) / 1.5) ** 2)
 WINDOW /= WINDOW.sum()
 C1, C2 = 0.01, 10.0
 RANGE = 2.0**32 - 1
-ROUNDING = (
-    1e-14  # of the squared mean: a smaller variance is that of float32's last bit, which is no structure
-)
+# of the squared mean: a smaller variance is that of float32's last bit, which is no structure
+ROUNDING = 1e-14
 ALPHA, BETA, SHARE = 0.3046, 0.7088, 0.8012  # alpha, beta and a of Q
 
 
