@@ -57,7 +57,8 @@ def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float
     taken, found = photographs(exposure, brightness, frames, k), {}
     true = families.invert_curves(exposure, brightness)[0][RELIABLE_LEVELS, None]
     for name in METHODS:
-        g = recovery.find_response(name, taken).g
+        choice = recovery.choose_response(name, taken)
+        g = recovery.find_response(name, choice, taken)[0]
         off = (g[RELIABLE_LEVELS] - true) / np.log(2)
         error = np.sqrt(np.mean((off - off.mean(axis=0)) ** 2))
         E = merge_with_quality(taken.images, taken.times, g, weights.gaussian()).E

@@ -143,15 +143,14 @@ def cross_validate(found: flat_patches.FlatPatches, B: F64, Q: F64, *, g: F64 | 
 
 
 def note(found: Estimate, names: Sequence[str]) -> str:
-    """Return the sentence on what was found, frame by frame where the times were changed."""
+    """Return the sentence on what was found, with the two largest corrections."""
     if not found.accepted:
         return f"the stated times stay: {found.reason}"
-    frames = ", ".join(f"{name} {by:+.3f}" for name, by in zip(names, found.stops, strict=True))
-    falls = f", and the map's spread falls from {found.spread_before:.3f} to {found.spread_after:.3f}"
-    return (
-        f"times estimated from the pixels, stops against those stated: {frames}; {found.reason}"
-        f"{falls if np.isfinite(found.spread_before) else ''}"
-    )
+    far = sorted(range(len(names)), key=lambda j: -abs(found.stops[j]))[:2]
+    most = ", ".join(f"{names[j]} {found.stops[j]:+.3f}" for j in far)
+    count = np.count_nonzero(np.abs(found.stops) > EXACT)
+    changed = f"{count} of {len(names)} corrected, most {most} stops"
+    return f"times estimated from the pixels: {changed}; {found.reason}"
 
 
 def doubts(found: Estimate) -> tuple[str, ...]:

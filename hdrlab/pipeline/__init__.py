@@ -10,8 +10,8 @@ PLACES = {
     "assembly": ("Assembly", "Method"),
     "pictures": ("develop", "develop_and_describe", "own_saturation"),
     "registration": ("aligned", "moved"),
-    "relative_times": ("space_by_stops",),
     "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps"),
+    "timing": ("space_by_stops",),
 }
 
 

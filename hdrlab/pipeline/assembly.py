@@ -51,3 +51,13 @@ class Assembly(NamedTuple):
     def spread(self) -> float:
         """How far the frames contradict each other, in stops; NaN before the last stage."""
         return consistency.measure_spread(self.medians) if self.medians is not None else float("nan")
+
+
+def take_frames(state: Assembly, order: NDArray[np.intp]) -> Assembly:
+    """Return the Assembly of some frames, in this order."""
+    if np.array_equal(order, np.arange(len(state.offsets))):
+        return state
+    images, times, names, valid, linear = state.bracket
+    valid = None if valid is None else valid[order]
+    some = Bracket(images[order], times[order], tuple(names[j] for j in order), valid, linear)
+    return state._replace(bracket=some, offsets=state.offsets[order], homographies=state.homographies[order])

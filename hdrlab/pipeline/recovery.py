@@ -1,7 +1,13 @@
 """The response of a bracket: by a method of `response`, by a function of the reader's, or "auto".
 
+For "auto" held-out pixels choose, and of two that explain them alike, the simpler is taken. A neutral surface
+has one level in all channels, and so should have one radiance. Three curves, each recovered by itself,
+disagree where few frames leave them open, and a gray wall gets coloured patches. One curve for all channels
+cannot. Cameras have one, as a rule; scanned film has three. So one curve is taken where it explains pixels
+that it was not recovered from nearly as well as three do, by `consistency.measure_spread`.
+
 A map needs some response. So where a method finds none, or one that no camera has, one that a prior settles
-takes its place, with a doubt: that of `response.space`, and failing that a usual camera's.
+takes its place, with a doubt: that of `response.space`.
 """
 
 from collections.abc import Callable
@@ -9,31 +15,39 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
+from hdrlab.core import weights
+from hdrlab.core.arrays import as_mask, as_stack
 from hdrlab.core.bracket import Bracket
+from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
+from hdrlab.core.sampling import by_rank
 from hdrlab.core.types import F64
+from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics.plausibility import validate_response
-from hdrlab.fast import robertson
-from hdrlab.pipeline import catalogue, relative_times, response_choice
+from hdrlab.fast import debevec, robertson
+from hdrlab.fast.merge import merge_with_quality
+from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
-from hdrlab.response import self_calibration
+from hdrlab.response import self_calibration, space
 
 Recover = Callable[..., F64]
-# methods that need more than their paper for photographs as people take them
-EXTENDED: dict[Method, Recover] = {
-    "robertson": partial(robertson.recover, steps=robertson.Smooth(100)),
-    "mitsunaga": self_calibration.find_response,
-}
+# pixels of a frame, on an even grid; every other stripe is held out
+PIXELS, STRIPES = 2**16, 20
+# how much more spread one curve for all channels may leave: a share, and stops
+SLACK, FINEST = 0.05, 0.003
+# levels in a row that smoothness alone connects
+WIDEST_GAP = 20
+# samples that show which levels two frames share
+SAMPLES = 1000
 
 
-class Found(NamedTuple):
-    """A response g (n,) or (n, 3), notes on it, doubts about it, and why it is worth no map, or ""."""
+class Choice(NamedTuple):
+    """A method, the spread in stops that it leaves in held-out pixels, and notes on it."""
 
-    g: F64
+    method: Recover
+    spread: float
     notes: tuple[str, ...] = ()
-    doubts: tuple[str, ...] = ()
-    fallback: str = ""
 
 
 def find_method(response: Method) -> Recover:
@@ -55,36 +69,121 @@ def _recover(method: Recover, images: ArrayLike, times: ArrayLike, *, valid: Arr
     return validate_response(method(images, times, valid=valid), images, times, valid=valid)
 
 
-def resolve_auto(response: Method, bracket: Bracket) -> Method:
-    """Return the method that "auto" begins with: linear where the bracket is, else debevec."""
-    if response == "auto":
-        return "linear" if bracket.linear else "debevec"
-    return response
+def share_curve(method: Recover) -> Recover:
+    """Return a method that recovers one curve from the levels of all channels together."""
+
+    def recover(images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
+        stack = as_stack(images)
+        mask, shape = as_mask(valid, stack), stack.shape[3:]
+        shown = None if mask is None else np.repeat(mask, np.prod(shape, dtype=int), axis=2)
+        g = method(stack.reshape(*stack.shape[:2], -1), times, valid=shown)
+        return np.multiply.outer(g, np.ones(shape))
+
+    return recover
 
 
-def find_response(response: Method, bracket: Bracket) -> Found:
-    """Return the Found response of an aligned bracket; "auto" is what held-out pixels choose.
+# methods that need more than their paper for photographs as people take them
+EXTENDED: dict[Method, Recover] = {
+    "robertson": partial(robertson.recover, steps=robertson.Smooth(100)),
+    "mitsunaga": self_calibration.find_response,
+}
+CANDIDATES: dict[str, Recover] = {  # three curves first, which set the spread to compare with
+    "a curve for each channel by debevec": debevec.recover,
+    "a curve for each channel by space": space.recover,
+    "one curve by space": share_curve(space.recover),
+    "one curve by debevec": share_curve(debevec.recover),
+}
+
+
+def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
+    """Return every other stripe of a bracket, thinned to PIXELS, and those between."""
+    images, _, _, valid, _ = bracket
+    height, width = images.shape[1:3]
+    step = max(1, int(np.sqrt(height * width / PIXELS)))
+    rows = np.arange(0, height, step)
+    odd = rows * STRIPES // height % 2 == 1
+
+    def keep(own: NDArray[np.intp]) -> Bracket:
+        shown = None if valid is None else valid[:, own, ::step]
+        return bracket._replace(images=images[:, own, ::step], valid=shown)
+
+    return keep(rows[~odd]), keep(rows[odd])
+
+
+def find_widest_gap(Z: ArrayLike) -> int:
+    """Return how many levels in a row, of those that samples Z (N, P) show, no sample shows in two frames.
+
+    Examples
+    --------
+    >>> find_widest_gap([[100, 200], [101, 201], [20, 255]])  # 20 stands in one frame alone
+    99
+    """
+    Z = np.asarray(Z)
+    inside = (Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)
+    shared, shown = Z[inside & (inside.sum(axis=1, keepdims=True) > 1)], Z[inside]
+    if not len(shown):
+        return 256
+    return int(np.diff(np.unique([shown.min(), *shared, shown.max()])).max(initial=1))
+
+
+def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
+    """Return the spread in stops that a method's response leaves in held-out pixels; inf if there is none."""
+    images, times, _, shown, _ = fit
+    try:
+        g = method(images, times, valid=shown)
+    except ValueError:
+        return np.inf
+    E = merge_with_quality(held.images, times, g, weights.gaussian(len(g)), valid=held.valid).E
+    medians = consistency.measure_level_exposures(held.images, times, E, valid=held.valid)
+    return float(np.nan_to_num(consistency.measure_spread(medians), nan=np.inf))
+
+
+def choose_response(response: Method, bracket: Bracket) -> Choice:
+    """Return the Choice for an aligned bracket: what "auto" stands for, or the method that was named.
+
+    Debevec's curve does not count where smoothness alone connects its levels: a prior settles them. Where
+    nothing can be compared it is taken.
+    """
+    fit, held = split_stripes(bracket)
+    if response != "auto" or bracket.linear:
+        method = find_validated_method("linear" if response == "auto" else response)
+        return Choice(method, measure_spread(method, fit, held))
+    Z = by_rank(fit.images, SAMPLES, valid=fit.valid).reshape(SAMPLES, len(fit.times), -1)
+    open_levels = any(find_widest_gap(Z[..., c]) > WIDEST_GAP for c in range(Z.shape[-1]))
+    name, enough, spreads = "", np.inf, {}
+    for one, method in CANDIDATES.items():
+        separate = not one.startswith("one")
+        if (open_levels and "debevec" in one) or (separate and np.isfinite(enough)):
+            continue
+        spreads[one] = measure_spread(partial(_recover, method), fit, held)
+        if spreads[one] < np.inf and spreads[one] <= enough:
+            name, enough = one, (1 + SLACK) * spreads[one] + FINEST
+            if not separate:
+                break
+    if not name:
+        return Choice(find_validated_method("debevec"), np.inf)
+    compared = ", ".join(f"{one} {spread:.3f}" for one, spread in spreads.items())
+    said = f"response: {name}, chosen by the spread that each leaves in held-out pixels, in stops: {compared}"
+    return Choice(partial(_recover, CANDIDATES[name]), spreads[name], (said,))
+
+
+def find_response(response: Method, choice: Choice, bracket: Bracket) -> tuple[F64, tuple[str, ...], str]:
+    """Return the response of an aligned bracket, doubts about it, and why it is worth no map, or "".
 
     Raises
     ------
     ValueError
-        For names that no method has, and photographs of which no two see anything well.
+        For photographs of which no two see anything well, and what a reader's own function raises.
     """
-    images, times, _, valid, linear = bracket
-    if response == "auto" and not linear:
-        method, notes = response_choice.choose_response(bracket)
-        method = partial(_recover, method)
-    else:
-        method, notes = find_validated_method(resolve_auto(response, bracket)), ()
+    images, times, _, valid, _ = bracket
     try:
-        return Found(method(images, times, valid=valid), notes)
+        return choice.method(images, times, valid=valid), (), ""
     except ValueError as error:
-        if callable(response) or not np.isfinite(relative_times.compare_order(bracket)).any():
+        if callable(response):
             raise
-        reason = f"no response was found ({error}), so that of"
+        said = f"no response was found ({error}), so that of the likeliest camera was taken: check the times"
+    g = space.recover(images, times, valid=valid)
     try:
-        g = find_validated_method("space")(images, times, valid=valid)
-        return Found(g, doubts=(f"{reason} the likeliest camera was taken: check the times",))
+        return validate_response(g, images, times, valid=valid), (said,), ""
     except ValueError:
-        reason += " a usual camera was taken"
-        return Found(relative_times.usual_response(256, linear), (), (reason,), reason)
+        return g, (said,), said

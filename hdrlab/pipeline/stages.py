@@ -15,15 +15,14 @@ from hdrlab.core import weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency
-from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.diagnostics.contradictions import (
     find_contradictions,
     find_outlying_frames,
     warn_of_contradictions,
 )
 from hdrlab.fast.merge import merge_with_quality
-from hdrlab.pipeline import recovery, relative_times
-from hdrlab.pipeline.assembly import Assembly, Method, Table
+from hdrlab.pipeline import recovery, timing
+from hdrlab.pipeline.assembly import Assembly, Method, Table, take_frames
 from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as lens
 from hdrlab.radiance.deghosting import ghosts as moving
@@ -39,9 +38,6 @@ WEIGHTS: dict[str, Callable[[Table], Table]] = {  # by name, from the response
     "flat": lambda g: weights.flat(len(g)),
     "snr": weights.snr,
 }
-WORTHLESS = 0.5  # stops of spread: the map shows what no photograph does
-# pixels that are enough to compare two maps
-FEW_PIXELS = 250_000
 CONTRADICTION = 0.25  # stops of spread; brackets with true times stay below 0.2, scanned film included
 
 
@@ -59,7 +55,7 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
         out of the histograms. "auto" is "mtb", and "cerman" or "homography" for the photographs that no
         shift lays on each other, see `pipeline.alignment`.
     response : str or function
-        A method of `response`, "auto" (linear where the bracket is, else see `response_choice`), or your own
+        A method of `response`, "auto" (linear where the bracket is, else see `recovery`), or your own
         `recover(images, times, *, valid) -> g`.
     weight : {"gaussian", "hat", "flat", "snr"}
         How far the merge trusts a level. Under the Gaussian, which all but ignores the ends, the frames of
@@ -67,9 +63,9 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     method : {"log", "likelihood", "mean", "shot"}
         How the frames are merged, see `radiance.merge`.
     times : {"correct", "stated", "estimate"}
-        "correct" corrects rough times by the pixels, where held-out pixels prove it, see
-        `diagnostics.exposure_times`; and times that are all the same give way to `relative_times`. "stated"
-        leaves them as they are. "estimate" also replaces times that fall while the photographs get brighter.
+        "correct" corrects rough times by the pixels, where held-out pixels prove it; times that are all the
+        same, or contradict the pixels everywhere, give way to relative ones, see `timing`. "stated" leaves
+        them as they are. "estimate" also replaces times that fall while the photographs get brighter.
     ghosts : {"none", "auto", "regions", "reference"}
         What becomes of what moved: it stays half transparent; or the map shows it as in a reference frame,
         the best exposure of each region, or the middle photograph in all: see `radiance.deghosting.ghosts`.
@@ -122,39 +118,32 @@ def assemble_steps(
     if ghosts not in GHOSTS or flare not in FLARE:
         ways = f"ghosts out of {', '.join(GHOSTS)} and flare out of {', '.join(FLARE)}"
         raise ValueError(f"expected {ways}, got {ghosts!r} and {flare!r}")
-    bracket, said = relative_times.complete_times(bracket, times)
+    bracket, said = timing.complete_times(bracket, times)
     state = aligned(bracket, align, response)
     yield (state := state._replace(notes=(*said, *state.notes)))
-    w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
+    choice = recovery.choose_response(response, state.bracket)
+    explained = choice.spread <= timing.TRUE
     if times != "stated":
-        found = refine_times(state, recovery.resolve_auto(response, bracket), w, merge)
-        kept = np.array_equal(found.bracket.times, state.bracket.times)
-        state = state if kept and (said or times == "correct") else found
-        order = np.argsort(state.bracket.times, kind="stable")
-        state = state if np.all(np.diff(order) > 0) else take_frames(state, order)
+        if times == "estimate" or not explained:
+            found = timing.refine_times(state, response, choice.spread)
+            same = np.array_equal(found.bracket.times, state.bracket.times)
+            state = state if same and (said or times == "correct") else found
         yield (state := state._replace(stage="times"))
-    yield (state := recover(leave_out_contrary(state), response))
-    (images, seconds, _, valid, _), g = state.bracket, state.g
+    if not explained:
+        state = leave_out_contrary(state)
+        choice = recovery.choose_response(response, state.bracket)
+    g, doubts, fallback = recovery.find_response(response, choice, state.bracket)
+    notes, doubts = (*state.notes, *choice.notes), (*state.doubts, *doubts)
+    yield (state := state._replace(stage="response", g=g, notes=notes, doubts=doubts))
+    w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
+    images, seconds, _, valid, _ = state.bracket
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
     if ghosts != "none":
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
-    state = assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
-    if state.spread > WORTHLESS and times == "correct":
-        knobs = {"align": align, "response": response, "weight": weight, "method": method}
-        again = relative_times.estimate_relative_times(bracket)
-        other = assemble(again, times="estimate", ghosts=ghosts, flare=flare, **knobs)
-        if other.spread < WORTHLESS / 2:
-            doubt = (
-                f"the stated times contradict the pixels by {state.spread:.2f} stops, so they were not used"
-            )
-            steps = relative_times.describe_steps(again.times)
-            state = other._replace(doubts=(f"{doubt}, but {steps}", *other.doubts))
-    if state.spread > WORTHLESS:
-        state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
-    yield state
+    yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
 
 
 def leave_out_contrary(state: Assembly) -> Assembly:
@@ -167,23 +156,8 @@ def leave_out_contrary(state: Assembly) -> Assembly:
         f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
         "whether its time is right, and whether it shows this scene, in this light"
     )
-    kept = np.delete(np.arange(len(times)), found)
-    return take_frames(state, kept)._replace(notes=(*state.notes, said))
-
-
-def take_frames(state: Assembly, order: NDArray[np.intp]) -> Assembly:
-    """Return the Assembly of some frames, in this order."""
-    images, times, names, valid, linear = state.bracket
-    valid = None if valid is None else valid[order]
-    some = Bracket(images[order], times[order], tuple(names[j] for j in order), valid, linear)
-    return state._replace(bracket=some, offsets=state.offsets[order], homographies=state.homographies[order])
-
-
-def recover(state: Assembly, response: Method) -> Assembly:
-    """Return the Assembly with its response, and what is to be said of it."""
-    g, notes, doubts, fallback = recovery.find_response(response, state.bracket)
-    notes, doubts = (*state.notes, *notes), (*state.doubts, *doubts)
-    return state._replace(stage="response", g=g, notes=notes, doubts=doubts, fallback=fallback)
+    state = state._replace(notes=(*state.notes, said))
+    return take_frames(state, np.delete(np.arange(len(times)), found))
 
 
 def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]) -> Assembly:
@@ -213,51 +187,18 @@ def remove_glare(state: Assembly) -> Assembly:
     )
 
 
-def refine_times(
-    state: Assembly,
-    response: Method,
-    w: Callable[[Table], Table],
-    merge: Callable[..., Merged],
-    *,
-    gain: float = 0.1,
-) -> Assembly:
-    """Return the Assembly with times from the pixels, where these prove it, and a note on what was found.
-
-    `gain` is the share by which held-out pixels must agree better, see `exposure_times.estimate_times`.
-    """
-    images, stated, names, valid, _ = state.bracket
-    recover = recovery.find_validated_method(response)
-
-    every = max(1, int(np.sqrt(images.shape[1] * images.shape[2] / FEW_PIXELS)))
-    few = np.s_[:, ::every, ::every]
-    shown = None if valid is None else valid[few]
-
-    def spread(times: NDArray[np.float64]) -> float:
-        try:
-            g = recover(images[few], times, valid=shown)
-        except ValueError:  # no camera's response
-            return np.inf
-        E = merge(images[few], times, g, w(g), valid=shown).E
-        return consistency.measure_spread(
-            consistency.measure_level_exposures(images[few], times, E, valid=shown)
-        )
-
-    known = recover(images, stated, valid=valid) if response == "linear" else None
-    found = timing.estimate_times(images, stated, spread, g=known, gain=gain, valid=valid)
-    bracket = state.bracket._replace(times=found.times)
-    notes, doubts = (*state.notes, timing.note(found, names)), (*state.doubts, *timing.doubts(found))
-    return state._replace(stage="times", bracket=bracket, notes=notes, doubts=doubts)
-
-
 def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
     """Return the Assembly with the medians of each level, and the warnings that follow from them."""
     state = state._replace(stage="compare", medians=medians)
+    if state.spread > timing.WORTHLESS:
+        why = f"the photographs contradict each other by {state.spread:.2f} stops"
+        state = state._replace(fallback=why)
     images, times, names, valid, _ = state.bracket
     if np.isnan(state.spread):
         alone = (
             "no level stands in two frames, so nothing supports times and map: take photographs in between"
         )
-        return state._replace(doubts=(*state.doubts, alone))
+        return state._replace(doubts=(*state.doubts, alone), fallback=alone)
     found = find_contradictions(images, times, valid=valid)
     said = warn_of_contradictions(found, names, state.spread)
     if not said and state.spread > CONTRADICTION:

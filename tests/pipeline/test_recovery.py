@@ -40,9 +40,9 @@ def test_the_likeliest_camera_s_response_serves_where_a_method_finds_none(taken,
         raise ValueError("expected the moon")
 
     monkeypatch.setattr("hdrlab.response.mann.recover", refuse)
-    found = recovery.find_response("mann", taken)
-    assert laws.curve_error(found.g, true_g("film")) < 0.05 and not found.fallback
-    assert "expected the moon" in found.doubts[0]
+    g, (doubt,), fallback = recovery.find_response("mann", recovery.choose_response("mann", taken), taken)
+    assert laws.curve_error(g, true_g("film")) < 0.05 and not fallback
+    assert "expected the moon" in doubt
 
 
 def test_linear_and_a_function_are_taken_as_they_are():

@@ -1,4 +1,4 @@
-"""Exposure times of photographs that come with none: relative ones, from their brightness.
+"""Exposure times by the pixels: stated ones corrected, and relative ones for photographs that come with none.
 
 The histograms of two photographs of one scene give their exposure ratio, if the response is known. Taken is
 that of a usual camera: its JPEGs are steeper than the curve of sRGB, in three by a power of 1.3 to 1.5. So
@@ -16,12 +16,17 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.bracket import bracket as make_bracket
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.types import F64
-from hdrlab.diagnostics import plausibility
+from hdrlab.diagnostics import exposure_times, plausibility
+from hdrlab.diagnostics.exposure_times import Estimate
+from hdrlab.pipeline import recovery
+from hdrlab.pipeline.assembly import Assembly, Method, take_frames
 
 # stops by sRGB's curve over stops of exposure
 STEEPNESS = 1.4
 # stops: less between the darkest and the brightest photograph is one exposure
 LEAST_SPAN = 0.3
+# stops of spread in held-out pixels: what true times show, and a map that shows what no photograph does
+TRUE, WORTHLESS = 0.01, 0.5
 # pixels of a frame, on an even grid
 PIXELS = 400_000
 WRONG_ORDER = "the longer exposure is the darker photograph: check which time belongs to which, or take them"
@@ -65,13 +70,6 @@ def estimate_relative_times(bracket: Bracket) -> Bracket:
     return space_by_stops(bracket, np.maximum(np.log2(k), 0))
 
 
-def compare_order(bracket: Bracket) -> F64:
-    """Return how often the longer of two neighbours is the darker one, (P - 1,); NaN: they share nothing."""
-    images, times, _, valid, _ = bracket
-    Z = plausibility.ranks(images, valid)
-    return plausibility.neighbour_errors(Z, times, np.zeros((256, Z.shape[-1])))[1]
-
-
 def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ...]]:
     """Return the bracket with times that mean something, and a note where they are relative.
 
@@ -81,20 +79,20 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
         For photographs of one exposure, for times that fall while the photographs get brighter, unless
         they are to be estimated, and for times that are all the same, if "stated".
     """
-    equal = np.ptp(bracket.times) == 0
-    falls = [] if equal else np.flatnonzero(compare_order(bracket) > 0.5)
+    images, seconds, names, valid, _ = bracket
+    equal, falls = np.ptp(seconds) == 0, np.zeros(0, np.intp)
+    if not equal:
+        Z = plausibility.ranks(images, valid)
+        darker = plausibility.neighbour_errors(Z, seconds, np.zeros((256, Z.shape[-1])))[1]
+        falls = np.flatnonzero(darker > 0.5)
+        if not len(falls):
+            return bracket, ()
     if len(falls) and times != "estimate":
-        pair = " and ".join(
-            f"{bracket.names[j]} ({bracket.times[j]:.4g} s)" for j in (falls[0], falls[0] + 1)
-        )
+        pair = " and ".join(f"{names[j]} ({seconds[j]:.4g} s)" for j in (falls[0], falls[0] + 1))
         raise ValueError(f"{pair}: {WRONG_ORDER} from the pixels (--times estimate)")
-    if not equal and not len(falls):
-        return bracket, ()
     found = estimate_relative_times(bracket)
-    steps = np.diff(np.log2(found.times))
-    if len(found.times) < 2 or steps.sum() < LEAST_SPAN or (equal and times == "stated"):
-        exposures = zip(bracket.names, bracket.times, strict=True)
-        got = ", ".join(f"{name} {time:.6g} s" for name, time in exposures)
+    if len(seconds) < 2 or np.log2(found.times[-1]) < LEAST_SPAN or (equal and times == "stated"):
+        got = ", ".join(f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True))
         raise ValueError(f"expected photographs of at least two different exposures, got {got}")
     return found, (describe_steps(found.times),)
 
@@ -106,3 +104,40 @@ def describe_steps(times: F64) -> str:
         f"relative times, the shortest is 1, by the pixels and the response of a usual camera: steps of {by} "
         "stops; the contrast of the map is as true as these, so give --stops 2 or the like if you know them"
     )
+
+
+def refine_times(state: Assembly, response: Method, before: float) -> Assembly:
+    """Return the Assembly with times by the pixels, where these prove it, and a note on what was found.
+
+    `before` is the spread that its times leave in held-out pixels. Where that is of a map worth nothing, and
+    corrections do not help, relative times take their place, with a doubt.
+    """
+    found, spread = correct_times(state.bracket, response, before)
+    doubts = exposure_times.doubts(found)
+    if spread > WORTHLESS:
+        rising = take_frames(state, np.array(mtb.by_brightness(state.bracket.images)))
+        relative = estimate_relative_times(state.bracket).times
+        other, spread = correct_times(rising.bracket._replace(times=relative), response, None)
+        if spread < WORTHLESS / 2:
+            off = f"the stated times contradict the pixels by {before:.2f} stops, so they were not used"
+            state, found, doubts = rising, other, (f"{off}, but {describe_steps(relative)}",)
+    notes = (*state.notes, exposure_times.note(found, state.bracket.names))
+    state = state._replace(
+        bracket=state.bracket._replace(times=found.times), notes=notes, doubts=(*state.doubts, *doubts)
+    )
+    return take_frames(state, np.argsort(found.times, kind="stable"))
+
+
+def correct_times(bracket: Bracket, response: Method, before: float | None) -> tuple[Estimate, float]:
+    """Return the Estimate of an aligned bracket's times, and the spread that its times leave."""
+
+    def measure(times: F64) -> float:
+        return recovery.choose_response(response, bracket._replace(times=times)).spread
+
+    images, times, _, valid, linear = bracket
+    known = response == "linear" or (response == "auto" and linear)
+    g = recovery.find_method("linear")(images, times) if known else None
+    found = exposure_times.estimate_times(images, times, measure, g=g, valid=valid)
+    if found.accepted:
+        return found, found.spread_after
+    return found, measure(times) if before is None else before

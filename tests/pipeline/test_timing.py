@@ -6,7 +6,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
-from hdrlab.pipeline.relative_times import complete_times, estimate_relative_times, space_by_stops
+from hdrlab.pipeline.timing import complete_times, estimate_relative_times, space_by_stops
 
 
 @pytest.fixture(scope="module")
