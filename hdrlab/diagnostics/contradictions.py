@@ -2,8 +2,9 @@
 
 x        corrections   (P,), what the pixels add to ln times: see `response_steps`
 stops    errors        (P,), log2(exposure by the pixels / exposure stated), most of them 0
-colours  the same      (P,), by how much the channels differ in them
 regions  disagreement  (P - 1,), stops by which parts of the picture disagree, under the best of factors
+significance           (P - 1,), the same over the standard error of a part's median
+corners  change        (P - 1,), stops from the middle to the corners
 cost     in the map    stops, RMS over the picture: what the errors change where each frame has its weight
 
 The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in the
@@ -13,9 +14,8 @@ them as well as any response and one factor per frame can. The factors hold an u
 square roots, which passes through most frames and leaves the wrong ones standing out: one large error is
 likelier than several middling ones.
 
-If factors explain all, times are wrong. If each channel asks for its own, the white balance changed. If parts
-of one picture ask for different factors, none are: the corners, where the aperture changed and with it the
-vignetting; or each picture was processed by itself and by place, as phones do.
+If factors explain all, times are wrong. If parts of one picture ask for different factors, none are: the
+corners, where the aperture changed and with it the vignetting; or light, or a camera's processing by place.
 
 An error counts by what it costs. An end frame that is nearly black measures little, and bends by a camera's
 own processing: half a stop there leaves the map sound.
@@ -36,7 +36,7 @@ from hdrlab.diagnostics import flat_patches, response_steps
 TILE = 12
 # patches that make the median of a part
 FEWEST = 10
-# flat patches of a pair, without which all that are static show whether the corners change
+# flat patches of a pair, without which all take their place, and only what is large counts
 ENOUGH = 50
 # of a frame, on an even grid, that stand for the whole
 PIXELS = 30_000
@@ -46,11 +46,9 @@ LOOSE = 4.0
 WRONG = 0.2
 # stops in the map, RMS: a smaller error leaves it sound
 COST = 0.05
-# stops between channels: sound brackets, whose channels bend apart at the ends, stay within 0.4
-TINTED = 0.4
-# stops: real brackets of one response stay within 0.06
+# stops: real brackets of one response stay within 0.08
 LOCAL = 0.1
-# stops, and standard errors: real brackets of one response stay within 3.2
+# stops, and standard errors: brackets of one response stay within 2.6
 SLIGHT, SIGNIFICANT = 0.02, 4.0
 # stops: no standard error of a part is smaller, for patches have whole levels
 SMALLEST_ERROR = 0.003
@@ -63,12 +61,11 @@ CONTRARY, AGREEING = 0.3, 0.1
 
 
 class Contradictions(NamedTuple):
-    """stops, colours (P,); regions, significance, corners (P - 1,), NaN where not known; cost."""
+    """stops (P,); regions, significance, corners (P - 1,), NaN where not known; cost."""
 
     stops: F64
     regions: F64
     significance: F64 = np.zeros(0)
-    colours: F64 = np.zeros(0)
     corners: F64 = np.zeros(0)
     cost: float = np.inf
 
@@ -76,11 +73,6 @@ class Contradictions(NamedTuple):
     def wrong(self) -> tuple[int, ...]:
         """The frames whose times are wrong, at a cost."""
         return tuple(np.flatnonzero((np.abs(self.stops) > WRONG) & (self.cost > COST)).tolist())
-
-    @property
-    def tinted(self) -> tuple[int, ...]:
-        """The frames whose white balance is another."""
-        return tuple(np.flatnonzero(self.colours > TINTED).tolist())
 
     @property
     def local(self) -> bool:
@@ -131,20 +123,16 @@ def find_contradictions(
     if few.any():
         ranks = flat_patches.rank_levels(stack, valid=valid)
         H[few] = flat_patches.count_pairs(ranks, np.ones(ranks.shape[2:], bool))[few]
-    unknown, pairs_unknown = np.full(len(B), np.nan), np.full(len(B) - 1, np.nan)
+    stops, places = np.full(len(B), np.nan), np.full((3, len(B) - 1), np.nan)
     start, stop = find_longest_run(response_steps.find_informative(H))
     frames, pairs = slice(start, stop + 1), slice(start, stop)
     if stop - start < 2 or np.ptp(B[frames]) == 0:
-        return Contradictions(unknown, pairs_unknown)
-    here, Q = B[frames], response_steps.free_directions(B[frames])
-    best = response_steps.fit_steps(H[pairs], here, Q, sd=LOOSE)
-    each = [response_steps.fit_steps(H[pairs, [c]], here, Q, sd=LOOSE).x - best.x for c in range(H.shape[1])]
-    stops, colours = unknown, unknown.copy()
+        return Contradictions(stops, *places)
+    here = B[frames]
+    best = response_steps.fit_steps(H[pairs], here, response_steps.free_directions(here), sd=LOOSE)
     stops[frames] = remove_trend(best.x, here) / np.log(2)
-    colours[frames] = np.ptp([remove_trend(one, here) / np.log(2) for one in each], axis=0)
-    places = np.tile(pairs_unknown, (3, 1))
     places[:, pairs] = measure_disagreement(found.of(frames), here, best)
-    return Contradictions(stops, places[0], places[1], colours, places[2], measure_cost(stack, stops))
+    return Contradictions(stops, *places)._replace(cost=measure_cost(stack, stops))
 
 
 def measure_cost(stack: Array, stops: F64) -> float:
@@ -214,34 +202,29 @@ def remove_trend(x: F64, B: F64) -> F64:
 def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:
     """Return each pair's disagreement by place, (3, P - 1).
 
-    In stops, where a quarter of the tiles are off by more; and in standard errors, where half of them are: of
-    patches flat in all frames, under the response that fits these best, or else in the pair. And in stops
-    from the middle to the corners, 0 where that distance does not explain most: of flat patches or not.
+    Where a quarter of the tiles are off by more, in stops and in standard errors, 0 where few are flat; and
+    in stops from the middle to the corners, 0 where that distance does not explain most.
     """
     h, w = found.Z.shape[2:]
     y, x = np.indices((h, w)) // TILE
     tile = y * (w // TILE + 1) + x
     r2 = (2 * np.arange(h) / h - 1)[:, None] ** 2 + (2 * np.arange(w) / w - 1) ** 2
-    channel, chosen = np.arange(found.Z.shape[1])[:, None, None], found.best
-    H = flat_patches.count_pairs(found.Z, found.flat.all(axis=0))
-    if response_steps.find_informative(H).all():
-        best = response_steps.fit_steps(H, B, response_steps.free_directions(B), sd=LOOSE)
-        chosen = np.broadcast_to(found.flat.all(axis=0), chosen.shape)
+    channel = np.arange(found.Z.shape[1])[:, None, None]
     out = np.full((3, len(B) - 1), np.nan)
     for j, step in enumerate(np.diff(B + best.x)):
         a, b = found.Z[j], found.Z[j + 1]
         trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
-        r = (best.g[channel, b] - best.g[channel, a]).mean(axis=0) / np.log(2) - step / np.log(2)
-        flat = trusted & chosen[j]
-        medians, errors = _tile_medians(r[flat], tile[flat])
+        flat = trusted & found.flat[j] & found.flat[j + 1]
+        sure = np.count_nonzero(flat) >= ENOUGH
+        chosen = flat if sure else trusted
+        r = ((best.g[channel, b] - best.g[channel, a]).mean(axis=0) - step)[chosen] / np.log(2)
+        medians, errors = _tile_medians(r, tile[chosen])
         if len(medians):
-            out[:2, j] = np.quantile(np.abs(medians), 0.75), np.median(np.abs(medians) / errors)
-        static = flat_patches.find_static(found.Z[j : j + 2])[0]
-        trusted = flat if np.count_nonzero(flat) >= ENOUGH else trusted & static
-        if np.count_nonzero(trusted) >= FEWEST and np.ptp(r[trusted]) > 0 and np.ptp(r2[trusted]) > 0:
-            slope = np.polyfit(r2[trusted], r[trusted], 1)[0]
-            explained = (slope * r2[trusted].std() / r[trusted].std()) ** 2
-            out[2, j] = 2 * abs(slope) if explained > CORNERS else 0
+            off = np.quantile(np.abs([medians, sure * medians / errors]), 0.75, axis=1)
+            out[:2, j] = off if sure or off[0] > LOCAL else 0
+            slope = np.polyfit(r2[chosen], r, 1)[0]
+            explained = (slope * r2[chosen].std()) ** 2 > CORNERS * r.var()
+            out[2, j] = 2 * abs(slope) * explained
     return out
 
 
@@ -263,24 +246,20 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
 
     Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
     """
-    sound = spread <= SOUND
     if found.vignetted:
         return (
             "the corners change against the middle of the picture by "
             f"{np.nanmedian(found.corners):.2f} stops from one photograph to the next: with the aperture its "
             "vignetting changed; keep the aperture fixed"
         )
-    if found.local and not (sound and np.nanmedian(found.regions) <= LOCAL):
-        j, by = int(np.nanargmax(found.regions)), np.nanmedian(found.regions)
-        said = f"{by:.2f} stops under the best factor for each, most between {names[j]} and {names[j + 1]}"
+    by = np.nanmedian(found.regions) if found.local else 0.0
+    if by > LOCAL or (found.local and spread > SOUND):
+        j = int(np.nanargmax(found.regions))
         return (
-            f"one response cannot explain the photographs: parts of the picture disagree by {said}; light "
-            "that changed, or a camera that brightens by place: switch HDR and automatic enhancement off, or "
-            "take RAW; other times will not help"
+            f"the photographs contradict each other by {by:.2f} stops in parts of the picture, most between "
+            f"{names[j]} and {names[j + 1]}: light or white balance that changed, or a camera that brightens "
+            "by place; switch HDR and automatic enhancement off, or take RAW; other times will not help"
         )
-    if found.tinted and not found.wrong and not sound:
-        off = ", ".join(f"{names[j]} by {found.colours[j]:.2f}" for j in found.tinted)
-        return f"the colours differ, in stops between channels, in {off}: keep the white balance fixed"
     if not found.wrong:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)

@@ -12,16 +12,15 @@ its own flat patches, for hardly a patch is exposed well in all frames of a long
 few, equal ranks of the two histograms take their place [Grossberg03].
 """
 
-from collections.abc import Iterator, Sequence
-from functools import reduce
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core import sampling
 from hdrlab.core.arrays import Array, as_mask, as_stack, to_256
 from hdrlab.core.types import F64, Flags, Mask
+from hdrlab.diagnostics import plausibility
 
 # of a patch, pixels
 SIDE = 7
@@ -33,8 +32,6 @@ BLACK, TOP = 4, 250
 PATCHES = 60_000
 # levels by which a patch may darken and still count as static
 NOISE = 1
-# of a frame's histogram, and pixels that it is made of
-RANKS, PIXELS = 2000, 100_000
 
 
 class FlatPatches(NamedTuple):
@@ -60,44 +57,29 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
     apart = SIDE * max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PATCHES) / SIDE))
     Z, flat = [], []
     for j, frame in enumerate(stack.reshape(*stack.shape[:3], -1)):
-        low, high = (to_256(_reduce_patches(op, frame, apart)) for op in (np.minimum, np.maximum))
-        mean = to_256(_mean(frame, apart))
+        patches = _cut_patches(frame, apart)
+        low, high, n = to_256(patches.min(axis=-1)), to_256(patches.max(axis=-1)), patches.shape[-1]
+        mean = to_256(((patches.sum(axis=-1, dtype=np.uint32) + n // 2) // n).astype(frame.dtype))
         whole = np.all((low >= BLACK) & (high <= TOP), axis=-1)
         if mask is not None:
-            whole = whole & _reduce_patches(np.minimum, mask[j, ..., None], apart)[..., 0]
+            whole = whole & _cut_patches(mask[j, ..., None], apart).all(axis=(2, 3))
         Z.append(np.moveaxis(np.where(whole[..., None], mean, 0), -1, 0))
         flat.append(np.all(high - low <= RANGE, axis=-1))
     return FlatPatches(np.stack(Z).astype(np.uint8), np.stack(flat))
 
 
 def rank_levels(images: ArrayLike, *, valid: ArrayLike | None = None) -> Flags:
-    """Return levels of equal rank as patches Z (P, C, RANKS, 1); 0 where a rank is clipped or black."""
+    """Return levels of equal rank as patches Z (P, C, n, 1); 0 where a rank is clipped or black."""
     stack = as_stack(images)
-    mask, step = as_mask(valid, stack), max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
-    few = np.s_[:, ::step, ::step]
-    shown = None if mask is None or not mask[few].all(axis=0).any() else mask[few]
-    Z = sampling.by_rank(stack[few], RANKS, valid=shown).reshape(RANKS, len(stack), -1)
+    Z = plausibility.ranks(stack, as_mask(valid, stack))
     return np.moveaxis(np.where((Z >= BLACK) & (Z <= TOP), Z, 0), 0, -1)[..., None].astype(np.uint8)
 
 
-def _reduce_patches(op: np.ufunc, frame: Array, apart: int) -> Array:
-    """Return op over the pixels of each patch, (h, w, C), of patches that begin so many pixels apart."""
-    rows = reduce(op, _patch_rows(frame, apart))
-    return np.swapaxes(reduce(op, _patch_rows(np.swapaxes(rows, 0, 1), apart)), 0, 1)
-
-
-def _patch_rows(frame: Array, apart: int) -> Iterator[Array]:
-    """Yield the k-th row of each patch, for each k; a frame that is smaller than a patch is one."""
-    side = min(SIDE, len(frame))
-    whole = len(frame) // side * side
-    yield from (frame[k:whole:apart] for k in range(side))
-
-
-def _mean(frame: Array, apart: int) -> Array:
-    """Return the mean of each patch, (h, w, C), rounded to a level of the frame's."""
-    count = min(SIDE, frame.shape[0]) * min(SIDE, frame.shape[1])
-    total = _reduce_patches(np.add, frame.astype(np.uint32), apart)
-    return ((total + count // 2) // count).astype(frame.dtype)
+def _cut_patches(frame: Array, apart: int) -> Array:
+    """Return the pixels of patches that begin so many pixels apart, (h, w, C, n); a smaller frame is one."""
+    side = np.minimum(SIDE, frame.shape[:2])
+    few = np.lib.stride_tricks.sliding_window_view(frame, side, axis=(0, 1))[::apart, ::apart]
+    return few.reshape(*few.shape[:3], -1)
 
 
 def find_static(Z: Flags) -> Mask:
@@ -105,7 +87,8 @@ def find_static(Z: Flags) -> Mask:
     both, change = (Z[:-1] > 0) & (Z[1:] > 0), Z[1:].astype(np.int16) - Z[:-1].astype(np.int16)
     against = np.stack([both & (change < -NOISE), both & (change > NOISE)])
     count = against.sum(axis=(2, 3, 4))
-    return ~np.where((count[0] > count[1])[:, None, None], *against[::-1].any(axis=2))
+    darker, brighter = (one.any(axis=1) for one in against)
+    return np.where((count[0] > count[1])[:, None, None], ~brighter, ~darker)
 
 
 def count_pairs(Z: Flags, chosen: Mask) -> F64:

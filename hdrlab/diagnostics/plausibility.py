@@ -39,7 +39,7 @@ SPAN_LIMIT = 13.0
 # ranks, and how many of them two frames must both hold, to be compared
 RANKS, FEWEST_RANKS = 1000, 30
 # pixels of a frame, on an even grid
-PIXELS = 2**14
+PIXELS = 2**16
 
 
 def ranks(stack: Array, valid: NDArray[np.bool_] | None) -> NDArray[np.intp]:

@@ -20,28 +20,8 @@ from hdrlab.core import weights
 from hdrlab.core.arrays import as_response, as_stack, as_table, as_times
 from hdrlab.core.metrics import RELIABLE_LEVELS
 from hdrlab.core.sampling import by_grid
-from hdrlab.core.types import F64, Indices
-
-# Samples of a level, for a median.
-MIN_SAMPLES = 20
-
-
-def sample_residuals(Z: Indices, B: F64, g: F64, w: F64) -> F64:
-    """Return r (N, P) of one channel; NaN where w is 0, or where no other frame measures the sample."""
-    W = w[Z] ** 2
-    G = g[Z] - B
-    with np.errstate(invalid="ignore"):
-        lE = (W * G).sum(axis=1) / W.sum(axis=1)
-    measured = (W > 0) & ((W > 0).sum(axis=1) >= 2)[:, None]
-    return np.where(measured, (G - lE[:, None]) / np.log(2), np.nan)
-
-
-def median_by_level(Z: Indices, r: F64) -> F64:
-    """Return the median of r over the samples of each level (256,), NaN where they are few, of one frame."""
-    known = np.isfinite(r)
-    Z, r = Z[known], r[known]
-    groups = np.split(r[np.argsort(Z, kind="stable")], np.cumsum(np.bincount(Z, minlength=256))[:-1])
-    return np.array([np.median(one) if len(one) >= MIN_SAMPLES else np.nan for one in groups])
+from hdrlab.core.types import F64
+from hdrlab.diagnostics.consistency import measure_level_exposures
 
 
 def residuals(
@@ -73,7 +53,7 @@ def residuals(
     Returns
     -------
     (P, 256) or (P, 256, 3) float64
-        Stops; NaN at levels that fewer than 20 samples of a frame have, and where w is 0.
+        Stops; NaN at levels that fewer than 50 samples of a frame have, and where w is 0.
 
     Raises
     ------
@@ -90,15 +70,17 @@ def residuals(
     (True, True)
     """
     stack = as_stack(images)
-    B = np.log(as_times(times, len(stack)))
-    w = weights.cut(weights.hat()) if w is None else as_table(w, 256)
-    Z = by_grid(stack, samples, valid=valid)
-    channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
-    medians = []
-    for own, curve in zip(channels, as_response(g, 256, len(channels)).T, strict=True):
-        r = sample_residuals(own, B, curve, w)
-        medians.append([median_by_level(*one) for one in zip(own.T, r.T, strict=True)])
-    return np.stack(medians, axis=-1).reshape(len(stack), 256, *stack.shape[3:])
+    t, w = as_times(times, len(stack)), weights.cut(weights.hat()) if w is None else as_table(w, 256)
+    few = by_grid(stack, samples, valid=valid)
+    Z = few.reshape(*few.shape[:2], -1)
+    curve, W = as_response(g, 256, Z.shape[-1]), w[Z] ** 2
+    apart = W * (curve[Z, np.arange(Z.shape[-1])] - np.log(t)[:, None])
+    lE = apart.sum(axis=1) / np.maximum(W.sum(axis=1), 1e-12)
+    E = np.where((W > 0).sum(axis=1) >= 2, np.exp(lE), 0)
+    few = few.swapaxes(0, 1)[:, :, None].astype(np.uint8)
+    medians = measure_level_exposures(few, t, E.reshape(few.shape[1:]))
+    r = np.where(w > 0, curve.T / np.log(2) - medians, np.nan)
+    return np.moveaxis(r, 1, 2).reshape(len(stack), 256, *stack.shape[3:])
 
 
 def rms(r: ArrayLike) -> float:

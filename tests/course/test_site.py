@@ -1,5 +1,6 @@
 """The course's site: what `hdrlab site` makes of notebooks, and what it says of those that fail."""
 
+import ast
 import json
 import os
 import re
@@ -302,3 +303,21 @@ def test_every_case_that_a_guide_names_is_pictured_with_alt_text():
     assert said.count('<img alt="Three photographs of the chapel') == 1 and said.count("turned by four") == 1
     text = (Path(cases.__file__).parent / "pages" / "verdicts.md").read_text("utf-8")
     assert set(re.findall(r"<!-- case: (\w+) -->", text)) == set(cases.CASES)
+
+
+def test_the_page_on_warnings_quotes_them_as_they_are_printed():
+    package = Path(cases.__file__).parents[2]
+    printed = ""
+    for file in (*(package / "diagnostics").glob("*.py"), *(package / "pipeline").glob("*.py")):
+        nodes = list(ast.walk(ast.parse(file.read_text("utf-8"))))
+        strings = [one.values for one in nodes if isinstance(one, ast.JoinedStr)]
+        strings += [[one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
+        for parts in strings:
+            printed += "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts) + "\n"
+    page = (package / "course" / "site" / "pages" / "verdicts.md").read_text("utf-8")
+    quotes = re.findall(r"(?:^> .*\n)+", page, flags=re.MULTILINE)
+    assert len(quotes) >= 7
+    for quote in quotes:
+        said = " ".join(quote.replace("> ", "").split()).removeprefix("note: ")
+        for part in re.split(r"[+-]?\d+\.\d+|frame\d\.jpg", said):
+            assert part.strip(" ,:;") in printed, quote
