@@ -48,7 +48,7 @@ WRONG = 0.2
 COST = 0.05
 # stops: real brackets of one response stay within 0.08
 LOCAL = 0.1
-# stops, and standard errors: brackets of one response stay within 2.6
+# stops, and standard errors: brackets of one response stay within 3.7
 SLIGHT, SIGNIFICANT = 0.02, 4.0
 # stops: no standard error of a part is smaller, for patches have whole levels
 SMALLEST_ERROR = 0.003
@@ -214,7 +214,9 @@ def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response
     for j, step in enumerate(np.diff(B + best.x)):
         a, b = found.Z[j], found.Z[j + 1]
         trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)
-        flat = trusted & found.flat[j] & found.flat[j + 1]
+        flat = trusted & found.flat.all(axis=0)
+        if np.count_nonzero(flat) < ENOUGH:
+            flat = trusted & found.flat[j] & found.flat[j + 1]
         sure = np.count_nonzero(flat) >= ENOUGH
         chosen = flat if sure else trusted
         r = ((best.g[channel, b] - best.g[channel, a]).mean(axis=0) - step)[chosen] / np.log(2)
