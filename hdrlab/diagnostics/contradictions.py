@@ -56,8 +56,6 @@ SMALLEST_ERROR = 0.003
 CORNERS = 0.5
 # stops of the map's spread: below, the map explains its photographs, and what is slight needs no word
 SOUND = 0.1
-# stops in a typical patch: what contradicts all others, and what agrees
-CONTRARY, AGREEING = 0.3, 0.1
 
 
 class Contradictions(NamedTuple):
@@ -143,42 +141,6 @@ def measure_cost(stack: Array, stops: F64) -> float:
     total = w.sum(axis=0)
     off = (np.nan_to_num(stops) @ w)[total > 0] / total[total > 0]
     return float(off.std()) if off.size else 0.0
-
-
-def find_outlying_frames(
-    images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
-) -> tuple[int, ...]:
-    """Return the frames that contradict all others, while these agree; none where more than a third would.
-
-    Frames are left out one by one, each time the one without which the others agree best.
-
-    Examples
-    --------
-    >>> from hdrlab.capture import camera
-    >>> from hdrlab.scenes.computed import view
-    >>> room = view.room((140, 210))
-    >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
-    >>> find_outlying_frames(taken.images, taken.times * [1, 1, 1, 6, 6]), find_outlying_frames(*taken[:2])
-    ((), ())
-    """
-    stack = as_stack(images)
-    B = np.log(response_steps.as_ascending_times(times, len(stack)))
-    found = flat_patches.find_flat_patches(stack, valid=valid)
-    kept = list(range(len(B)))
-    error = first = measure_misfit(found, B)
-    while error > AGREEING and first > CONTRARY and len(kept) > max(3, np.ceil(2 * len(B) / 3)):
-        rests = [[k for k in kept if k != j] for j in kept]
-        errors = [measure_misfit(found.of(rest), B[rest]) for rest in rests]
-        error, kept = min(errors), rests[int(np.argmin(errors))]
-    return tuple(sorted(set(range(len(B))) - set(kept))) if error <= AGREEING else ()
-
-
-def measure_misfit(found: flat_patches.FlatPatches, B: F64) -> float:
-    """Return the most by which neighbours miss ln times B in a typical patch, flat or not, in stops."""
-    H = flat_patches.count_pairs(found.Z, np.ones(found.Z.shape[2:], bool))
-    fit = response_steps.fit_steps(H, B, np.zeros((len(B), 0)))
-    errors = response_steps.measure_biases(H, B, fit, sizes=True)[response_steps.find_informative(H)]
-    return float(np.nanmax(errors, initial=0))
 
 
 def find_longest_run(informative: Mask) -> tuple[int, int]:

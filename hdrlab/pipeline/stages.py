@@ -15,11 +15,8 @@ from hdrlab.core import weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency
-from hdrlab.diagnostics.contradictions import (
-    find_contradictions,
-    find_outlying_frames,
-    warn_of_contradictions,
-)
+from hdrlab.diagnostics.contradictions import find_contradictions, warn_of_contradictions
+from hdrlab.diagnostics.outlying_frames import find_outlying_frames
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery, timing
 from hdrlab.pipeline.assembly import Assembly, Method, Table, take_frames

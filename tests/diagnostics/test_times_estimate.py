@@ -14,11 +14,11 @@ from hdrlab.diagnostics import consistency, flat_patches, plausibility, response
 from hdrlab.diagnostics.contradictions import (
     Contradictions,
     find_contradictions,
-    find_outlying_frames,
     remove_trend,
     warn_of_contradictions,
 )
 from hdrlab.diagnostics.exposure_times import estimate_times, note
+from hdrlab.diagnostics.outlying_frames import find_outlying_frames
 from hdrlab.fast import debevec
 from hdrlab.fast.merge import merge
 from hdrlab.response import linear
