@@ -257,7 +257,7 @@ def test_script_in_a_title(tmp_path):
     words = tmp_path / "team1.txt"
     words.write_text("A\u202etitle\x1b[2J \u0000\n" + "caption " * 100, encoding="utf8")
     with collect.entry(tmp_path / "team1.png", ROSTER) as entry:
-        assert entry.title == "Atitle[2J" and len(entry.caption) <= collect.CAPTION
+        assert entry.title == "Atitle" and len(entry.caption) <= collect.CAPTION
 
 
 def test_svg_as_an_artifact(tmp_path):
@@ -508,6 +508,14 @@ def test_half_a_request(sent, monkeypatch):
         assert closed(whole).endswith(b"here")  # and no connection is kept for nothing
 
 
+def answer(connection):
+    """Return an answer of the small server, whose head and body may come apart."""
+    came = connection.recv(4096)
+    while not came.endswith(b"here") and (more := connection.recv(4096)):
+        came += more
+    return came
+
+
 def test_when_it_is_full_the_oldest_half_request_makes_room(monkeypatch, caplog):
     monkeypatch.setattr(serve, "PATIENCE", 600.0)
     with served(8) as port:
@@ -515,10 +523,10 @@ def test_when_it_is_full_the_oldest_half_request_makes_room(monkeypatch, caplog)
         voters = []
         for k in range(4):
             voters.append(ask(port))
-            assert voters[k].recv(4096).endswith(b"here")
+            assert answer(voters[k]).endswith(b"here")
             assert closed(waiting[k]) == b""  # the oldest has gone
         waiting[-1].sendall(b"TP/1.1\r\nhost: a\r\n\r\n")  # who was slow and is whole is answered
-        assert waiting[-1].recv(4096).endswith(b"here")
+        assert answer(waiting[-1]).endswith(b"here")
         for one in (*voters, *waiting[4:]):
             one.close()
     assert [record.message.split(":")[0] for record in caplog.records if record.name == "hdrlab.gallery"] == [
