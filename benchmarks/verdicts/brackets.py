@@ -48,14 +48,14 @@ class Plan(NamedTuple):
     sound: str
 
     @property
-    def count(self) -> int:
+    def frames(self) -> int:
         """The number of frames."""
         return len(self.times)
 
     @property
     def one(self) -> int:
         """The frame that an ill of one frame has: in the middle for even i, at an end for odd i."""
-        return self.count // 2 if self.i % 2 == 0 else (0, self.count - 1)[self.i // 2 % 2]
+        return self.frames // 2 if self.i % 2 == 0 else (0, self.frames - 1)[self.i // 2 % 2]
 
 
 class Ill(NamedTuple):
@@ -109,7 +109,7 @@ def shoot(plan: Plan, ill: Ill = NONE, *, at_rest: bool = False) -> Bracket:
     response = plan.curve if isinstance(plan.curve, str) else (lambda X: np.interp(X, *plan.curve))
     images = []
     for j, t in enumerate(plan.times):
-        k = plan.count // 2 if at_rest else j
+        k = plan.frames // 2 if at_rest else j
         noise, own = (np.random.default_rng((16, plan.i, *which)) for which in ((0, j), (1, k)))
         E = ill.light(plan, k, own, still(plan, j))
         iso = (

@@ -34,7 +34,7 @@ def change_iso(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
 def open_aperture(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     """Let the corners fall off more in every frame: by nothing in the first, by two thirds in the last."""
     y, x = np.indices(E.shape[:2]) / (np.array(E.shape[:2])[:, None, None] - 1) * 2 - 1
-    lost = 2 / 3 * j / (plan.count - 1) * (x**2 + y**2) / 2
+    lost = 2 / 3 * j / (plan.frames - 1) * (x**2 + y**2) / 2
     return (E * (1 - lost)[..., None]).astype(np.float32)
 
 
@@ -52,7 +52,7 @@ def balance_white(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
 
 def bend_curve(plan: Plan, j: int, rng: Draw, Z: Array) -> Array:
     """Bend the tone curve: by an exponent from 1.08 in the darkest frame to 0.92 in the brightest."""
-    exponent = 1.08 - 0.16 * j / (plan.count - 1)
+    exponent = 1.08 - 0.16 * j / (plan.frames - 1)
     return np.rint(255 * (Z / 255) ** exponent).astype(np.uint8)
 
 
@@ -82,7 +82,7 @@ def ripple(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
 
 def walk(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     """Let somebody walk through the picture."""
-    step = 30 * (j - plan.count // 2)
+    step = 30 * (j - plan.frames // 2)
     if plan.scene != "room":
         return scenes.compose(_layers(plan.scene), (0, step))
     figure = movers.ball(SHAPE, (SHAPE[0] / 2, SHAPE[1] / 2), SHAPE[0] / 8, np.full(3, 2 * np.median(E)))
@@ -97,7 +97,7 @@ def _layers(name: str) -> scenes.Layers:
 def shake(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     """Turn the camera by up to 1.5 degrees and shift it by up to 8 pixels; the middle frame stays."""
     radius, degrees = rng.uniform(-8, 8, 2), rng.uniform(-1.5, 1.5)
-    H = np.eye(3) if j == plan.count // 2 else warp.turn(SHAPE, degrees, radius)
+    H = np.eye(3) if j == plan.frames // 2 else warp.turn(SHAPE, degrees, radius)
     far = np.array([warp.turn(SHAPE, phi, at) for phi in (-1.5, 1.5) for at in ((8, 8), (-8, -8), (8, -8))])
     return np.asarray(views(E, np.concatenate([H[None], far, np.eye(3)[None]]))[0])
 
@@ -107,7 +107,7 @@ def step_aside(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
     depth = _layers(plan.scene).depth if plan.scene != "room" else np.linspace(8, 1.5, SHAPE[0])[:, None]
     near = np.broadcast_to(np.quantile(depth, 0.05) / np.maximum(depth, 1e-3), SHAPE)
     y, x = np.indices(SHAPE)
-    dx = rng.uniform(-12, 12) * near * (j != plan.count // 2)
+    dx = rng.uniform(-12, 12) * near * (j != plan.frames // 2)
     return np.stack(
         [map_coordinates(one, [y, x + dx], order=1, mode="reflect") for one in E.T.swapaxes(1, 2)], -1
     )

@@ -144,7 +144,7 @@ def read_times(path: str | Path) -> TimeList:
         raise ValueError(f"{path}: expected a list of exposure times, it is empty")
     given, inverted = (
         dict(zip(names, equivalent([f"{path}: {name}" for name in names], one), strict=True))
-        for one in (read, [one._replace(seconds=1 / one.seconds) for one in read])
+        for one in (read, [one._replace(seconds=1 / one.seconds) for one in read if one.seconds])
     )
     return TimeList(given, None if certain else inverted)
 
