@@ -109,7 +109,7 @@ def grade(
 
     if student and secret_file is None:
         raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
-    secret = _secret(secret_file)
+    secret, note = _secret(secret_file)
     conditions = Conditions(tier, student, secret, hidden, timeout)
     if submission.is_dir():
         from hdrlab.cli import classroom
@@ -118,11 +118,13 @@ def grade(
         course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
         with temporary_folder():
             classroom.grade_folder(submission, out, course, options)
+        click.echo(note, nl=bool(note), err=True)
         return
     result = _graded(submission, _homework(submission, homework, plan), conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
         click.echo(f"note: for practice. {result.why_practice}", err=True)
+    click.echo(note, nl=bool(note), err=True)
     gradebook.write_results(out, result)
     click.echo(out / "feedback.html")
 
@@ -191,7 +193,8 @@ def export(
         for file in to_nbgrader.export(read, nbgrader):
             click.echo(file)
     if gradescope is not None:
-        secret = _secret(secret_file)
+        secret, note = _secret(secret_file)
+        click.echo(note, nl=bool(note), err=True)
         for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
             click.echo(file)
 
@@ -228,16 +231,14 @@ def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homewor
     return homeworks[name]
 
 
-def _secret(file: Path | None) -> str:
-    """Return the course's secret, and say where it was made, or that there is none."""
+def _secret(file: Path | None) -> tuple[str, str]:
+    """Return the course's secret, and a note where it was made, or where there is none."""
     from hdrlab.course import plan as plans
 
-    secret, made = plans.read_secret(file) if file else ("", False)
-    if not file:
-        click.echo("note: for practice: without --secret-file the inputs are public", err=True)
-    if made:
-        click.echo(f"note: {file}: a new secret for the course; keep it, and keep it to yourself", err=True)
-    return secret
+    if file is None:
+        return "", "note: for practice: without --secret-file the inputs are public"
+    secret, made = plans.read_secret(file)
+    return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
 
 
 def _graded(submission: Path, homework: "Homework", conditions: "Conditions") -> "Result":
