@@ -214,7 +214,7 @@ def test_what_a_sheet_gives_is_known_to_the_grader():
 def test_a_student_may_use_what_the_sheet_gives(graded):
     text = inline.inlined({"gsolve": "response.debevec.gsolve"})["gsolve"].text
     start = text.index("class Solution")
-    without = text[:start] + text[text.index("\n\n\n", start) :]
+    without = text[:start] + text[text.index("\n\ndef ", start) :]
     assert np.isclose(graded(without, of("hw2", "gsolve")).score, 30)
 
 
