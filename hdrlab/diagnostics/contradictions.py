@@ -42,8 +42,8 @@ ENOUGH = 50
 PIXELS = 30_000
 # stops, the prior: here times are free, for the question is what is wrong and not what is likely
 LOOSE = 4.0
-# stops: true times of real brackets stay within 0.12
-WRONG = 0.2
+# stops: true times of real brackets stay within 0.24
+WRONG = 0.25
 # stops in the map, RMS: a smaller error leaves it sound
 COST = 0.05
 # stops: real brackets of one response stay within 0.08
@@ -185,7 +185,7 @@ def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response
         medians, errors = _tile_medians(r, tile[chosen])
         if len(medians):
             off = np.quantile(np.abs([medians, sure * medians / errors]), 0.75, axis=1)
-            out[:2, j] = off if sure or off[0] > LOCAL else 0
+            out[:2, j] = off if sure else 0
             slope = np.polyfit(r2[chosen], r, 1)[0]
             explained = (slope * r2[chosen].std()) ** 2 > CORNERS * r.var()
             out[2, j] = 2 * abs(slope) * explained

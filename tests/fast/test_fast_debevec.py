@@ -48,7 +48,7 @@ def test_the_gauge_holds_exactly(seed, smoothness, P, cut):
 
 @pytest.mark.parametrize("name", CURVES)
 def test_lE_is_where_the_samples_lie_on_the_curve(name):
-    Z, B = samples(200, response=name, noise=0)
+    Z, B = samples(200, response=responses.RESPONSES[name], noise=0)
     g, lE = debevec.gsolve(Z, B, 1, CUT)
     error = np.where(CUT[Z] > 0.5, g[Z] - lE[:, None] - B, 0)
     assert np.abs(error).max() < 0.03  # half a level in the middle of a curve
