@@ -283,8 +283,8 @@ def test_what_cannot_be_calibrated_is_refused():
     for images, times, said in (
         ([flat], [1], "2 different exposure times"),
         ([flat, flat], [1, 1], "2 different exposure times"),
-        ([flat * 0 + 2, flat * 0 + 254], [1, 2], "expected pixels from"),
-        ([flat * 0, flat * 0 + 255], [1, 2], "expected pixels from"),
+        ([flat * 0 + 2, flat * 0 + 254], [1, 2], "expected pixels "),
+        ([flat * 0, flat * 0 + 255], [1, 2], "expected pixels "),
     ):
         with pytest.raises(ValueError, match=said):
             self_calibration.find_response(np.stack(images), times)
@@ -313,7 +313,7 @@ def test_the_papers_scheme_corrects_a_time_that_is_wrong():
 
 def test_the_papers_scheme_asks_for_samples_that_two_frames_see_well():
     flat = np.full((20, 20), 100, np.uint8)
-    with pytest.raises(ValueError, match="expected pixels from"):
+    with pytest.raises(ValueError, match="expected pixels "):
         mitsunaga.recover(np.stack([flat * 0 + 2, flat * 0 + 254]), [1, 2])
 
 
