@@ -145,7 +145,8 @@ def improve(
     for method, search in SEARCHES.items():
         found = judgement.validate(pair, homography.enlarge(last(search(pyramid)).H, scale))
         left = pair.differences(found.H)
-        if found.known and pair.lower(left, d)[-1]:
+        overlaps = max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
+        if found.known and overlaps and found.confidence >= judgement.LOST and pair.lower(left, d)[-1]:
             best, name, d = found, method, left
         if not best.apart:
             break
