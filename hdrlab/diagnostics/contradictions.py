@@ -56,6 +56,8 @@ SMALLEST_ERROR = 0.003
 CORNERS = 0.5
 # stops of the map's spread: below, the map explains its photographs, and what is slight needs no word
 SOUND = 0.1
+# stops of the map's spread: below, no time can be wrong that matters
+EXPLAINED = 0.03
 
 
 class Contradictions(NamedTuple):
@@ -224,7 +226,7 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
             f"{names[j]} and {names[j + 1]}: light or white balance that changed, or a camera that brightens "
             "by place; switch HDR and automatic enhancement off, or take RAW; other times will not help"
         )
-    if not found.wrong:
+    if not found.wrong or spread < EXPLAINED:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)
     known = np.isfinite(found.stops).sum()

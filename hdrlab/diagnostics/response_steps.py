@@ -31,7 +31,7 @@ from hdrlab.core.weights import second_differences
 
 W = weights.cut(weights.hat(), below=0.02)
 # of w(a) w(b): below, a level is of the response's ends, where the floor of a scan stays when light grows
-TRUSTED = 0.05
+TRUSTED = 0.03
 # trust in a patch of level a that becomes b, (256, 256)
 PAIR = np.where(W[:, None] * W > TRUSTED, W[:, None] * W, 0)
 # ln: error of a patch's step, by noise, but above all by flare and a camera's processing

@@ -166,7 +166,7 @@ def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(ma
     assert "notebooks/01_one.html" in links
     functions = [link for link in links if "#hdrlab." in link]
     assert len(functions) > 20
-    assert "reference/pipeline.html#hdrlab.pipeline.assemble" in links
+    assert "reference/pipeline.stages.html#hdrlab.pipeline.stages.assemble" in links
 
 
 def test_a_name_in_a_table_breaks_after_a_dot_alone(made):

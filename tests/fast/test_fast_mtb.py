@@ -31,7 +31,7 @@ def test_of_a_large_picture_some_rows_tell_what_all_of_them_would(offset):
     both = mtb.Photograph(moving), mtb.Photograph(fixed)
     some = both[0].count_differences(both[1], (dy + 2, dx), 0).sum(axis=0)
     all_ = lesson.error(lesson.bitmaps(fixed), lesson.bitmaps(moving), (dy + 2, dx))
-    assert some[1] < shape[0] * shape[1] / 2 and some[0] / some[1] == pytest.approx(all_, rel=0.1)
+    assert some[1] < shape[0] * shape[1] / 2 and some[0] / some[1] == pytest.approx(all_, rel=0.3)
 
 
 @given(st.integers(1, 5), st.integers(1, 200), st.integers(-210, 210), st.integers(0, 2**32 - 1))

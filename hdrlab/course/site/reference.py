@@ -6,9 +6,11 @@ formulas with * and |. Here it becomes what Sphinx reads.
 
 import ast
 import importlib.util
+import inspect
 import pkgutil
 import re
 from collections.abc import Iterable, Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -134,7 +136,7 @@ def _map(names: Sequence[str], uses: dict[str, set[str]]) -> str:
     text += ".. list-table::\n   :header-rows: 1\n   :widths: 34 48 18\n   :class: map\n\n"
     text += "   * - Lecture\n     - Where\n     - Notebooks\n"
     for lecture, where in rows():
-        linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <hdrlab.{found[0]}>`", where)
+        linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <{_home(found[0])}>`", where)
         told = {_module(f"hdrlab.{word}", names) for word in NAME.findall(where)}
         playing = [notebook for notebook in uses if told & uses[notebook]]
         said = (
@@ -144,6 +146,13 @@ def _map(names: Sequence[str], uses: dict[str, set[str]]) -> str:
         )
         text += f"   * - {escaped(lecture)}\n     - {linked}\n     - {said}\n"
     return text
+
+
+def _home(word: str) -> str:
+    """Return the dotted name under which the reference has what a word of the map names."""
+    module, _, name = f"hdrlab.{word}".rpartition(".")
+    thing = getattr(import_module(module), name, None)
+    return f"{thing.__module__}.{name}" if inspect.isfunction(thing) else f"{module}.{name}"
 
 
 def _module(word: str, names: Sequence[str]) -> str:
