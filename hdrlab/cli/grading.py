@@ -124,7 +124,8 @@ def grade(
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
         click.echo(f"note: for practice. {result.why_practice}", err=True)
-    click.echo(note, nl=bool(note), err=True)
+    if secret:
+        click.echo(note, nl=bool(note), err=True)
     gradebook.write_results(out, result)
     click.echo(out / "feedback.html")
 

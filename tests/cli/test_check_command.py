@@ -76,6 +76,13 @@ def test_grade_draws_each_students_inputs_from_a_secret_file(typed, tmp_path):
     assert code == 2 and "expected --secret-file" in err
 
 
+@pytest.mark.parametrize("secret", [(), ("--student", "ada", "--secret-file", "secret")])
+def test_that_a_score_is_for_practice_is_said_once(typed, secret):
+    words = ("grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results")
+    _, _, err = typed(*words, *secret)
+    assert err.count("practice") == err.count("not for credit") == 1
+
+
 def test_a_secret_is_made_on_first_use_and_kept(typed, tmp_path):
     common = ("grade", "hw2.py", "--plan", "plan.toml", "--tier", "practice", "--out", "results")
     seeds = []

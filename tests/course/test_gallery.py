@@ -146,6 +146,19 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
         assert [row["artifact"] for row in csv.DictReader(file)] == ["Dusk", "Dusk", ""]
 
 
+@pytest.mark.parametrize("version", [0, store.VERSION - 1, store.VERSION + 1])
+def test_a_gallery_of_another_hdrlab_is_refused_in_a_line_that_says_what_to_do(tmp_path, hdrlab, version):
+    hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00")
+    with closing(store.connect(tmp_path / "g")) as db:
+        db.execute(f"PRAGMA user_version = {version}")
+    for words in (("close", "g"), ("results", "g", "-o", "r.csv")):
+        code, said = hdrlab(*words)
+        assert code == 2 and said.count("\n") <= 2, said
+        assert f"expected a gallery of version {store.VERSION}, got" in said and "gallery init" in said
+    (tmp_path / "g" / store.DATABASE).write_text("half a database")
+    assert hdrlab("close", "g")[0] == 2 and "cannot be read" in hdrlab("close", "g")[1]
+
+
 @served
 def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path):
     from benchmarks import gallery as bench

@@ -15,6 +15,7 @@ from secrets import token_bytes
 from typing import NamedTuple
 
 DATABASE, PICTURES = "gallery.sqlite", "pictures"
+VERSION = 2  # of the tables
 SCHEMA = """
 CREATE TABLE gallery (
   one INTEGER PRIMARY KEY CHECK (one = 1), title TEXT NOT NULL, closes TEXT NOT NULL,
@@ -95,18 +96,39 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
         raise FileExistsError(f"{folder}: expected a folder without a gallery, there is one")
     (folder / PICTURES).mkdir(parents=True, exist_ok=True)
     (folder / DATABASE).touch(mode=0o600)
-    with closing(connect(folder)) as db:
-        db.executescript(f"BEGIN; {SCHEMA} COMMIT;")
+    with closing(_opened(folder / DATABASE)) as db:
+        db.executescript(f"BEGIN; {SCHEMA} PRAGMA user_version = {VERSION}; COMMIT;")
         db.execute(
             "INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", (title, closes.isoformat(), marks, token_bytes(32))
         )
 
 
 def connect(folder: str | Path) -> sqlite3.Connection:
-    """Return a connection to the gallery of a folder."""
+    """Return a connection to the gallery of a folder.
+
+    Raises
+    ------
+    ValueError
+        Where there is none, a damaged one, or one that another hdrlab has made, whose tables are others.
+    """
     path = Path(folder) / DATABASE
     if not path.is_file():
         raise ValueError(f"{folder}: expected a gallery, there is none; `hdrlab gallery init` makes one")
+    try:
+        db = _opened(path)
+        (version,) = db.execute("PRAGMA user_version").fetchone()
+    except sqlite3.DatabaseError as error:
+        raise ValueError(f"{path}: expected a gallery's database, it cannot be read: {error}") from None
+    if version != VERSION:
+        db.close()
+        raise ValueError(
+            f"{folder}: expected a gallery of version {VERSION}, got {max(version, 1)}: end this vote with "
+            "the hdrlab that made it, or make a new gallery by `hdrlab gallery init`"
+        )
+    return db
+
+
+def _opened(path: Path) -> sqlite3.Connection:
     db = sqlite3.connect(path, timeout=10, isolation_level=None, check_same_thread=False)
     for pragma in ("journal_mode = WAL", "synchronous = FULL", "foreign_keys = ON", "trusted_schema = OFF"):
         db.execute(f"PRAGMA {pragma}")
