@@ -10,12 +10,12 @@ The response by least squares          response.debevec.gsolve, response.debevec
 ... without exact times                response.mitsunaga.recover
 ... from histograms, from a series     response.grossberg.recover, response.mann.recover
 The radiance map                       radiance.merge.merge
-Its files: PFM, RGBE, OpenEXR          io.pfm, io.rgbe, io.exr
+Its files: PFM, RGBE, OpenEXR          io.maps.pfm, io.maps.rgbe, io.maps.exr
 One curve for all pixels               tonemap.ward.tonemap, tonemap.curves
 Local scaling, and its halo            tonemap.chiu.tonemap
-Base and detail                        tonemap.durand.tonemap, core.bilateral
+Base and detail                        tonemap.durand.tonemap, core.filters.bilateral
 Photographic tone reproduction         tonemap.reinhard.tonemap
-Gradients                              tonemap.fattal.tonemap, core.poisson
+Gradients                              tonemap.fattal.tonemap, core.filters.poisson
 A picture without a radiance map       enhance.mertens.fuse
 A badly exposed photograph, and skin   enhance.battiato.correct, enhance.relight, enhance.skin
 -------------------------------------  --------------------------------------------------------------------

@@ -21,8 +21,8 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.cli.terminal import elapsed
 from hdrlab.core.colour import luminance
-from hdrlab.io.exr import LARGEST_HALF
-from hdrlab.io.layers import write_layers
+from hdrlab.io.maps.exr import LARGEST_HALF
+from hdrlab.io.maps.layers import write_layers
 from hdrlab.scenes.places import PLACES
 from scenes.lighting import SMOOTH, radiance
 from scenes.models.place import Light, Place

@@ -22,7 +22,7 @@ from hdrlab.capture.lens_flare import add_glare
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
 from hdrlab.core.arrays import Array
-from hdrlab.core.scatter import GlareSpread
+from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.radiance import flare
 from hdrlab.radiance.merge import merge_with_quality
 from hdrlab.scenes.places import resample

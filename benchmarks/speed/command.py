@@ -11,7 +11,7 @@ from benchmarks.measure import ROOT, process
 from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
 from hdrlab.capture.camera import views
 from hdrlab.core.arrays import Array
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 
 RADIUS = 16
 

@@ -11,7 +11,7 @@ import numpy as np
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.core.arrays import Array
-from hdrlab.io import exr, pfm, rgbe
+from hdrlab.io.maps import exr, pfm, rgbe
 
 Peer = Callable[[Path, Array, bool], Run]
 

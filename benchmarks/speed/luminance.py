@@ -7,7 +7,7 @@ from benchmarks import peers
 from benchmarks.measure import process
 from benchmarks.rows import Run, Usage
 from hdrlab.core.arrays import Array
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 
 NAME = "Luminance HDR"
 SIMPLEST = "drago"  # one curve for all pixels

@@ -13,9 +13,9 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, close, faster
 from benchmarks.speed import luminance as lhdr
 from benchmarks.speed.tonemapping import pfstools
-from hdrlab.core import poisson
-from hdrlab.core.bilateral import bilateral as by_definition
 from hdrlab.core.colour import luminance
+from hdrlab.core.filters import poisson
+from hdrlab.core.filters.bilateral import bilateral as by_definition
 from hdrlab.fast import bilateral, blur, brush, chiu, durand, fattal, reinhard, ward
 from hdrlab.tonemap.durand import WIDTH, logarithm
 from hdrlab.tonemap.fattal import log_luminance

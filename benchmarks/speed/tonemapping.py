@@ -14,7 +14,7 @@ from hdrlab.core.arrays import Array
 from hdrlab.core.colour import encode_srgb, luminance, recolour
 from hdrlab.core.steps import last
 from hdrlab.fast import reinhard as fast
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 from hdrlab.tonemap import reinhard
 
 

@@ -9,8 +9,8 @@ from benchmarks.verdicts.brackets import SHAPE, Float, Ill, Plan
 from hdrlab import scenes
 from hdrlab.capture import movers
 from hdrlab.capture.hand_motion import views
-from hdrlab.core import warp
 from hdrlab.core.arrays import Array
+from hdrlab.core.filters import warp
 
 Draw = np.random.Generator
 

@@ -21,7 +21,7 @@ from scipy.ndimage import maximum_filter
 from scipy.optimize import minimize
 
 from hdrlab.align import light
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 from hdrlab.core.types import F32, F64, Indices
 
 # of the correlation: the coarsest level tries this many

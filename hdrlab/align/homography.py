@@ -25,7 +25,7 @@ from skimage.measure import ransac
 from skimage.transform import ProjectiveTransform
 
 from hdrlab.align import light
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 from hdrlab.core.types import F32, F64, Mask
 
 # pixels of the level where points are looked for, at most

@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter, map_coordinates
 from skimage.transform import downscale_local_mean
 
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F32, F64, Array, Mask
 

@@ -1,6 +1,6 @@
 """Moving photographs by fractions of pixels: through linear light, and cut to what all of them show.
 
-H      (P, 3, 3)        where pixel (x, y, 1) of photograph j lies in the picture they share, see `core.warp`
+H      (P, 3, 3)        where pixel (x, y, 1) of photograph j lies in the common picture, see `filters.warp`
 g      (n,) or (n, 3)   response, ln exposure of each level
 Z, X   level, light     X = exp g(Z)
 
@@ -17,9 +17,9 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
 from hdrlab.align.light import BRIGHT
-from hdrlab.core import warp
 from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, levels
 from hdrlab.core.colour import decode_srgb
+from hdrlab.core.filters import warp
 
 
 def photographs(

@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_radiance, describe, levels
-from hdrlab.core.mosaic import BAYER, as_channels, sample
+from hdrlab.core.filters.mosaic import BAYER, as_channels, sample
 from hdrlab.core.types import F64, Array
 
 # four transparencies, two stops apart, in a square
@@ -144,7 +144,7 @@ def reconstruct(
 
     Examples
     --------
-    >>> from hdrlab.core.mosaic import tile
+    >>> from hdrlab.core.filters.mosaic import tile
     >>> e = tile(FOUR_EXPOSURES, (8, 8))
     >>> E = reconstruct(shoot(np.full((8, 8), 20.0), e), e)
     >>> bool(np.abs(E / 20 - 1).max() < 0.02)

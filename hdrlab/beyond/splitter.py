@@ -25,7 +25,7 @@ from scipy.ndimage import uniform_filter
 
 from hdrlab.beyond import assorted
 from hdrlab.core.arrays import as_radiance, describe, levels
-from hdrlab.core.mosaic import as_channels, demosaic
+from hdrlab.core.filters.mosaic import as_channels, demosaic
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64, Array, Mask
 

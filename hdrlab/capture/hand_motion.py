@@ -2,7 +2,7 @@
 
 E        radiance (H, W[, 3]) float32, any linear unit
 offsets  (P, 2), (dy, dx) pixels: how far frame j must move, down and right, to lie on the reference
-H        (P, 3, 3) homographies: where pixel (x, y, 1) of frame j lies in the reference, see `core.warp`
+H        (P, 3, 3) homographies: where pixel (x, y, 1) of frame j lies in the reference, see `filters.warp`
 
 What `align` should answer is the same whichever way it is written. Offsets of whole pixels cut views out of
 the scene; all others resample its light, before the sensor: a camera that moved sees the scene between
@@ -12,8 +12,8 @@ the pixels, not the photograph.
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core import warp
 from hdrlab.core.arrays import describe
+from hdrlab.core.filters import warp
 from hdrlab.core.types import F64, Array
 
 Seed = int | np.random.Generator | None

@@ -1,7 +1,7 @@
 """Flare: what a lens makes of a bright light beside its picture, with the truth known.
 
 E   radiance before the lens    (H, W[, 3]) float32, any linear unit
-F   radiance behind it          (H, W[, 3]), (1 - share) E + share (K * E): see `core.scatter`
+F   radiance behind it          (H, W[, 3]), (1 - share) E + share (K * E): see `core.filters.scatter`
 k   place of a reflection       a light at p from the middle has its image at k p; k < 0 lies across from it
 a   aperture                    the image is a disc of this radius, pixels
 
@@ -15,7 +15,7 @@ from scipy.ndimage import affine_transform
 from scipy.signal import fftconvolve
 
 from hdrlab.core.arrays import as_radiance
-from hdrlab.core.scatter import GlareSpread, scatter, spread_transform, validate_spread
+from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
 from hdrlab.core.types import F32
 
 FINGERPRINTS = GlareSpread(0.05)

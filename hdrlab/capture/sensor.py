@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core import mosaic
 from hdrlab.core.arrays import as_radiance, describe
+from hdrlab.core.filters import mosaic
 from hdrlab.core.types import F32, F64, Array
 
 Seed = int | np.random.Generator

@@ -5,8 +5,9 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.io import exr, pfm, radiance, rgbe
+from hdrlab.io import radiance
 from hdrlab.io.decode import look
+from hdrlab.io.maps import exr, pfm, rgbe
 
 
 def describe_file(path: str | Path) -> dict[str, Any]:

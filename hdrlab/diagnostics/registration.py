@@ -26,7 +26,7 @@ from scipy.fft import fftshift, irfft2, rfft2
 from hdrlab.align import homography, light
 from hdrlab.align.cerman import peaks
 from hdrlab.align.mtb import exclusion
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 from hdrlab.core.types import F32, F64, Array, Mask
 
 # pixels of the overview: the distances at which other answers are compared

@@ -19,8 +19,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core import pyramid
 from hdrlab.core.arrays import as_stack, levels
+from hdrlab.core.filters import pyramid
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, Array
 

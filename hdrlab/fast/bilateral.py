@@ -1,6 +1,6 @@
 """The bilateral filter, fast on a coarse grid over place and level.
 
-v        signal                (H, W), and g, w, k as in `core.bilateral`
+v        signal                (H, W), and g, w, k as in `core.filters.bilateral`
 h        node spacing          pixels, odd, at most sigma_s / 2
 z        level of a node       low, low + step, ...: Z of them, step at most sigma_r / 2
 
@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.bilateral import Filtered, require_signal
+from hdrlab.core.filters.bilateral import Filtered, require_signal
 from hdrlab.core.types import F32
 from hdrlab.fast import blur
 

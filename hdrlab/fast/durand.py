@@ -1,6 +1,6 @@
 """Durand and Dorsey's operator, fast: the bilateral filter on its grid; bands where all is certain stay."""
 
-from hdrlab.core.bilateral import Filtered
+from hdrlab.core.filters.bilateral import Filtered
 from hdrlab.core.types import F32
 from hdrlab.fast import with_parts
 from hdrlab.fast._bands import banded

@@ -1,4 +1,4 @@
-"""Image pyramids by sums of whole rows, a plane and a band at a time: see `core.pyramid`."""
+"""Image pyramids by sums of whole rows, a plane and a band at a time: see `core.filters.pyramid`."""
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
@@ -6,8 +6,8 @@ from typing import Literal
 
 import numpy as np
 
-from hdrlab.core import pyramid
-from hdrlab.core.pyramid import depth, half_shape  # noqa: F401
+from hdrlab.core.filters import pyramid
+from hdrlab.core.filters.pyramid import depth, half_shape  # noqa: F401
 from hdrlab.core.types import F32
 from hdrlab.fast import with_parts
 

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.types import F32
-from hdrlab.io import exr, pfm, rgbe
+from hdrlab.io.maps import exr, pfm, rgbe
 
 SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
 

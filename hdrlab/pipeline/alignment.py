@@ -13,9 +13,9 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.align import cerman, homography, light, mtb
-from hdrlab.core import warp
 from hdrlab.core.arrays import as_stack, as_table, as_times, levels
 from hdrlab.core.colour import decode_srgb
+from hdrlab.core.filters import warp
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F32, F64, Array

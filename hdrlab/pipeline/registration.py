@@ -7,8 +7,8 @@ import numpy as np
 
 from hdrlab.align.resample import photographs
 from hdrlab.align.shift import as_offsets, shift
-from hdrlab.core import warp
 from hdrlab.core.bracket import Bracket
+from hdrlab.core.filters import warp
 from hdrlab.core.types import F64, Array
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.pipeline import alignment

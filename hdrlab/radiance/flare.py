@@ -2,7 +2,7 @@
 
 F       radiance, as photographed    (H, W[, 3]), (1 - share) E + share (K * E)
 E       radiance without glare       (H, W[, 3])
-K       glare spread function        falls with a power of the distance: see `core.scatter`
+K       glare spread function        falls with a power of the distance: see `core.filters.scatter`
 ratio   F / (K * E)                  (H, W[, 3]): share + (1 - share) E / (K * E), never below the share
 region  (H, W) bool                  where glare is more than a part of what was photographed
 
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_radiance
-from hdrlab.core.scatter import GlareSpread, scatter, spread_transform, validate_spread
+from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, Mask
 

@@ -17,7 +17,7 @@ from numpy.typing import ArrayLike
 from hdrlab.capture.movers import Figure, compose_moment
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F32, F64
-from hdrlab.io.layers import read_layers
+from hdrlab.io.maps.layers import read_layers
 
 Shape = tuple[int, int]
 FOLDER = Path(__file__).parent

@@ -22,8 +22,8 @@ from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bilateral import bilateral
 from hdrlab.core.extremes import positive_median, robust_maximum
+from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32
 

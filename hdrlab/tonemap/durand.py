@@ -23,8 +23,8 @@ from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
-from hdrlab.core.bilateral import Filtered, bilateral
 from hdrlab.core.extremes import positive_median
+from hdrlab.core.filters.bilateral import Filtered, bilateral
 from hdrlab.core.types import F32
 
 LAWS = ("exposure",)

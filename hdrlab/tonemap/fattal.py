@@ -22,8 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core import poisson, pyramid
 from hdrlab.core.arrays import as_luminance
+from hdrlab.core.filters import poisson, pyramid
 from hdrlab.core.types import F32
 
 LAWS = ("exposure",)

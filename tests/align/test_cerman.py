@@ -9,8 +9,8 @@ from hdrlab import scenes
 from hdrlab.align import cerman, light, mtb
 from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
-from hdrlab.core import warp
 from hdrlab.core.arrays import levels
+from hdrlab.core.filters import warp
 
 SHAPE = (110, 160)
 

@@ -11,8 +11,8 @@ from hdrlab.align import homography, mtb, resample
 from hdrlab.align.shift import shift
 from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
-from hdrlab.core import warp
 from hdrlab.core.bracket import bracket
+from hdrlab.core.filters import warp
 from hdrlab.diagnostics.registration import LOST
 from hdrlab.pipeline import alignment, registration
 from hdrlab.radiance.merge import Quality

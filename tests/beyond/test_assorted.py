@@ -7,8 +7,8 @@ from skimage.metrics import peak_signal_noise_ratio
 
 from hdrlab import scenes
 from hdrlab.beyond import assorted
-from hdrlab.core import mosaic
 from hdrlab.core.colour import decode_srgb, encode_srgb
+from hdrlab.core.filters import mosaic
 
 WELL = dict(full_well=20_000, read_noise=5)
 SHAPE = (64, 64)

@@ -5,8 +5,8 @@ import pytest
 
 from hdrlab.beyond import splitter
 from hdrlab.capture import camera, movers
-from hdrlab.core import mosaic
 from hdrlab.core.colour import luminance
+from hdrlab.core.filters import mosaic
 from hdrlab.fast.merge import merge
 from hdrlab.scenes.places import layers
 

@@ -1,4 +1,4 @@
-"""`capture.hand_motion` and `core.warp`: homographies that are what they say, and light that stays light."""
+"""`hand_motion` and `filters.warp`: homographies that are what they say, and light that stays light."""
 
 import numpy as np
 import pytest
@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from hdrlab import scenes
 from hdrlab.align.shift import crop
 from hdrlab.capture import camera, hand_motion
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 
 SHAPE = (120, 170)
 

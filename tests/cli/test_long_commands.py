@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 
 pty = pytest.importorskip("pty", reason="there are no such terminals here")
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hdrlab.core import gamut
 from hdrlab.core.colour import LUMINANCE, decode_srgb, luminance
-from hdrlab.io.exr import read as read_exr
+from hdrlab.io.maps.exr import read as read_exr
 from hdrlab.io.radiance import read_radiance, read_sanitized
 
 REC2020 = (0.708, 0.292, 0.170, 0.797, 0.131, 0.046, 0.3127, 0.3290)

@@ -137,7 +137,7 @@ SHORT = """
 [hw3]
 title = "The radiance map and its files"
 due = 2026-11-06T23:59:00Z
-tasks = [{ id = "to_radiance", function = "io.rgbe.to_radiance", points = 10 }]
+tasks = [{ id = "to_radiance", function = "io.maps.rgbe.to_radiance", points = 10 }]
 """
 
 

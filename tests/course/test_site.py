@@ -162,7 +162,7 @@ def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):
 def test_the_map_leads_to_the_functions_and_to_the_notebooks_that_import_them(made):
     links = pages(made[1])[made[1] / "map.html"].links
     assert "reference/tonemap.ward.html#hdrlab.tonemap.ward.tonemap" in links
-    assert "reference/core.bilateral.html#module-hdrlab.core.bilateral" in links
+    assert "reference/core.filters.bilateral.html#module-hdrlab.core.filters.bilateral" in links
     assert "notebooks/01_one.html" in links
     functions = [link for link in links if "#hdrlab." in link]
     assert len(functions) > 20

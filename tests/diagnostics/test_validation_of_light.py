@@ -9,7 +9,7 @@ from skimage.data import astronaut
 from hdrlab import scenes
 from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 from hdrlab.diagnostics.registration import LOST
 from hdrlab.pipeline.alignment import register
 

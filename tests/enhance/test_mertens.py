@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from PIL import Image
 
-from hdrlab.core import pyramid
+from hdrlab.core.filters import pyramid
 from hdrlab.enhance import mertens
 
 

@@ -7,11 +7,11 @@ from hypothesis import strategies as st
 from scipy.ndimage import gaussian_filter
 from skimage.restoration import denoise_bilateral
 
-from hdrlab.core.bilateral import bilateral as by_definition
 from hdrlab.core.colour import luminance
+from hdrlab.core.filters.bilateral import bilateral as by_definition
 from hdrlab.fast import bilateral as grid
 from hdrlab.fast.bilateral import bilateral as fast_bilateral
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 
 
 def room(shape=(70, 90), seed=0):

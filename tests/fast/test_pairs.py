@@ -10,7 +10,18 @@ from pairs import KINDS, MAKERS, compare
 
 from hdrlab import fast
 
-LESSONS = ("core", "align", "response", "calibration", "radiance", "tonemap", "enhance", "beyond", "capture")
+LESSONS = (
+    "core",
+    "core.filters",
+    "align",
+    "response",
+    "calibration",
+    "radiance",
+    "tonemap",
+    "enhance",
+    "beyond",
+    "capture",
+)
 MODULES = sorted(i.name for i in pkgutil.iter_modules(fast.__path__) if not i.name.startswith("_"))
 
 

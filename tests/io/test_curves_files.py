@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from hdrlab import scenes
 from hdrlab.capture import camera
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 from hdrlab.io.photos import write_picture
 from hdrlab.io.response_files import FORMS, insert_name, read_curve, suffix_of, write_curve
 

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from PIL import Image
 
 from hdrlab.cli.describe import describe_file
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 from hdrlab.io.photos import read_photo
 from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
 

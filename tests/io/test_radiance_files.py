@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.cli.describe import describe_file
-from hdrlab.io import exr, pfm
+from hdrlab.io.maps import exr, pfm
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
 

@@ -8,7 +8,7 @@ from PIL import Image
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, lens_flare, movers
 from hdrlab.cli import main
-from hdrlab.core.scatter import GlareSpread
+from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.io.radiance import read_radiance
 from hdrlab.show.pages import report
 

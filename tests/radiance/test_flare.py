@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab import scenes
 from hdrlab.capture import lens_flare as lens
-from hdrlab.core.scatter import GlareSpread, scatter, spread_transform
+from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform
 from hdrlab.radiance import flare
 
 

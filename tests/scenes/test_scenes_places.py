@@ -12,8 +12,8 @@ import pytest
 
 from hdrlab import scenes
 from hdrlab.core.colour import luminance
-from hdrlab.io import exr
-from hdrlab.io.layers import read_layers, write_layers
+from hdrlab.io.maps import exr
+from hdrlab.io.maps.layers import read_layers, write_layers
 from hdrlab.scenes import places
 from scenes import denoise, relay, render, tracer
 from scenes.models import openings, shapes, sun, surfaces

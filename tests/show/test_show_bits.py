@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import bits
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.align import cerman
-from hdrlab.core import warp
+from hdrlab.core.filters import warp
 from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import homographies as drawn
 

@@ -6,10 +6,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.core.bilateral import Filtered, bilateral
 from hdrlab.core.colour import luminance
+from hdrlab.core.filters.bilateral import Filtered, bilateral
 from hdrlab.fast import durand as fast
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 from hdrlab.tonemap import durand
 
 

@@ -11,11 +11,11 @@ import pytest
 from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import spsolve
 
-from hdrlab.core import poisson, pyramid
 from hdrlab.core.colour import luminance
+from hdrlab.core.filters import poisson, pyramid
 from hdrlab.core.steps import last
 from hdrlab.fast import fattal as fast
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 from hdrlab.tonemap import fattal
 
 MODES = {

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 from hdrlab.tonemap import ward
 
 D = np.log(100)  # a display of 1 to 100 cd/m^2

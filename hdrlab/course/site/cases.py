@@ -12,8 +12,8 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab import scenes
 from hdrlab.capture import camera
+from hdrlab.core.filters.warp import sample, turn
 from hdrlab.core.types import F32, Array
-from hdrlab.core.warp import sample, turn
 from hdrlab.show import pictures
 
 SHAPE = (160, 240)

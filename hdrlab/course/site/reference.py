@@ -115,7 +115,7 @@ def rows() -> list[tuple[str, str]]:
     Examples
     --------
     >>> dict(rows())["Base and detail"]
-    'tonemap.durand.tonemap, core.bilateral'
+    'tonemap.durand.tonemap, core.filters.bilateral'
     """
     lines = (hdrlab.__doc__ or "").splitlines()
     ruler = next(index for index, line in enumerate(lines) if line.startswith("---"))

@@ -6,7 +6,7 @@ In noise from pixel to pixel a base rests on few pixels, whose number k the grid
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.bilateral import bilateral
+from hdrlab.core.filters.bilateral import bilateral
 from pairs import luminance
 
 

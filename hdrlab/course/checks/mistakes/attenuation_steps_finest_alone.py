@@ -1,7 +1,7 @@
 """You attenuate by the finest level alone: a soft edge of a large contrast has gentle slopes there, and
 comes through."""
 
-from hdrlab.core import pyramid
+from hdrlab.core.filters import pyramid
 from hdrlab.tonemap import fattal
 
 

@@ -3,7 +3,7 @@ coarser one again."""
 
 import numpy as np
 
-from hdrlab.core import pyramid
+from hdrlab.core.filters import pyramid
 from hdrlab.tonemap import fattal
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.core import pyramid
+from hdrlab.core.filters import pyramid
 from hdrlab.tonemap import fattal
 
 

@@ -1,7 +1,7 @@
 """You read every file as little endian; the sign of the scale says which it is, and positive is big
 endian."""
 
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 
 
 def from_bytes(data):

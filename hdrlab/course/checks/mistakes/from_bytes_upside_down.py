@@ -1,6 +1,6 @@
 """Your picture is upside down: the first row in the file is the lowest one."""
 
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 
 
 def from_bytes(data):

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.core.bilateral import bilateral
+from hdrlab.core.filters.bilateral import bilateral
 
 
 def layers(lL, *, sigma_s, sigma_r=0.4):

@@ -1,6 +1,6 @@
 """Your picture is a negative: the eigenvalues of the Laplacian are negative, 2 cos(...) - 2."""
 
-from hdrlab.core import poisson
+from hdrlab.core.filters import poisson
 
 
 def solve(divG):

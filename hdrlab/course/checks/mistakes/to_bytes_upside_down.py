@@ -1,6 +1,6 @@
 """Your picture is upside down: the rows of a PFM file run from the bottom to the top."""
 
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 
 
 def to_bytes(E):

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.core.bilateral import bilateral
+from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.course.checks.compare import Different, finite, parts, same
 
 SIGMA = {"sigma_s": 4.0, "sigma_r": 0.4}

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.course.checks.compare import Different, same
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 
 
 def drawn(rng, channels=()):

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.course.checks.compare import Different, finite, same
-from hdrlab.io import rgbe
+from hdrlab.io.maps import rgbe
 
 
 def drawn(rng):

@@ -1,9 +1,9 @@
-"""hdrlab.core.blur: the Gaussian's promises, on the lesson and on the fast one."""
+"""hdrlab.core.filters.blur: the Gaussian's promises, on the lesson and on the fast one."""
 
 import numpy as np
 import pytest
 
-from hdrlab.core import blur
+from hdrlab.core.filters import blur
 from hdrlab.fast import blur as fast
 
 BOTH = pytest.mark.parametrize("gaussian", [blur.gaussian, fast.gaussian], ids=["lesson", "fast"])

@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from hdrlab.io import pfm
+from hdrlab.io.maps import pfm
 
 RGB = np.random.default_rng(0).random((37, 21, 3)).astype(np.float32)
 GRAY = RGB[..., 0].copy()

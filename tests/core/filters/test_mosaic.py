@@ -4,7 +4,7 @@ import cv2
 import numpy as np
 import pytest
 
-from hdrlab.core import mosaic
+from hdrlab.core.filters import mosaic
 
 
 def filters(shape):

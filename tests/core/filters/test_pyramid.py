@@ -1,4 +1,4 @@
-"""hdrlab.core.pyramid: every size, both ways, as OpenCV."""
+"""hdrlab.core.filters.pyramid: every size, both ways, as OpenCV."""
 
 import cv2
 import numpy as np
@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.core import pyramid
+from hdrlab.core.filters import pyramid
 
 SHAPES = [(2, 2), (2, 3), (5, 9), (32, 31), (33, 64), (64, 65), (97, 130)]
 

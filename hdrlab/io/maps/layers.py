@@ -1,6 +1,6 @@
 """OpenEXR files of several parts: pictures of one size that belong together, each with its name.
 
-A program that knows nothing of parts sees the first: `hdrlab.io.exr` and most viewers do.
+A program that knows nothing of parts sees the first: `hdrlab.io.maps.exr` and most viewers do.
 """
 
 from collections.abc import Mapping
@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F32
-from hdrlab.io import exr
 from hdrlab.io.files import replacing
+from hdrlab.io.maps import exr
 
 CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth
 

@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.types import F32
 from hdrlab.io.files import check_size, replacing
-from hdrlab.io.rgbe_header import read_header
+from hdrlab.io.maps.rgbe_header import read_header
 
 # 2^(e - 128) / 256, of each exponent e
 SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)

@@ -1,11 +1,11 @@
-"""hdrlab.core.poisson: gradient, divergence and the solution belong together, edges and all."""
+"""hdrlab.core.filters.poisson: gradient, divergence and the solution belong together, edges and all."""
 
 import numpy as np
 import pytest
 from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import spsolve
 
-from hdrlab.core import poisson
+from hdrlab.core.filters import poisson
 
 SHAPES = [(1, 1), (1, 7), (5, 1), (2, 3), (16, 16), (33, 50), (47, 31)]
 

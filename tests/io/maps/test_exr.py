@@ -4,7 +4,7 @@ import numpy as np
 import OpenEXR
 import pytest
 
-from hdrlab.io import exr
+from hdrlab.io.maps import exr
 from hdrlab.io.radiance import read_radiance
 
 RGB = np.exp2(np.random.default_rng(0).uniform(-20, 15, (37, 21, 3))).astype(np.float32)

@@ -1,0 +1,1 @@
+"""What works on whole pictures: blur, bilateral filter, pyramids, Poisson equation, mosaics, homographies."""
