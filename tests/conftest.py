@@ -1,7 +1,10 @@
 """What the tests share: real photographs where they are at hand, small simulated ones everywhere."""
 
 import csv
+import os
+import signal
 import tempfile
+import threading
 from functools import cache
 from pathlib import Path
 
@@ -10,9 +13,11 @@ import pytest
 from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from PIL import Image
+from tiers import ALL, QUICK, TIERS, may_hold, tier_of
 
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
+from hdrlab.course.site import execute
 
 pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
@@ -21,6 +26,37 @@ SCRATCH = tempfile.TemporaryDirectory(
     prefix="hypothesis-"
 )  # it keeps notes of its own, even without a database
 set_hypothesis_home_dir(SCRATCH.name)
+
+
+def pytest_addoption(parser):
+    parser.addoption(
+        "--tier",
+        choices=[QUICK, *TIERS, ALL],
+        help="run the tests of this tier, see tests/tiers.py (quick; all where files are named)",
+    )
+
+
+def pytest_configure(config):
+    """Choose the tier, and let Ctrl-C reach what tests start, also where a script ignores it."""
+    if config.option.tier is None:
+        named = config.args_source is pytest.Config.ArgsSource.ARGS
+        config.option.tier = ALL if named else QUICK
+    if threading.current_thread() is threading.main_thread():
+        signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+def pytest_ignore_collect(collection_path, config):
+    """Leave unread what is of another tier as a whole."""
+    address = collection_path.relative_to(config.rootpath).as_posix() + "/" * collection_path.is_dir()
+    return None if may_hold(address, config.option.tier) else True
+
+
+def pytest_collection_modifyitems(config, items):
+    """Leave out the tests of other tiers."""
+    if config.option.tier != ALL:
+        others = [item for item in items if tier_of(item.nodeid) != config.option.tier]
+        config.hook.pytest_deselected(items=others)
+        items[:] = [item for item in items if tier_of(item.nodeid) == config.option.tier]
 
 
 def pytest_unconfigure():
@@ -86,3 +122,15 @@ def seven_frames(decades):
         )
 
     return shoot
+
+
+@pytest.fixture(scope="session")
+def kept(tmp_path_factory):
+    """Where executed notebooks are kept: in the folder HDRLAB_EXECUTED, or in one of these tests alone."""
+    return Path(os.environ.get("HDRLAB_EXECUTED") or tmp_path_factory.mktemp("executed"))
+
+
+@pytest.fixture(scope="session")
+def executed(kept):
+    """executed(path) -> the file of this notebook as it was run, from the top, in a kernel of its own."""
+    return lambda path: next(execute.run_steps([path], kept, jobs=1)).executed

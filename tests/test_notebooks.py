@@ -1,4 +1,4 @@
-"""What every notebook keeps to, read from its file; nbval runs them."""
+"""What every notebook keeps to, read from its file; test_notebooks_run runs them."""
 
 import ast
 import re

@@ -1,6 +1,6 @@
 """The course's site as a reader sees it: opened from its folder, with no kernel and no server.
 
-All notebooks are run for it, once for this file: that is most of its time.
+It shows the notebooks as they were run for the tests of notebooks, where these are kept (see `kept`).
 """
 
 import functools
@@ -13,6 +13,8 @@ from pathlib import Path
 
 import pytest
 from laboratory import PATIENCE, changed_by
+
+from hdrlab.course.site.pages import CACHE
 
 NOTEBOOKS = sorted(path.stem for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 OTHERS = [
@@ -27,9 +29,12 @@ pytestmark = pytest.mark.skipif(
 
 
 @pytest.fixture(scope="module")
-def site(browser, tmp_path_factory):
+def site(browser, kept, tmp_path_factory):
     """The site of all notebooks."""
     folder = tmp_path_factory.mktemp("site")
+    (folder / "site" / CACHE).mkdir(parents=True)
+    (kept / "executed").mkdir(exist_ok=True)
+    (folder / "site" / CACHE / "executed").symlink_to(kept / "executed")
     command = [sys.executable, "-m", "hdrlab", "site", "--out", str(folder / "site"), "--jobs", "2"]
     ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert ran.returncode == 0 and ran.stderr == "", ran.stderr

@@ -1,0 +1,34 @@
+"""The tests by name: `nox -l` lists them, `nox -s grading` runs one tier, `nox` the quick one.
+
+Each makes an environment of its own; `nox --no-venv` takes the one at hand.
+tests/tiers.py says which test is where.
+"""
+
+import os
+import sys
+from pathlib import Path
+
+import nox
+
+HERE = Path(__file__).parent
+sys.path.insert(0, str(HERE / "tests"))
+from tiers import QUICK, TIERS  # noqa: E402
+
+nox.options.sessions = [QUICK]
+EXTRAS = {"scenes": "test,scenes", "papers": "test,bench"}
+# in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
+TOGETHER = ("browser", "grading", "papers", "scenes", "wheel")
+
+
+def test(session: nox.Session, tier: str) -> None:
+    """Run the tests of a tier; what stands behind -- goes to pytest."""
+    if session.virtualenv.is_sandboxed:
+        session.install("--editable", f".[{EXTRAS.get(tier, 'test')}]")
+    options = ["--dist=loadscope"] if tier in TOGETHER else []
+    if results := os.environ.get("HDRLAB_RESULTS"):
+        options.append(f"--junitxml={results}/{tier}.xml")
+    session.run("python", "-m", "pytest", f"--tier={tier}", *options, *session.posargs)
+
+
+for tier in (QUICK, *TIERS):
+    nox.session(lambda session, tier=tier: test(session, tier), name=tier)

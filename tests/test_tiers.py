@@ -1,0 +1,66 @@
+"""The tiers of tests: their lists name what there is, and their report hides nothing."""
+
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import results
+from tiers import ALL, QUICK, TIERS, may_hold, tier_of
+
+ROOT = Path(__file__).parents[1]
+STARTS = [start for starts in TIERS.values() for start in starts]
+
+
+@pytest.mark.parametrize("start", STARTS)
+def test_what_a_tier_lists_is_there(start):
+    file, _, test = start.partition("::")
+    there = [ROOT / file] if file.endswith("/") else list(ROOT.glob(f"{file}*"))
+    assert there and all(path.exists() for path in there)
+    assert not test or f"\ndef {test}" in there[0].read_text(encoding="utf8")
+
+
+def test_nothing_is_of_two_tiers():
+    assert not [(one, other) for one in STARTS for other in STARTS if one != other and one.startswith(other)]
+
+
+def test_a_test_that_is_named_nowhere_is_quick_and_its_file_is_read():
+    assert tier_of("tests/core/test_blur.py::test_a") == QUICK and may_hold("tests/core/test_blur.py", QUICK)
+    assert tier_of("tests/browser/test_new.py::test_a") == "browser"
+    assert may_hold("tests/", "browser") and may_hold("tests/browser/test_new.py", "browser")
+    assert not may_hold("tests/browser/", QUICK) and may_hold("tests/browser/", ALL)
+    assert not may_hold("tests/core/", "browser")
+
+
+def test_a_file_that_holds_one_dear_test_is_read_for_both_tiers():
+    start = next(start for start in STARTS if "::" in start)
+    file, tier = start.partition("::")[0], tier_of(start)
+    assert may_hold(file, tier) and may_hold(file, QUICK) and tier != QUICK
+
+
+def test_ctrl_c_reaches_what_a_test_starts():
+    """Also where the tests themselves run in the background of a script, which ignores it."""
+    code = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ran.stdout == "True\n" and signal.getsignal(signal.SIGINT) is not signal.SIG_IGN
+
+
+REPORT = """<testsuites><testsuite>
+<testcase classname="tests.a" name="test_one" time="1.5" />
+<testcase classname="tests.a" name="test_two" time="2.5"><failure message="no">no</failure></testcase>
+<testcase classname="tests.a" name="test_three" time="0.5"><skipped message="no data" /></testcase>
+</testsuite></testsuites>"""
+
+
+def test_the_report_names_what_failed_and_the_slowest_first(tmp_path, capsys):
+    (tmp_path / "quick.xml").write_text(REPORT)
+    assert results.main(tmp_path) == 1
+    said = capsys.readouterr().out
+    assert "FAILED tests.a::test_two" in said and said.endswith("1 passed, 1 failed, 1 skipped\n")
+    assert said.index("test_two") < said.index("test_one") < said.index("test_three")
+
+
+def test_a_report_of_no_tests_is_no_success(tmp_path, capsys):
+    assert results.main(tmp_path) == 1
+    assert capsys.readouterr().out.endswith("0 passed, 0 failed, 0 skipped\n")
