@@ -11,6 +11,8 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+from hdrlab.course.sandbox.inside import system
+
 PREFIX = "hdrlab-run-"
 
 
@@ -53,14 +55,12 @@ def locked_folder() -> Iterator[Path]:
 @contextlib.contextmanager
 def locked(folder: Path, *, wait: bool = False) -> Iterator[None]:
     """Lock a folder, or raise a BlockingIOError where another process holds it."""
-    try:
-        import fcntl
-    except ImportError:  # on Windows, where nothing is locked
+    if system.fcntl is None:  # on Windows, where nothing is locked
         yield
         return
     handle = os.open(folder, os.O_RDONLY | os.O_NOFOLLOW | os.O_DIRECTORY)
     try:
-        fcntl.flock(handle, fcntl.LOCK_EX | (0 if wait else fcntl.LOCK_NB))
+        system.lock(handle, wait)
         yield
     finally:
         os.close(handle)

@@ -18,7 +18,7 @@ import pytest
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.code.names import imported
 from hdrlab.course.sandbox import contents, doctor, filters, practice, running, strict, tiers, users
-from hdrlab.course.sandbox.inside import channel, supervisor
+from hdrlab.course.sandbox.inside import channel, system
 
 IMPOLITE = "import sys; sys.modules['worker'].REFUSED.clear()\n"
 FUNCTIONS = """
@@ -391,7 +391,7 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
             "with Subject({'f': source}, tier, 60) as subject:\n"
             "    subject._running.check(); print('begun', flush=True); subject.f()\n"
         )
-        before = supervisor.children()
+        before = system.children()
         folder = tmp_path / tier
         folder.mkdir()
         environment = os.environ | {"TMPDIR": str(folder)}
@@ -404,11 +404,11 @@ def test_the_grader_that_is_killed_leaves_no_process_and_no_folder(adopted, tmp_
         grader.wait()
         grader.stdout.close()
         deadline = time.monotonic() + 10
-        while set(supervisor.children()) - set(before) and time.monotonic() < deadline:
-            for pid in set(supervisor.children()) - set(before):
+        while set(system.children()) - set(before) and time.monotonic() < deadline:
+            for pid in set(system.children()) - set(before):
                 os.waitpid(pid, os.WNOHANG)
             time.sleep(0.02)
-        assert not set(supervisor.children()) - set(before)
+        assert not set(system.children()) - set(before)
         assert not list(folder.iterdir())
 
 
@@ -475,7 +475,7 @@ def test_the_practice_tier_says_what_it_does_not_stop_and_that_is_true(tmp_path)
 
 def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
     """A full memory, a file without end, and processes that are left behind."""
-    before, name = supervisor.children(), str(tmp_path / "written")
+    before, name = system.children(), str(tmp_path / "written")
     with pytest.raises(NoAnswer, match="MemoryError"):
         alone("import numpy as np\ndef f(): return np.ones(1 << 34).sum()", "practice")
     with pytest.raises(NoAnswer, match="File too large"):
@@ -489,7 +489,7 @@ def test_the_practice_tier_stops_mistakes(tmp_path, adopted):
         assert alone(IMPOLITE + daemon, "practice") == 1
         time.sleep(0.7)
         assert Path(name).exists()
-        assert supervisor.children() == before
+        assert system.children() == before
 
 
 def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(without):

@@ -8,9 +8,7 @@ line by line into another, so that nothing is lost if this process is ended.
 import base64
 import inspect
 import json
-import os
 import re
-import signal
 from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
@@ -24,7 +22,7 @@ from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import tiers
-from hdrlab.course.sandbox.inside import supervisor
+from hdrlab.course.sandbox.inside import system
 from hdrlab.course.sandbox.running import Unavailable
 
 CALLS = 20  # of a task that are kept to recognise a mistake by
@@ -67,9 +65,7 @@ class Checking:
 
     def pytest_sessionstart(self) -> None:
         """Start the sandbox first: it gets ready while the checks are collected."""
-        # if the grader is killed, this is to end, too
-        supervisor.prctl(supervisor.DIE_WITH_PARENT, signal.SIGKILL)
-        if os.getppid() != self.job["grader"]:
+        if not system.end_with(self.job["grader"]):  # if it is killed, this is to end, too
             pytest.exit("the grader has ended")
         sources, sandbox = self.job["sources"], tiers.choose(self.job["tier"])
         subject = Subject(sources, sandbox, self.job["timeout"], self.job["modules"])

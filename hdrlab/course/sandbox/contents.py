@@ -1,4 +1,4 @@
-"""What a sandbox holds: the interpreter, the libraries it needs, numpy, scipy, and three files of ours.
+"""What a sandbox holds: the interpreter, the libraries it needs, numpy, scipy, and four files of ours.
 
 An interpreter keeps other packages beside its own modules. They are left out: `Contents.hidden` names those
 folders.
@@ -15,7 +15,7 @@ from typing import NamedTuple
 from hdrlab.course.sandbox.running import PROGRAM, packages
 
 PYTHON, PACKAGES, COURSE = "/python", "/packages", "/course"  # where they are inside
-OURS = ("supervisor.py", "worker.py", "channel.py")
+OURS = ("supervisor.py", "worker.py", "channel.py", "system.py")
 
 
 class Contents(NamedTuple):

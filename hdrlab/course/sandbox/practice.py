@@ -39,7 +39,7 @@ def launch(control: socket) -> running.Launched:
     environment |= {name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ}  # for Windows
     after = partial(shutil.rmtree, scratch, ignore_errors=True)
     try:
-        if sys.platform == "win32":
+        if hasattr(control, "share"):  # on Windows
             return running.Launched(_shared(words, environment, control, scratch), after)
         process = running.start(words, environment, control.fileno(), folder=scratch)
         return running.Launched(process, after, scratch)
@@ -53,7 +53,7 @@ def _shared(
 ) -> subprocess.Popen[bytes]:
     """Return the process of a command that is told its control on the standard input, as Windows does."""
     process = running.start(words, environment, folder=folder, stdin=subprocess.PIPE)
-    if sys.platform == "win32" and process.stdin:
-        process.stdin.write(control.share(process.pid))
+    if process.stdin:
+        process.stdin.write(control.share(process.pid))  # type: ignore[attr-defined,unused-ignore]
         process.stdin.close()
     return process

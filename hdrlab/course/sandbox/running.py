@@ -38,7 +38,7 @@ ENVIRONMENT = {
 }
 # no site-packages, no .pth, nothing from the folder it stands in
 FLAGS = ("-s", "-P", "-S", "-B", "-X", "utf8")
-PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside worker.py and channel.py, which it needs
+PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside the others that it needs
 
 
 class Unavailable(RuntimeError):

@@ -18,7 +18,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.sandbox.inside.supervisor import DIE_WITH_PARENT, prctl
+from hdrlab.course.sandbox.inside import system
 
 TICK = 0.2  # seconds between two looks at whether it is to be ended
 KILLED = 9  # the signal of those outside, such as a system that is out of memory
@@ -98,8 +98,7 @@ def _answer(
 
 def main(parent: str) -> None:
     """Read the order, do the work, and answer: the whole life of this process."""
-    prctl(DIE_WITH_PARENT, signal.SIGKILL)
-    if os.getppid() != int(parent):  # it has died meanwhile
+    if not system.end_with(int(parent)):  # it has died meanwhile
         return
     with os.fdopen(os.dup(1), "wb") as out:
         os.dup2(2, 1)  # what anything prints is no part of the answer
@@ -114,12 +113,10 @@ def main(parent: str) -> None:
 
 def _limit(limits: Mapping[str, int]) -> None:
     """Limit this process; one that has used its seconds is ended by a signal of its own, not by SIGKILL."""
-    with contextlib.suppress(ImportError):  # on Windows
-        import resource
-
-        for name, most in limits.items():
-            with contextlib.suppress(ValueError, OSError):
-                resource.setrlimit(getattr(resource, f"RLIMIT_{name}"), (most, most + (name == "CPU")))
+    for name, most in limits.items():
+        with contextlib.suppress(AttributeError, ValueError, OSError):  # Windows has no module resource
+            which = getattr(system.resource, f"RLIMIT_{name}")
+            system.resource.setrlimit(which, (most, most + (name == "CPU")))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
 
 from hdrlab.course.gallery.web.app import Gallery, application
+from hdrlab.course.sandbox.inside.system import resource
 
 CONNECTIONS = 2000
 # connections that the system hands over together, before the first of them can be refused
@@ -144,9 +145,7 @@ def connection_limit() -> int:
     ValueError
         Where there are too few for any.
     """
-    try:
-        import resource
-    except ImportError:  # on Windows there is no such limit
+    if resource is None:  # on Windows there is no such limit
         return CONNECTIONS
     around = BACKLOG + FILES
     soft, hard = resource.getrlimit(resource.RLIMIT_NOFILE)

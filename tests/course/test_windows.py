@@ -1,0 +1,108 @@
+"""Where the system has nothing that POSIX alone has, assignments are checked and graded all the same."""
+
+import ast
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+import windows
+from hats import GOOD, PLAN
+
+import hdrlab
+
+HOME = Path(hdrlab.__file__).parent
+SYSTEM = Path("course/sandbox/inside/system.py")
+POSIX = {"fcntl", "resource", "pwd", "grp", "termios", "pty", "posix", "syslog"}
+IN_A_NOTEBOOK = f"""
+from IPython.core.interactiveshell import InteractiveShell
+shell = InteractiveShell.instance()
+shell.run_cell({GOOD!r}, store_history=True)
+shell.run_cell("from hdrlab.course.notebook import check\\nfound = check('hat')", store_history=True)
+print(shell.user_ns["found"])
+"""
+lacking = pytest.mark.skipif(sys.platform != "linux", reason="takes away from Linux what others do not have")
+
+
+@pytest.fixture
+def on_windows(tmp_path):
+    """on_windows(*words) -> (exit code, stdout, stderr) of Python with these words, as if on Windows."""
+    python = tmp_path / "python"
+    python.mkdir()
+    launcher, environment = windows.build(python)
+    (tmp_path / "plan.toml").write_text(PLAN, encoding="utf8")
+    (tmp_path / "hw2.py").write_text(GOOD, encoding="utf8")
+
+    def run(*words):
+        ran = subprocess.run(
+            [launcher, *words], cwd=tmp_path, env=environment, capture_output=True, encoding="utf8"
+        )
+        return ran.returncode, ran.stdout, ran.stderr
+
+    return run
+
+
+@lacking
+def test_what_is_hidden_is_gone_and_a_launcher_stands_between(on_windows):
+    code = """if 1:
+        import importlib.util, os, signal, subprocess, sys
+        from hdrlab.course.sandbox.inside import system
+        gone = [hasattr(signal, "SIGKILL"), hasattr(os, "fork"), system.LINUX, system.fcntl, system.resource]
+        words = [sys.executable, "-c", "import os; print(os.getppid())"]
+        print(gone, os.getpid() == int(subprocess.check_output(words)))
+    """
+    assert on_windows("-c", code)[1] == "[False, False, False, None, None] False\n"
+
+
+@lacking
+def test_a_student_checks_a_function_in_a_notebook(on_windows):
+    code, out, err = on_windows("-c", IN_A_NOTEBOOK)
+    assert code == 0 and "✗" not in out and "of 10 points" in out, (out, err)
+
+
+@lacking
+def test_a_student_checks_a_file_at_the_terminal(on_windows):
+    code, out, err = on_windows("-m", "hdrlab", "check", "hw2.py", "--plan", "plan.toml")
+    assert code == 0 and "✗" not in out and "10 of 10 points" in out, (out, err)
+
+
+@lacking
+def test_an_instructor_grades_a_class_for_practice(on_windows, tmp_path):
+    (tmp_path / "in" / "ada").mkdir(parents=True)
+    (tmp_path / "in" / "ada" / "hw2.py").write_text(GOOD, encoding="utf8")
+    (tmp_path / "roster.csv").write_text("student,name\nada,Ada\n", encoding="utf8")
+    words = ("in", "--homework", "hw2", "--roster", "roster.csv", "--plan", "plan.toml", "--tier", "practice")
+    code, out, err = on_windows("-m", "hdrlab", "grade", *words, "--out", "results")
+    assert code == 0, (out, err)
+    kept = [json.loads(file.read_bytes()) for file in (tmp_path / "results").rglob("*.*.json")]
+    assert [one["score"] for one in kept] == [10.0], (out, err)
+
+
+@lacking
+def test_credit_is_refused_in_a_line_that_says_what_it_needs(on_windows):
+    code, _, err = on_windows("-m", "hdrlab", "grade", "hw2.py", "--plan", "plan.toml")
+    assert code == 2 and len(err.splitlines()) == 1 and "--tier practice" in err
+
+
+def imported(path):
+    """Return the names of the modules that a file imports anywhere."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield node.module or ""
+        elif isinstance(node, ast.Call) and ast.unparse(node.func).endswith(("import_module", "_optional")):
+            yield from (one.value for one in node.args if isinstance(one, ast.Constant))
+
+
+def test_one_module_imports_what_posix_alone_has():
+    files = [
+        path for path in HOME.rglob("*.py") if any(one in path.read_text(encoding="utf8") for one in POSIX)
+    ]
+    assert {path.relative_to(HOME) for path in files if POSIX & set(imported(path))} == {SYSTEM}
+
+
+def test_no_other_module_names_the_signal_that_windows_lacks():
+    files = [path for path in HOME.rglob("*.py") if path.relative_to(HOME) != SYSTEM]
+    assert not [path for path in files if "signal.SIGKILL" in path.read_text(encoding="utf8")]
