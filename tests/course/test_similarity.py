@@ -182,6 +182,23 @@ def test_a_broken_or_hostile_file_is_told_of_in_bounded_time_and_the_rest_compar
     assert re.search(f"<li><b>x</b>: [^\n]*{said}", page)
 
 
+def test_what_is_compared_has_no_empty_lines_in_which_copydetect_takes_a_quadratic_time():
+    text = "def hat():\n    return [" + "\n \t" * 9_000 + "1]\n"
+    assert authored.own(text, "hw2", set()) == "def hat():\n    return [\n \t1]"
+
+
+def test_the_parsers_warnings_of_what_was_handed_in_are_not_the_instructors():
+    assert authored.own("def hat(): return 1if 1else 2\n" * 2, "hw2", set()).count("1if") == 2
+
+
+def test_all_tasks_together_are_bounded_too(tmp_path):
+    names = ["gsolve", "hat", "irradiance", "update", "recover"]
+    body = "\n".join(f"    x{k} = {k}" for k in range(1_500))
+    (tmp_path / "hw2.py").write_text("\n".join(f"def {name}():\n{body}\n" for name in names))
+    work = authored.read("x", tmp_path / "hw2.py", "hw2", names)
+    assert list(work.texts) == names[:4] and "recover has more than 30,000 characters, or" in work.notes[0]
+
+
 def test_a_file_that_changes_a_thing_a_thousand_times_is_read_within_seconds():
     cell = closure.Cell("a = []\n" + "a.append(a)\n" * 1_000 + "def gsolve(): return a\n")
     begun = time.process_time()

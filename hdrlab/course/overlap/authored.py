@@ -6,6 +6,7 @@ than any homework, or nested too deep, is left out, and it is said.
 
 import ast
 import re
+import warnings
 from collections.abc import Collection, Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -16,7 +17,7 @@ from hdrlab.course.code import names
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.submission import cells_of
 
-TASK = 30_000  # characters of one task
+TASK, ALL = 30_000, 100_000  # characters of one task, and of all
 WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
 
 
@@ -55,8 +56,9 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
     texts: dict[str, str] = {}
     notes = [] if found.sources else [*found.problems, "none of the tasks can be read in it"]
     for task, text in found.sources.items():
-        if len(text) > TASK:
-            notes.append(f"{task} has more than {TASK:,} characters and is not compared")
+        if len(text) > TASK or sum(map(len, texts.values())) + len(text) > ALL:
+            over = f"{TASK:,} characters, or {ALL:,} with the tasks before it"
+            notes.append(f"{task} has more than {over}, and is not compared")
             continue
         try:
             texts[task] = own(text, homework, {*tasks} - {task})
@@ -68,9 +70,12 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
 def own(text: str, homework: str, others: Collection[str]) -> str:
     """Return the statements of a task that are neither imports, nor given, nor other tasks, by their shape.
 
-    So two texts that hold the same statements are one text, in whatever order, under whatever names.
+    So two texts that hold the same statements are one text, in whatever order, under whatever names. It has
+    no empty lines: copydetect takes a time that is quadratic in them.
     """
-    return "\n".join(sorted(_own(text, _given(homework), others), key=_shape))
+    with warnings.catch_warnings(action="ignore"):  # of the parser, which every odd number has one of
+        parts = sorted(_own(text, _given(homework), others), key=_shape)
+    return "\n".join(line for part in parts for line in part.split("\n") if line.strip())
 
 
 def _shape(part: str) -> str:
