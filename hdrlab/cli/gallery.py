@@ -54,6 +54,7 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
 
     from hdrlab.course.classroom import roster as lists
     from hdrlab.course.gallery import collect, store
+    from hdrlab.course.wording import plain
 
     students = lists.read(roster)
     hung, refused = 0, 0
@@ -68,10 +69,10 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
                 hung += 1
                 if votes:
                     said = f"{entry.team} hung another before, whose {votes} votes do not count any longer"
-                    click.echo(f"note: {source.name}: {said}", err=True)
+                    click.echo(f"note: {plain(f'{source.name}: {said}', 300)}", err=True)
             except ValueError as error:
                 refused += 1
-                click.echo(f"note: {source.name}: {error}", err=True)
+                click.echo(f"note: {plain(f'{source.name}: {error}', 300)}", err=True)
     said = f", {refused} refused" if refused else ""
     click.echo(f"{folder}: {len(students.students)} voters, {hung} artifacts hung{said}")
 

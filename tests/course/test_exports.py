@@ -259,6 +259,19 @@ def test_two_notebooks_are_one_too_many(tmp_path):
         autograder.handed_in(tmp_path)
 
 
+def test_a_notebook_in_capitals_is_handed_in_and_odd_names_are_told_as_harmless_text(tmp_path):
+    (tmp_path / "submission").mkdir()
+    (tmp_path / "submission" / "HW2.IPYNB").write_text("{}")
+    assert autograder.handed_in(tmp_path / "submission").name == "HW2.IPYNB"
+    (tmp_path / "submission" / "\x1b[2J\u202e.ipynb").write_text("{}")
+    (tmp_path / "source").mkdir()
+    (tmp_path / "source" / "settings.json").write_text('{"homework": "hw2", "secret": ""}')
+    shutil.copy(plan.PLAN, tmp_path / "source" / "plan.toml")
+    autograder.main(tmp_path)
+    said = json.loads((tmp_path / "results" / "results.json").read_text())["output"]
+    assert said.isprintable() and "expected one .ipynb file" in said
+
+
 def test_the_same_course_gives_the_same_zip(short, tmp_path):
     first, second = (next(iter(gradescope.export(short, tmp_path / name))) for name in ("a", "b"))
     assert first.read_bytes() == second.read_bytes()

@@ -123,7 +123,7 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
     small.picture(art / "team1.png")
     (art / "team1.txt").write_text("Dusk\nSeven frames.")
     (art / "eve.png").write_text("<svg/>")
-    small.picture(art / "stranger.png")
+    small.picture(art / "stranger\x1b[2J.png")
     said = [
         hdrlab("init", "g", "--closes", "2020-01-01T00:00+01:00", "--title", "Spring"),
         hdrlab("init", "g", "--closes", "2030-01-01T00:00+01:00"),
@@ -135,6 +135,7 @@ def test_a_gallery_is_made_at_the_command_line(tmp_path, hdrlab):
     ]
     assert [code for code, _ in said] == [0, 2, 0, 0, 0, 0, 2]
     assert "3 voters, 1 artifacts hung, 2 refused" in said[2][1] and "eve.png" in said[2][1]
+    assert "\x1b" not in said[2][1]
     assert "stranger" in said[2][1] and "Traceback" not in "".join(text for _, text in said)
     with open(tmp_path / "links.csv", encoding="utf-8-sig") as file:
         links = [row["link"] for row in csv.DictReader(file)]

@@ -7,6 +7,7 @@ import asyncio
 import io
 import json
 import logging
+import os
 import re
 import socket
 import sqlite3
@@ -308,6 +309,30 @@ def test_a_link_as_an_artifact(tmp_path):
     (tmp_path / "team1.png").symlink_to(tmp_path / "secret.png")
     with pytest.raises(ValueError, match="plain file"):
         pictures.prepare(tmp_path / "team1.png")
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="this system has no named pipes")
+@pytest.mark.parametrize("kind", ["link", "pipe"])
+@pytest.mark.parametrize("ending", [".png", ".zip"])
+def test_what_is_no_plain_file_is_refused_before_it_is_opened(tmp_path, kind, ending):
+    odd = tmp_path / f"ann{ending}"
+    os.mkfifo(odd) if kind == "pipe" else odd.symlink_to(handed_in(tmp_path / "other.zip"))
+    with pytest.raises(ValueError, match="expected a plain file"), collect.entry(odd, ROSTER):
+        pass
+
+
+def test_of_a_text_beside_a_picture_only_the_beginning_is_read_and_no_link_is_followed(tmp_path):
+    small.picture(tmp_path / "ann.png")
+    with open(tmp_path / "ann.txt", "w") as file:
+        file.write("Dusk\nSeven frames.")
+        file.truncate(1 << 40)  # bytes, none of which the disk holds
+    with collect.entry(tmp_path / "ann.png", ROSTER) as entry:
+        assert entry[1:3] == ("Dusk", "Seven frames.")
+    (tmp_path / "secret").write_text("A secret")
+    (tmp_path / "ann.txt").unlink()
+    (tmp_path / "ann.txt").symlink_to(tmp_path / "secret")
+    with collect.entry(tmp_path / "ann.png", ROSTER) as entry:
+        assert entry.title == "Untitled"
 
 
 def handed_in(path, students=("ann",), title="t"):

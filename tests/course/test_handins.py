@@ -135,9 +135,33 @@ def test_what_cannot_be_graded_is_noted_and_the_rest_is_found(find, tmp_path, ki
     assert found.refused["b05"] == found.notes[0] and found.notes[0].startswith("b05/hw2")
 
 
+def test_a_folder_of_very_many_files_is_one_note(find, tmp_path):
+    (tmp_path / "in" / "b05").mkdir(parents=True)
+    for k in range(handins.MOST + 1):
+        (tmp_path / "in" / "b05" / f"{k}.py").touch()
+    found = find({"b06.py": "y"})
+    assert found.notes == ("b05: expected at most 1000 files in a folder",)
+    assert set(found.handins) == {"b06"} and found.refused == {"b05": found.notes[0]}
+
+
+def test_a_file_that_its_reader_may_not_open_is_noted(find, monkeypatch):
+    real = os.access
+    monkeypatch.setattr(os, "access", lambda path, asked: "b05" not in str(path) and real(path, asked))
+    found = find({"b05.py": "x", "b06.py": "y"})
+    assert found.refused == {"b05": "b05.py: a file that cannot be read"} and set(found.handins) == {"b06"}
+
+
+def test_of_many_files_the_one_that_counts_is_read_alone(find, monkeypatch):
+    read = []
+    monkeypatch.setattr(handins, "_digest", lambda path: read.append(path.name) or "digest")
+    find({f"b05/{k}.py": "x" for k in range(9)} | {"b06.py": "y"})
+    assert read == ["8.py", "b06.py"]
+
+
 @pytest.mark.parametrize("seconds", [316_000_000_000, 1e30, -1e15])
-def test_a_time_that_no_calendar_has_is_noted(seconds):
+def test_a_time_that_no_calendar_has_is_noted(seconds, monkeypatch):
     status = SimpleNamespace(st_mode=stat.S_IFREG, st_size=1, st_mtime=seconds)
+    monkeypatch.setattr(os, "access", lambda *asked: True)
     odd = SimpleNamespace(name="b05.py", lstat=lambda: status)
     assert "before the year 10000" in handins._why_not(odd)
 

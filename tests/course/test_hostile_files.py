@@ -131,7 +131,7 @@ def test_a_file_that_can_be_read_counts_before_one_that_is_refused(tmp_path):
     hostile.sparse(tmp_path / "b1_later.ipynb")
     found = handins.find(tmp_path, ROSTER)
     assert found.handins["b1"].path.name == "b1_hw2.py"
-    assert "b1_later.ipynb: expected at most 1024 MB, got 204800" in found.notes
+    assert "b1_later.ipynb: expected at most 256 MB, got 204800" in found.notes
 
 
 def test_a_time_beyond_the_year_9999_is_told(tmp_path, monkeypatch):

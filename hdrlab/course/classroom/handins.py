@@ -6,10 +6,12 @@ and the file's own name says nothing. Of several the last that came counts.
 """
 
 import hashlib
+import os
 import stat
 import unicodedata
 from collections.abc import Iterator, Mapping
 from datetime import UTC, datetime
+from itertools import islice
 from pathlib import Path
 from typing import NamedTuple
 
@@ -18,8 +20,9 @@ from hdrlab.course.reports import sheets
 from hdrlab.course.wording import plain
 
 KINDS = (".ipynb", ".py", ".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
-# bytes of a file: what an archive may hold
-LARGEST = 1 << 30
+# bytes of a file: what an archive of one may hold
+LARGEST = 1 << 28
+MOST = 1000  # files in a folder
 NO_ROW = "the table of times has no row for it, so the file's own time counts"
 
 
@@ -77,12 +80,13 @@ def find(folder: str | Path, roster: Roster, received: Mapping[str, datetime] | 
         notes += [f"{plain(name, 80)}: {unknown}"] if unknown else []
         when = when or datetime.fromtimestamp(path.stat().st_mtime, UTC)
         students = tuple(one.id for one in teams[team])
-        fresh = Handin(team, students, path, when, _digest(path), unknown)
+        fresh = Handin(team, students, path, when, "", unknown)
         if team in handins:
             older, fresh = sorted((handins[team], fresh), key=lambda one: (one.received, one.path.name))
             notes.append(f"{plain(older.path.name, 80)}: {team} has handed in another, later")
         handins[team] = fresh
     notes += [f"{plain(name, 80)}: the table of times names it, there is no such file" for name in rows]
+    handins = {team: one._replace(digest=_digest(one.path)) for team, one in handins.items()}
     return Found(handins, tuple(notes), {team: why for team, why in refused.items() if team not in handins})
 
 
@@ -92,9 +96,12 @@ def _files(folder: Path) -> Iterator[tuple[Path, str]]:
         inside = [path]
         if path.is_dir() and not path.is_symlink():
             try:
-                inside = sorted(path.iterdir())
+                inside = sorted(islice(path.iterdir(), MOST + 1))
             except OSError:
                 yield path, "a folder that cannot be read"
+        if len(inside) > MOST:
+            yield path, f"expected at most {MOST} files in a folder"
+            continue
         yield from ((one, _why_not(one)) for one in inside if not one.name.startswith("."))
 
 
@@ -105,6 +112,8 @@ def _why_not(path: Path) -> str:
         return "a folder in a folder, which is not opened"
     if not stat.S_ISREG(found.st_mode):
         return "expected a plain file, got a link, a pipe or a device"
+    if not os.access(path, os.R_OK):
+        return "a file that cannot be read"
     if not path.name.lower().endswith(KINDS):
         return "expected a notebook, a Python file or an archive"
     if found.st_size > LARGEST:

@@ -16,6 +16,7 @@ from types import TracebackType
 from typing import NamedTuple, Protocol, Self
 
 from hdrlab.course import scratch
+from hdrlab.course.wording import plain
 from hdrlab.io.files import replacing
 
 TRIES = 3
@@ -169,7 +170,7 @@ def done_steps(pieces: Sequence[Piece], executor: Executor, folder: Path) -> Ite
     for ending in _endings(pieces, executor):
         piece, result = ending.piece, ending.result
         if result is None:
-            yield Done(piece, None, f"it ended {TRIES} times without a result: {ending.why}")
+            yield Done(piece, None, plain(f"it ended {TRIES} times without a result: {ending.why}", 400))
             continue
         write(place(folder, piece), result)
         for path in older.get(piece.owner, ()):

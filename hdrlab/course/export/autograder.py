@@ -10,6 +10,7 @@ from pathlib import Path
 from hdrlab.course import grading, plan
 from hdrlab.course.grading import Conditions
 from hdrlab.course.reports import gradebook
+from hdrlab.course.wording import plain
 
 ROOT = Path("/autograder")
 
@@ -18,10 +19,8 @@ def main(root: Path = ROOT, tier: str = "container") -> None:
     """Grade the submission below `root`, as Gradescope lays it out, and write its results."""
     try:
         data = graded(root, tier)
-    except (
-        Exception
-    ) as error:  # whatever it is, the student and the instructor are told, and the queue goes on
-        said = f"The autograder could not grade this: {type(error).__name__}: {error}"
+    except Exception as error:  # whatever it is: student and instructor are told, and the queue goes on
+        said = plain(f"The autograder could not grade this: {type(error).__name__}: {error}", 500)
         data = (json.dumps({"score": 0, "output": said, "output_format": "text"}) + "\n").encode()
     (root / "results").mkdir(exist_ok=True)
     (root / "results" / "results.json").write_bytes(data)
@@ -52,7 +51,7 @@ def handed_in(folder: Path) -> Path:
     """Return the only notebook of a folder, or else its only Python file; a link is neither."""
     files = sorted(one for one in folder.iterdir() if one.is_file() and not one.is_symlink())
     for suffix in (".ipynb", ".py"):
-        fitting = [one for one in files if one.suffix == suffix]
+        fitting = [one for one in files if one.suffix.lower() == suffix]
         if len(fitting) == 1:
             return fitting[0]
         if fitting:

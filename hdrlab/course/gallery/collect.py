@@ -22,7 +22,7 @@ from hdrlab.course.projects.project import MANIFEST
 from hdrlab.course.wording import plain
 
 TITLE, CAPTION = 60, 280  # characters
-SMALL = 1_000_000  # bytes of a text
+SMALL = 1_000_000  # bytes, or characters, of a text
 ARCHIVES = (".zip", ".tar", ".tar.gz", ".tgz", ".tar.bz2", ".tar.xz")
 NOT_THESE = (".txt", ".csv")
 
@@ -58,13 +58,16 @@ def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
     Raises
     ------
     ValueError
-        For a name that is nobody's, and an archive with a trap, without a description or an artifact.
+        For a name that is nobody's, what is no plain file, and an archive with a trap, without a description
+        or an artifact.
     """
     team = roster.owner(name or source.name)
     if team is None:
         raise ValueError(
             "expected a file, or a folder with it, that is named after a student or a team of the roster"
         )
+    if source.is_symlink() or not source.is_file():
+        raise ValueError("expected a plain file, got a link, a pipe or a device")
     if not source.name.lower().endswith(ARCHIVES):
         yield _picture(source, team)
         return
@@ -87,8 +90,10 @@ def hang(db: sqlite3.Connection, folder: Path, one: Entry, source: str = "") -> 
 
 
 def _picture(source: Path, team: str) -> Entry:
-    words = source.with_suffix(".txt")
-    text = words.read_text(encoding="utf8", errors="replace")[:SMALL] if words.is_file() else ""
+    words, text = source.with_suffix(".txt"), ""
+    if words.is_file() and not words.is_symlink():
+        with words.open(encoding="utf8", errors="replace") as file:
+            text = file.read(SMALL)  # and no more of it, however large it is
     title, _, caption = text.strip().partition("\n")
     return _described(team, title, caption, source)
 
