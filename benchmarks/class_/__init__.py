@@ -4,6 +4,8 @@ whole      all of them by two processes, and then without the hostile ones: for 
 processes  two dozen by one process, and by two; one alone keeps more than a processor busy, since it and the
            sandbox that it asks take turns, so two are less than twice as fast on two processors
 workers    the same by one, two and four workers of a Dask cluster
+mixed      sixty honest hand-ins, among every hostile one that the tests have, and without them
+costs      submissions that are to cost much, each graded alone: the worst of each kind
 books      what is done beside the grading, where all results are there: it may not grow faster than the class
 
 What fifty thousand would take is told from what one takes here, on as many processors of this kind: hours of
@@ -13,14 +15,17 @@ figures are those of `hdrlab grade` in the strict tier; see `grading`.
 """
 
 import os
+from collections import Counter
+from functools import partial
 from math import log
+from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from benchmarks.class_ import handed, judged
+from benchmarks.class_ import costs, handed, judged, mixed
 from benchmarks.class_.grading import TIMEOUT, Used, grade
 from benchmarks.class_.workers import cluster
-from benchmarks.experiments import Experiment, at_least, at_most
+from benchmarks.experiments import Experiment, along, at_least, at_most
 from hdrlab.course import plan
 from hdrlab.course.classroom import handins, journal
 from hdrlab.course.classroom import roster as lists
@@ -30,6 +35,10 @@ from hdrlab.course.reports import results
 
 COUNT, SCALE = 300, 24
 PROCESSES, WORKERS = (1, 2), (1, 2, 4)
+HONEST = 60  # among all that is hostile
+# seconds of a processor, and by the clock, that one submission may cost
+CPU, CLOCK = 60, 300
+FIGURES = {"CPU seconds": attrgetter("cpu"), "seconds": attrgetter("seconds"), "MB": attrgetter("largest")}
 BOOKS = (1200, 4800)  # more than are compared with each other
 LARGE = f"{judged.LARGE // 1000} 000"
 
@@ -106,6 +115,42 @@ def _scaling(used: list[Used], count: int, what: str, numbers: tuple[int, ...]) 
     }
 
 
+def among_hostile(folder: Path, count: int = HONEST) -> dict[str, Any]:
+    """Return how a class fares that has every kind of hostile hand-in among its own."""
+    target = folder / "with"
+    each = mixed.honest(count, target / "results")
+    others = mixed.hostile(target / "results", each[0])
+    used = grade(mixed.write(folder / "class", each, others), target, "--jobs", "2")
+    grade(handed.write(folder / "honest", each), folder / "without", "--jobs", "2")
+    return {
+        "submissions, honest and hostile": (len(each), len(others)),
+        **{f"of kind {kind}": count for kind, count in Counter(one.kind for one in others).items()},
+        "files of the honest that differ": judged.differing(target, folder / "without", each),
+        "honest ones lost": judged.lost(judged.read(target), each),
+        "hostile ones of whom nothing is said": len(mixed.untold(target, others)),
+        "minutes": used.seconds / 60,
+        "CPU seconds of one": used.cpu / (len(each) + len(others)),
+        "MB at most, together and of one process": (used.total, used.largest),
+    }
+
+
+def most_costly(folder: Path) -> dict[str, Any]:
+    """Return what the worst submission of each kind costs, and which one it is."""
+    each = list(costs.each())
+    used = along(partial(costs.cost, folder), range(len(each)), "costs")
+    found: dict[str, Any] = {
+        "CPU seconds of the worst": max(one.cpu for one in used),
+        "seconds of the worst": max(one.seconds for one in used),
+        "MB of the worst": max(one.largest for one in used),
+    }
+    for kind in dict.fromkeys(one.kind for one in each):
+        mine = [(one, what) for one, what in zip(used, each, strict=True) if what.kind == kind]
+        for name, figure in FIGURES.items():
+            value, which = max((figure(one), what.which) for one, what in mine)
+            found[f"{kind}, {name}: {which}"] = value
+    return found
+
+
 def books(folder: Path) -> dict[str, Any]:
     """Return what is done beside the grading for classes that are graded already."""
     right = handed.handed(1, folder)[0]
@@ -166,6 +211,22 @@ ROWS = (
         (SAME, at_least("processors kept busy by 2 processes", 1.6)),
     ),
     Experiment("workers", f"{SCALE} hand-ins by workers of a Dask cluster", workers, (SAME,)),
+    Experiment(
+        "mixed",
+        f"{HONEST} honest hand-ins among every hostile one that the tests have, by two processes",
+        among_hostile,
+        (
+            at_most("files of the honest that differ", 0),
+            at_most("honest ones lost", 0),
+            at_most("hostile ones of whom nothing is said", 0),
+        ),
+    ),
+    Experiment(
+        "costs",
+        "submissions that are to cost much, each alone",
+        most_costly,
+        (at_most("CPU seconds of the worst", CPU), at_most("seconds of the worst", CLOCK)),
+    ),
     Experiment(
         "books",
         "what is done beside the grading, where results are there",

@@ -102,10 +102,10 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         each = [("handout", blank), ("cut short", blank[:3000]), ("no notebook", b"hello"), ("empty", b"")]
         return [(which, ".ipynb", data) for which, data in islice(cycle(each), count)]
     if kind == "attack":
-        siege = _tests("siege")
+        siege = tests("siege")
         aims = zip(islice(cycle(siege.NAMES), count), cycle(ids), strict=False)
-        return [(name, ".py", _attack(siege.armed(name, target, PORT), id)) for name, id in aims]
-    return [(name, ".zip", trap(name)) for name in islice(cycle(_tests("traps").TRAPS), count)]
+        return [(name, ".py", attack(siege.armed(name, target, PORT), id)) for name, id in aims]
+    return [(name, ".zip", trap(name)) for name in islice(cycle(tests("traps").TRAPS), count)]
 
 
 def _right(homework: Homework) -> list[Made]:
@@ -125,7 +125,7 @@ def _filled(homework: Homework, part: Homework) -> bytes:
     return imitation.notebook(homework, imitation.texts(part)).encode()
 
 
-def _attack(text: str, task: str) -> bytes:
+def attack(text: str, task: str) -> bytes:
     """Return an attack whose function, called double, has the name of a task."""
     return re.sub(r"^def double\(x\)", f"def {task}(x=0, *_, **__)", text, flags=re.MULTILINE).encode()
 
@@ -136,12 +136,12 @@ def trap(name: str) -> bytes:
     from tempfile import TemporaryDirectory
 
     with TemporaryDirectory() as folder:
-        _tests("traps").TRAPS[name](Path(folder) / "archive")
+        tests("traps").TRAPS[name](Path(folder) / "archive")
         return (Path(folder) / "archive").read_bytes()
 
 
 @cache
-def _tests(name: str) -> ModuleType:
+def tests(name: str) -> ModuleType:
     """Return a module of the tests; `tests` is no package."""
     spec = spec_from_file_location(name, TESTS / f"{name}.py")
     assert spec is not None and spec.loader is not None

@@ -31,7 +31,7 @@ from hdrlab.course.submission import Submission
 from hdrlab.course.wording import lines
 
 PATIENCE = 10.0  # seconds for one answer
-WHOLE = 280.0  # seconds for all checks of a homework: its calls have 200, see `subject`
+WHOLE = 240.0  # seconds for all checks of a homework: its calls have 200, see `subject`
 MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
 
 

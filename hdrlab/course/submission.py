@@ -28,8 +28,8 @@ MOST_CODE = 1_000_000  # characters in all cells
 MOST_SOURCE = 900_000  # bytes of a task with all that it needs, on its way to the sandbox
 UNPACKED = Limits(total=1 << 28)  # of an archive: a notebook, and the photographs that it reads
 SECONDS, MEMORY = 2, 500 << 20  # of a processor, and bytes, to read a file in; a worked homework takes 0.1 s
-UNPACKING = 12  # seconds more for an archive
-PATIENCE = 120.0  # seconds by the clock, on a machine however busy
+UNPACKING = 3  # seconds more for an archive
+PATIENCE = 25.0  # seconds by the clock: it is read twice, and costs 300 s at most with its checks
 TOLD = 12  # problems that are told
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 

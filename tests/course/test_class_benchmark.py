@@ -1,5 +1,6 @@
 """The benchmark of a class: who is in it, what is told of it, and how processes are watched."""
 
+import ast
 import os
 import sys
 from collections import Counter
@@ -10,11 +11,12 @@ import pytest
 
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
+import hostile
 import siege
 from traps import TRAPS
 
 from benchmarks import __main__ as command
-from benchmarks.class_ import grading, handed, judged
+from benchmarks.class_ import costs, grading, handed, judged, mixed
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
 from hdrlab.course import plan
@@ -133,4 +135,44 @@ def test_a_command_that_fails_says_what_it_said():
 
 def test_the_subject_is_called_class_though_that_is_a_word_of_python():
     assert "class" in command.subjects()
-    assert [row.name for row in command.chosen("class", None)] == ["whole", "processes", "workers", "books"]
+    assert [row.name for row in command.chosen("class", None)] == [
+        *("whole", "processes", "workers", "mixed", "costs", "books")
+    ]
+
+
+def test_a_mixed_class_has_every_hostile_kind_that_the_tests_have_and_sixty_honest_ones(tmp_path):
+    each = mixed.honest(60, tmp_path)
+    assert len(each) == 60 == len({one.team for one in each}) and not any(one.hostile for one in each)
+    others = mixed.hostile(tmp_path, each[0])
+    which = {kind: {one.which for one in others if one.kind == kind} for kind in {one.kind for one in others}}
+    taken = which.pop("taken")
+    kinds = {"code": "CODE", "text": "TEXTS", "file": "FILES", "name": "NAMES", "odd": "ODD"}
+    expected = {kind: set(getattr(hostile, name)) for kind, name in kinds.items()}
+    assert which == {**expected, "attack": set(siege.NAMES), "trap": set(TRAPS)}
+    assert len(others) >= 120 and each[0].file in taken
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there are names that this system cannot write")
+def test_a_mixed_class_is_written_with_its_roster_and_who_is_not_told_of_is_found(tmp_path):
+    each = mixed.honest(2, tmp_path)
+    kinds = {one.kind: one for one in mixed.hostile(tmp_path, each[0])}
+    others = list(kinds.values())
+    folder = mixed.write(tmp_path / "class", each, others)
+    assert set(read(folder / "roster.csv").teams()) == {one.team for one in each} | {
+        one.student for one in others
+    }
+    names = [os.fsdecode(path.name) for path in (folder / "submissions").iterdir()]
+    assert all(any(name.startswith(one.student) for name in names) for one in others)
+    (tmp_path / "out" / "results").mkdir(parents=True)
+    (tmp_path / "out" / "results" / f"{others[0].student}.0123.json").write_text("{}")
+    rows = [(one.student, "refused" if one is others[1] else "") for one in others]
+    sheets.write_csv(tmp_path / "out" / "gradebook.csv", ("student", "note"), rows)
+    assert mixed.untold(tmp_path / "out", others) == others[2:]
+
+
+def test_what_is_to_cost_much_is_python_for_all_tasks_and_has_names_of_its_own():
+    each = list(costs.each())
+    assert len({(one.kind, one.which) for one in each}) == len(each) > 30
+    for one in each:
+        if one.kind == "code":
+            assert {node.name for node in ast.parse(one.data()).body if hasattr(node, "name")} == HW2

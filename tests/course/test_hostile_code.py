@@ -94,7 +94,7 @@ def test_the_processor_of_a_submission_is_used_up_once_and_it_is_said(strict):
             subject._running.clear()
             subject._running.left = min(subject._running.left, 0.0)  # a busy machine may not have used it
     assert said[0] == "hat took longer than 0.3 s"
-    assert said[1] == "hat: the 1.35 s of a processor for a whole submission are used up"
+    assert said[1] == "hat: the 1.2 s of a processor for a whole submission are used up"
 
 
 def test_a_process_that_reaches_the_limit_of_its_processor_is_late_and_not_killed(strict):

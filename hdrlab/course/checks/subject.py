@@ -23,7 +23,7 @@ TIMEOUT = 10.0  # seconds of a call
 OUTPUT = 1 << 16  # characters of a check that are kept of what was printed
 REMEMBERED = 1 << 23  # bytes of a check's answers that are kept in `calls`
 CHECK, WHOLE = 3, 20  # how much longer than a call one check may take, and all of a submission's
-PROCESSOR = 4.5  # the same, of a processor's time for all of a submission's calls
+PROCESSOR = 4.0  # the same, of a processor's time for all of a submission's calls
 SETTLE = 1.0  # seconds for a process to end that has closed its link
 KILLED = 9  # the signal that ends a process from outside; no tier for credit lets a function send it
 
@@ -61,7 +61,7 @@ class Subject:
         Where they run, from `hdrlab.course.sandbox.tiers.choose`.
     timeout : float
         Seconds that a call may take, with the first one's running of the source. All calls of a check may
-        take three times as long, and all of a submission twenty times, of a processor 4.5 times.
+        take three times as long, and all of a submission twenty times, of a processor four times.
     modules : sequence of str
         What the sources import of numpy and scipy.
 

@@ -1,0 +1,99 @@
+"""Every kind of hostile hand-in that the tests have, each by a student of its own, beside an honest class.
+
+attack  a file of tests/attacks in place of a function
+trap    an archive of tests/traps.py
+code    a function that takes time, memory or patience    } of tests/hostile.py
+text    what breaks a page, a terminal or a table         }
+file    a notebook or a Python file that is hard to read  }
+name    a file's name that is no text, or no honest one   }
+odd     what is no file, or has an odd size               }
+taken   another's file name in one's own folder, and that of the table of times
+"""
+
+import os
+from collections.abc import Callable, Iterator
+from functools import partial
+from pathlib import Path
+from typing import NamedTuple
+
+from benchmarks.class_ import handed
+from benchmarks.class_.handed import Handed
+from hdrlab.course import plan
+from hdrlab.course.reports import sheets
+
+Put = Callable[[Path, str], object]  # into a folder, for a student
+
+
+class Hostile(NamedTuple):
+    """What a hostile student hands in: who, of which kind and which one of it, and how it is put there."""
+
+    student: str
+    kind: str
+    which: str
+    put: Put
+
+
+def honest(count: int, target: Path) -> list[Handed]:
+    """Return so many hand-ins, right, wrong, half done and blank, without the hostile ones of `handed`."""
+    return [one for one in handed.handed(2 * count, target) if not one.hostile][:count]
+
+
+def hostile(target: Path, victim: Handed) -> list[Hostile]:
+    """Return a hand-in of each kind and sort; attacks look around in `target`, names take the victim's."""
+    return [Hostile(f"x{k:03d}", *one) for k, one in enumerate(_each(target, victim))]
+
+
+def _each(target: Path, victim: Handed) -> Iterator[tuple[str, str, Put]]:
+    bad, siege, traps = (handed.tests(name) for name in ("hostile", "siege", "traps"))
+    tasks = [task.id for task in plan.read().homeworks["hw2"].tasks]
+    for k, name in enumerate(siege.NAMES):
+        text = handed.attack(siege.armed(name, target, handed.PORT), tasks[k % len(tasks)])
+        yield "attack", name, partial(_put, ".py", text)
+    for name in traps.TRAPS:
+        yield "trap", name, partial(_put, ".zip", handed.trap(name))
+    for kind, each in (("code", bad.CODE), ("text", bad.TEXTS)):
+        yield from ((kind, name, partial(_put, ".py", text.encode())) for name, text in each.items())
+    for name, (ending, made) in bad.FILES.items():
+        yield "file", name, partial(_put, ending, made())
+    for name, ending in bad.NAMES.items():
+        yield "name", name, partial(_name, ending, bad.HAT.encode())
+    for name, (ending, made) in bad.ODD.items():
+        yield "odd", name, partial(_odd, ending, made)
+    for name in (victim.file, victim.file.upper(), f"{victim.team}.py"):
+        yield "taken", name, partial(_inside, name, bad.HAT.encode())
+
+
+def _put(ending: str, data: bytes, folder: Path, student: str) -> None:
+    (folder / f"{student}_hw2{ending}").write_bytes(data)
+
+
+def _name(ending: bytes, data: bytes, folder: Path, student: str) -> None:
+    with open(os.fsencode(folder / student) + ending, "wb") as file:
+        file.write(data)
+
+
+def _odd(ending: str, made: Callable[[Path], object], folder: Path, student: str) -> None:
+    made(folder / f"{student}_hw2{ending}")
+
+
+def _inside(name: str, data: bytes, folder: Path, student: str) -> None:
+    (folder / student).mkdir()
+    (folder / student / name).write_bytes(data)
+
+
+def write(folder: Path, each: list[Handed], others: list[Hostile]) -> Path:
+    """Write an honest class with others among it: their files, and their lines in the roster."""
+    handed.write(folder, each)
+    for one in others:
+        one.put(folder / "submissions", one.student)
+    rows = [tuple(row.values()) for row in sheets.read_csv(folder / "roster.csv")]
+    names = [(one.student, f"Student {one.student}", "") for one in others]
+    sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), [*rows, *names])
+    return folder
+
+
+def untold(out: Path, others: list[Hostile]) -> list[Hostile]:
+    """Return those of whom a gradebook says neither points nor why there are none."""
+    rows = {row["student"]: row for row in sheets.read_csv(out / "gradebook.csv")}
+    there = {file.name.partition(".")[0] for file in (out / "results").glob("*.json")}
+    return [one for one in others if one.student not in there and not rows[one.student]["note"]]
