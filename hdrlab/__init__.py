@@ -32,25 +32,22 @@ Steps, sliders, plots                  show.widgets.play, show.widgets.tune, sho
 Chapters are loaded when they are first used: `import hdrlab` costs nothing, and `hdrlab.tonemap` works.
 """
 
-import lazy_loader
+import importlib
+from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 
-CHAPTERS = [
-    "align",
-    "beyond",
-    "calibration",
-    "capture",
-    "core",
-    "diagnostics",
-    "enhance",
-    "fast",
-    "io",
-    "pipeline",
-    "radiance",
-    "response",
-    "scenes",
-    "show",
-    "tonemap",
-]
-__getattr__, __dir__, __all__ = lazy_loader.attach(__name__, submodules=CHAPTERS)
+CHAPTERS = (
+    *("align", "beyond", "calibration", "capture", "core", "diagnostics", "enhance", "fast", "io"),
+    *("pipeline", "radiance", "response", "scenes", "show", "tonemap"),
+)
+
+
+def __getattr__(name: str) -> Any:
+    if name in CHAPTERS:
+        return importlib.import_module(f"hdrlab.{name}")
+    raise AttributeError(f"module 'hdrlab' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *CHAPTERS]

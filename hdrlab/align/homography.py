@@ -20,12 +20,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
-from skimage.feature import SIFT, match_descriptors
-from skimage.measure import ransac
-from skimage.transform import ProjectiveTransform
 
 from hdrlab.align import light
 from hdrlab.core.filters import warp
+from hdrlab.core.optional import skimage_feature, skimage_measure
+from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.types import F32, F64, Mask
 
 # pixels of the level where points are looked for, at most
@@ -65,7 +64,7 @@ def match_points(X: F32) -> F64:
     """Return the matches (2, n, 2), (x, y), of `moving` and of `fixed`: alike, and nothing else as alike."""
     found = []
     for x in (X[1], X[0]):
-        sift = SIFT()
+        sift = skimage_feature.SIFT()
         try:
             sift.detect_and_extract(detail(x))
         except RuntimeError:  # scikit-image's word for no point at all
@@ -74,7 +73,7 @@ def match_points(X: F32) -> F64:
         points, descriptors = np.asarray(sift.keypoints), np.asarray(sift.descriptors)
         found.append((points[largest, ::-1].astype(float), descriptors[largest]))
     (q, one), (p, other) = found
-    both = match_descriptors(one, other, max_ratio=0.8, cross_check=True)
+    both = skimage_feature.match_descriptors(one, other, max_ratio=0.8, cross_check=True)
     return np.stack([q[both[:, 0]], p[both[:, 1]]])
 
 
@@ -82,8 +81,9 @@ def consensus(points: F64) -> tuple[F64, Mask]:
     """Return the H that most matches agree with, and which [Fischler and Bolles 1981]; else the identity."""
     if points.shape[1] < ENOUGH:
         return np.eye(3), np.zeros(points.shape[1], bool)
-    model, agree = ransac(
-        tuple(points), ProjectiveTransform, 4, INLIER, max_trials=TRIES, rng=np.random.default_rng(0)
+    homography = transform.ProjectiveTransform
+    model, agree = skimage_measure.ransac(
+        tuple(points), homography, 4, INLIER, max_trials=TRIES, rng=np.random.default_rng(0)
     )
     if model is None or agree is None or agree.sum() < ENOUGH:
         return np.eye(3), np.zeros(points.shape[1], bool)

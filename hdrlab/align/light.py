@@ -24,9 +24,9 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter, map_coordinates
-from skimage.transform import downscale_local_mean
 
 from hdrlab.core.filters import warp
+from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F32, F64, Array, Mask
 
@@ -73,7 +73,8 @@ def pyramid(X: F32, kept: Mask) -> list[F32]:
     h, w = (side // 2 * 2 for side in X.shape[1:])
     if min(h, w) < 2 * SMALLEST:
         return [smooth]
-    X, share = (downscale_local_mean(x[:, :h, :w], (1, 2, 2)) for x in (X, kept.astype(np.float32)))
+    halve = transform.downscale_local_mean
+    X, share = (halve(x[:, :h, :w], (1, 2, 2)) for x in (X, kept.astype(np.float32)))
     return [smooth, *pyramid(X, share > 0.7)]
 
 

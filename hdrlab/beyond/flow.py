@@ -12,8 +12,8 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.ndimage import map_coordinates
-from skimage.registration import optical_flow_tvl1
 
+from hdrlab.core.optional import skimage_registration
 from hdrlab.core.types import F32, Mask
 
 Flow = Callable[[F32, F32], F32]
@@ -30,7 +30,7 @@ def tvl1(a: F32, b: F32) -> F32:
     """
     if min(a.shape) < 16:
         return np.zeros((2, *a.shape), np.float32)
-    return optical_flow_tvl1(a, b).astype(np.float32)
+    return skimage_registration.optical_flow_tvl1(a, b).astype(np.float32)
 
 
 def warp(f: F32, u: F32) -> F32:

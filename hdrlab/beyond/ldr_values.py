@@ -12,9 +12,9 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from skimage.transform import resize
 
 from hdrlab.core.arrays import as_response, as_stack, as_times, levels
+from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.types import F32, F64, Array, Mask
 
 GAMMA = 2.2
@@ -80,7 +80,8 @@ def resize_picture(picture: Array, shape: tuple[int, int]) -> F32:
     """Return a picture (h, w, C) at another size: blurred first, where it is made smaller."""
     if picture.shape[:2] == shape:
         return picture.astype(np.float32)
-    return resize(picture.astype(np.float32), shape, order=1, anti_aliasing=shape[0] < picture.shape[0])
+    smaller = shape[0] < picture.shape[0]
+    return transform.resize(picture.astype(np.float32), shape, order=1, anti_aliasing=smaller)
 
 
 def look_up_levels(table: F32, Z: Array) -> F32:

@@ -23,11 +23,11 @@ a chart passes its own R.
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.interpolate import PchipInterpolator
-from skimage.draw import polygon
 
 from hdrlab.calibration import joining
 from hdrlab.calibration.blends import TABLE_SIZE, InverseResponse, make_blend, normalize
 from hdrlab.core.arrays import as_stack, as_times, describe, levels
+from hdrlab.core.optional import skimage_draw
 from hdrlab.core.types import F64
 
 ROWS, COLUMNS = 4, 6
@@ -131,7 +131,7 @@ def read_patches(
     for row, column in np.ndindex(rows, columns):
         core_corners = np.array([column, row]) * (1 + gap) + 0.5 + core * (UNIT_SQUARE - 0.5)
         x, y, w = H @ np.vstack([core_corners.T, np.ones(4)])
-        pixels = stack[0][polygon(y / w, x / w, shape)]
+        pixels = stack[0][skimage_draw.polygon(y / w, x / w, shape)]
         if len(pixels) == 0:
             raise ValueError("expected patches of a few pixels at least, one holds none: check the corners")
         M[row, column] = pixels.mean(axis=0) / (levels(stack) - 1)

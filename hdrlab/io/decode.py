@@ -12,11 +12,10 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import imagecodecs
 import numpy as np
-import tifffile
 from PIL import ExifTags, Image
 
+from hdrlab.core.optional import imagecodecs, tifffile
 from hdrlab.core.types import Array
 from hdrlab.io import raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
@@ -84,6 +83,8 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
         target = out if header.orientation == 1 else None
         try:
             pixels = UPRIGHT[header.orientation](DECODERS[header.kind](data, target))
+        except ModuleNotFoundError:  # no codec: the file may be good
+            raise
         except Exception as error:  # on damaged files the codecs raise what they like
             raise ValueError(f"{header.path}: it is cut short or damaged ({error})") from None
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
@@ -97,11 +98,17 @@ def _jpeg(data: bytes, out: Array | None) -> Array:
     # libjpeg fills what is missing with gray and only warns; a marker cannot stand inside coded pixels
     if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
         raise ValueError("no end of image after its last scan")
-    return imagecodecs.jpeg8_decode(data, out=out)
+    return imagecodecs.jpeg8_decode(data, out=out) if imagecodecs else _pillow(data)
 
 
 def _png(data: bytes, out: Array | None) -> Array:
-    return imagecodecs.png_decode(data, out=out)
+    return imagecodecs.png_decode(data, out=out) if imagecodecs or data[24] > 8 else _pillow(data)
+
+
+def _pillow(data: bytes) -> Array:
+    """Decode 8 bits a channel where imagecodecs is not installed."""
+    with Image.open(io.BytesIO(data), formats=("JPEG", "PNG")) as image:
+        return np.asarray(image)
 
 
 def _tiff(data: bytes, out: Array | None) -> Array:
@@ -143,8 +150,9 @@ def _look_pillow(path: Path, head: bytes) -> Looks:
 
 def _look_tiff(path: Path) -> Looks:
     """Return what is stated by the first page of a TIFF file."""
+    open_tiff = tifffile.TiffFile
     try:
-        with tifffile.TiffFile(path) as file:
+        with open_tiff(path) as file:
             page = file.pages.first
             shape, dtype = (int(page.imagelength), int(page.imagewidth)), page.dtype
             kind = str(getattr(page.photometric, "name", page.photometric))

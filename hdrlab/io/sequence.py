@@ -14,9 +14,9 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any, cast
 
-import imageio.v3 as iio
 import numpy as np
 
+from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.core.types import F32, Array
 from hdrlab.io import photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, replacing

@@ -6,9 +6,10 @@ values  any shape, finite: radiance, for a script to compute with
 
 import base64
 
-import imageio.v3 as iio
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from hdrlab.core.optional import imageio_v3 as iio
 
 Image = NDArray[np.uint8]
 

@@ -13,9 +13,9 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import linprog
-from skimage.transform import warp
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.types import F64, Array
 
 # pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has sides, too
@@ -171,5 +171,6 @@ def before(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
 def read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
     """Return the picture (h, w) whose pixel p is `image` (H, W) at H p, interpolated to this order."""
     H, size = np.asarray(H, float), shape[:2]
-    found = warp(image, H, output_shape=size, order=order, mode="edge", clip=False, preserve_range=True)
+    knobs = {"order": order, "mode": "edge", "clip": False, "preserve_range": True}
+    found = transform.warp(image, H, output_shape=size, **knobs)
     return np.asarray(found)

@@ -12,10 +12,10 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-import OpenEXR
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance
+from hdrlab.core.optional import OpenEXR
 from hdrlab.core.types import F32, Array
 from hdrlab.io.files import check_size, replacing
 
@@ -151,11 +151,12 @@ def parts(
         magic = start.read(4)
     if magic != b"v/1\x01":
         raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
-    printed = io.StringIO()  # the module prints what is wrong with a part, and leaves the part out
+    # the module prints what is wrong with a part, and leaves the part out
+    open_parts, printed = OpenEXR.File, io.StringIO()
     try:
         with (
             contextlib.redirect_stdout(printed),
-            OpenEXR.File(str(path), separate_channels, header_only) as file,
+            open_parts(str(path), separate_channels, header_only) as file,
         ):
             found = []
             for part in file.parts[:count]:

@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-import OpenEXR
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.optional import OpenEXR
 from hdrlab.core.types import F32
 from hdrlab.io.files import replacing
 from hdrlab.io.maps import exr

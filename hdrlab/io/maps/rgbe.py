@@ -13,11 +13,11 @@ from collections.abc import Sequence
 from pathlib import Path
 from textwrap import wrap
 
-import imagecodecs
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance
+from hdrlab.core.optional import imagecodecs
 from hdrlab.core.types import F32
 from hdrlab.io.files import check_size, replacing
 from hdrlab.io.maps.rgbe_header import read_header

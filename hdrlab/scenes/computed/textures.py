@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
-from skimage import data
-from skimage.transform import pyramid_gaussian
 
 from hdrlab.core.colour import decode_srgb
+from hdrlab.core.optional import skimage_data as data
+from hdrlab.core.optional import skimage_transform as transform
 
 Points = NDArray[np.floating[Any]]
 
@@ -41,7 +41,7 @@ def texture(name: str) -> tuple[Points, ...]:
     if name == "brick":
         picture = straighten(picture)
     rho = 0.02 + 0.9 * decode_srgb(picture)  # no paint is quite black, and none quite white
-    return tuple(level.astype(np.float32) for level in pyramid_gaussian(rho, channel_axis=-1))
+    return tuple(level.astype(np.float32) for level in transform.pyramid_gaussian(rho, channel_axis=-1))
 
 
 def look_up(name: str, u: Points, v: Points, w: Points) -> Points:

@@ -1,0 +1,40 @@
+"""Packages that a part of hdrlab needs and the rest does without: imported when something of them is used.
+
+`from hdrlab.core.optional import skimage_transform` stands for the module skimage.transform.
+
+    >>> from hdrlab.core.optional import scipy_fft, cooking
+    >>> bool(scipy_fft), scipy_fft.next_fast_len(13), bool(cooking)
+    (True, 14, False)
+    >>> cooking.stir()
+    Traceback (most recent call last):
+    ModuleNotFoundError: this part of hdrlab needs cooking: pip install cooking
+"""
+
+from importlib import import_module
+from importlib.util import find_spec
+from typing import Any
+
+PACKAGES = {"skimage": "scikit-image"}  # where pip knows a module under another name
+
+
+class OptionalModule:
+    """A module that is there, or says what to install when something of it is used."""
+
+    def __init__(self, name: str) -> None:
+        self._name, self._root = name, name.partition(".")[0]
+
+    def __bool__(self) -> bool:
+        return find_spec(self._root) is not None
+
+    def __getattr__(self, attribute: str) -> Any:
+        if not self:
+            package = PACKAGES.get(self._root, self._root)
+            why = f"this part of hdrlab needs {package}: pip install {package}"
+            raise ModuleNotFoundError(why, name=self._root)
+        return getattr(import_module(self._name), attribute)
+
+
+def __getattr__(name: str) -> OptionalModule:
+    if name.startswith("_"):
+        raise AttributeError(name)
+    return OptionalModule(name.replace("_", "."))
