@@ -70,8 +70,9 @@ pictures.picture(
 #   + \sum_{z=1}^{n-2} \bigl\{\lambda\, w(z)\,[\,g(z-1) - 2 g(z) + g(z+1)\,] \bigr\}^2.$$
 #
 # Each term is a row of a matrix $A$ with $n + N$ columns, first $g$, then $\ln E$; one further row says
-# $g(n/2) = 0$. That makes $NP + 1 + n - 2$ rows. `np.linalg.lstsq` does the rest. $\lambda$ is called
-# `smoothness`, and $n$ is `len(w)`.
+# $g(n/2) = 0$. That makes $NP + 1 + n - 2$ rows. `np.linalg.lstsq` does the rest; a solver that iterates,
+# like `lsqr`, stops far too early by default: give it `atol=btol=1e-12`, `conlim=0` and `iter_lim=50_000`.
+# $\lambda$ is called `smoothness`, and $n$ is `len(w)`.
 
 # %% task="gsolve"
 # Return g and lE that minimise the sum of squares: the curve, and each sample's ln irradiance.
@@ -140,8 +141,9 @@ pictures.picture(ax, alt="The curve after the last iteration winds about the tru
 #
 # $$\varepsilon = \sum_q \sum_p \bigl[\, f^{-1}(M_{p,q}) - R_q\, f^{-1}(M_{p,q+1}) \,\bigr]^2$$
 #
-# is least squares in the $c_k$; then each $R_q$ is the quotient of the sums of $f^{-1}$ over the two frames;
-# and so on, until $f^{-1}$ changes by less than `eps`.
+# is least squares in the $c_k$; then each $R_q$ is the quotient of the sums of $f^{-1}$ over the two frames
+# (the paper takes the mean of quotients, to which dark pixels add mostly noise); and so on, until $f^{-1}$
+# changes by less than `eps`. The sum begins with $k = 1$, so no light is level 0.
 #
 # `images` are `(P, H, W[, 3])` bytes. Choose samples that both frames see well, between 0.05 and 0.98.
 # Return $g = \ln f^{-1}$, `(256,)` or `(256, 3)`, rising, with $g(128) = 0$ in each channel. Knobs that

@@ -84,10 +84,11 @@ def test_rough_times_are_corrected(subject, rng):
 
     Alternate: coefficients, ratios, coefficients, until f^-1 changes by less than eps.
     """
-    taken = photographs(rng, "linear", frames=4)
-    rough = taken.times * 1.1 ** np.arange(4)  # each a tenth more than it says
-    g = asked(subject, taken.images, rough, order=3)
-    same_curve(g, "linear", 0.015)
+    for frame, factor in ((1, 1.3), (2, 1 / 1.3)):
+        taken = photographs(rng, "linear", frames=4)
+        rough = taken.times.copy()
+        rough[frame] *= factor  # of one frame in the middle; an error a stop could not be seen
+        same_curve(asked(subject, taken.images, rough, order=3), "linear", 0.015)
 
 
 @pytest.mark.points(4, needs="test_the_curve_of_a_camera_comes_out")
