@@ -47,8 +47,8 @@ pictures.picture(
 #
 # `images` are `(P, H, W[, 3])` bytes, `times` `(P,)` seconds, `g` `(256,)` or one column for each channel,
 # `w` `(256,)`, the hat where none is given. Return $E$ `(H, W[, 3])`. Where all weights are zero the
-# mean is undefined; the next task has an answer. (The library also drops a frame for all channels of a
-# pixel where one is clipped. No check asks for it.)
+# mean is undefined; the next task has an answer, and no check of this one looks there. (The library also
+# drops a frame for all channels of a pixel where one is clipped. No check asks for that either.)
 
 # %% task="merge"
 # Return the radiance map E: the mean of the logarithms, weighted, over the photographs.

@@ -214,6 +214,7 @@ def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
         whole = Fraction(each[0]["points"]) * worth[task] / (shares[task] or 1)
         missing = failed.get((task, each[0]["needs"]))
         needs = f"It holds, and earns its points where this holds, too: {missing}" if missing else ""
+        notes = lines(endings[task, name, hidden][0].get("message", ""), MESSAGE)
         yield Check(
             task=task,
             name=name,
@@ -221,7 +222,7 @@ def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Che
             points=Fraction() if broken or missing else whole,
             max_points=whole,
             outcome=broken[0]["outcome"] if broken else "holds",
-            message=lines(broken[0]["message"], MESSAGE) if broken else needs,
+            message=lines(broken[0]["message"], MESSAGE) if broken else needs or notes,
             hints=tuple(each[0]["hints"]),
             drawing=broken[0].get("drawing", Drawing()) if broken else Drawing(),
             said=lines((broken or endings[task, name, hidden])[0]["said"], SAID),

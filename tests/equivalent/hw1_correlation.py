@@ -80,7 +80,7 @@ def exclusion(Y, t):
 
 def threshold(h, q):
     codes = np.repeat(np.arange(len(h)), h)  # every pixel's code, in order
-    return codes[int(np.ceil(q * len(codes) - 1e-9)) - 1]
+    return codes[np.ceil(np.asarray(q) * len(codes) - 1e-9).astype(int) - 1]
 
 
 # %% task="count"

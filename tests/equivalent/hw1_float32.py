@@ -31,7 +31,7 @@ def count(scene, usable, overlap):
 
 def threshold(h, q):
     share = np.cumsum(h, dtype=float) / np.sum(h)
-    return f32(np.argmax(share >= q - 1e-12))
+    return np.argmax(share >= np.asarray(q)[..., None] - 1e-12, axis=-1).astype(f32)
 
 
 # %% task="exclusion"

@@ -36,6 +36,8 @@ def count(scene, usable, overlap):
 
 
 def threshold(h, q):
+    if np.ndim(q):
+        return [threshold(h, one) for one in q]
     total, below = sum(int(n) for n in h), 0
     for code, n in enumerate(h):
         below += int(n)

@@ -15,6 +15,8 @@ from numpy.typing import NDArray
 
 Array = NDArray[Any]
 Kind = Literal["image", "curve", "values"]
+# of the check that runs: forms that were accepted, though the sheet asks for another
+notes: list[str] = []
 
 
 class Different(AssertionError):
@@ -31,12 +33,36 @@ def numbers(came: Any, *, what: str = "the answer") -> Array:
     """Return an answer as an array of numbers, or raise Different that says what came instead."""
     if came is None:
         raise Different(f"{what}: expected numbers, and nothing came (None)")
+    if isinstance(came, tuple | list):
+        came = as_listed(came, what)
     if isinstance(came, tuple | list | str | bytes | dict):
         raise Different(f"{what}: expected one array of numbers, got {_named(came)}")
     array = np.asarray(came)
     if array.dtype.kind not in "biuf":
         raise Different(f"{what}: expected real numbers, got dtype {array.dtype}")
     return array
+
+
+def as_listed(came: Any, what: str = "the answer") -> Any:
+    """Return a list of numbers, or of lists of them, as an array; what is no such list as it is."""
+    try:
+        array = np.array(came)
+    except ValueError:  # ragged, or of no numbers
+        return came
+    if not array.size or array.dtype.kind not in "biuf":
+        return came
+    notes.append(f"{what}: {_named(came)} was taken for an array of shape {array.shape}")
+    return array
+
+
+def as_shape(array: Array, shape: tuple[int, ...], what: str = "the answer") -> Array:
+    """Return an array of that shape if its own differs by axes of length 1 alone, or raise Different."""
+    if array.shape == shape:
+        return array
+    if [n for n in array.shape if n > 1] != [n for n in shape if n > 1] or not array.size:
+        raise Different(f"{what}: expected shape {shape}, got shape {array.shape}")
+    notes.append(f"{what}: shape {array.shape} was taken for {shape}")
+    return array.reshape(shape)
 
 
 def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
@@ -76,9 +102,7 @@ def same(
     """
     wanted = np.asarray(expected)
     kind = "image" if picture else kind or ("curve" if wanted.ndim == 1 and wanted.size > 8 else "values")
-    array = numbers(came, what=what)
-    if array.shape != wanted.shape:
-        raise Different(f"{what}: expected shape {wanted.shape}, got shape {array.shape}")
+    array = as_shape(numbers(came, what=what), wanted.shape, what)
     asked = np.ones(wanted.shape, bool) if where is None else np.broadcast_to(where, wanted.shape)
     values, truth = array.astype(np.float64), wanted.astype(np.float64)
     unknown = np.isnan(truth)
@@ -103,9 +127,7 @@ def same(
 
 def finite(came: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Array:
     """Return an answer of which only the shape is known beforehand, if it is finite, or raise Different."""
-    array = numbers(came, what=what)
-    if array.shape != shape:
-        raise Different(f"{what}: expected shape {shape}, got shape {array.shape}")
+    array = as_shape(numbers(came, what=what), shape, what)
     _require_finite(array.astype(np.float64), what)
     return array
 

@@ -19,7 +19,7 @@ import numpy as np
 
 from hdrlab.course import plan
 from hdrlab.course.checks import MISTAKES
-from hdrlab.course.checks.compare import plain
+from hdrlab.course.checks.compare import as_listed, plain
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
@@ -109,9 +109,10 @@ def difference(a: Any, b: Any) -> float:
         return max((difference(one, other) for one, other in zip(a, b, strict=True)), default=0.0)
     if a is None or b is None or isinstance(b, bytes | str):
         return 0.0 if type(a) is type(b) and a == b else MOST
+    a = as_listed(a) if isinstance(a, tuple | list) else a
     if isinstance(a, tuple | list | dict):  # which may be ragged
         return MOST
-    a, b = np.asarray(a), np.asarray(b)
+    a, b = np.asarray(a).squeeze(), np.asarray(b).squeeze()
     if a.shape != b.shape or a.dtype.kind not in "biuf" or b.dtype.kind not in "biuf":
         return MOST
     a, b = a.astype(np.float64), b.astype(np.float64)

@@ -77,6 +77,7 @@ class Checking:
         if _task(request.node) not in self.job["sources"]:
             return Missing()
         self.submission.fresh()
+        compare.notes.clear()
         return self.submission
 
     @pytest.fixture
@@ -119,7 +120,8 @@ class Checking:
         if isinstance(raised, Unavailable):  # nothing can be said of the submission
             return self._write(unavailable=str(raised))
         if raised is None:
-            return self._write(ended=_id(item), outcome="holds", said=said)
+            notes = "\n".join(dict.fromkeys(compare.notes))[:LONGEST]
+            return self._write(ended=_id(item), outcome="holds", message=notes, said=said)
         if not self._is_hidden(item):
             self.failed.add(_task(item))
         kind = raised.kind if isinstance(raised, NoAnswer) else ""

@@ -9,10 +9,22 @@ from hdrlab.tonemap import ward
 
 
 def drawn(rng, bins=50):
-    """Return h (bins,), db and D: a scene with two peaks, of more range than the display has."""
-    b = np.arange(bins)
-    h = 3 + 400 * np.exp(-(((b - rng.integers(8, 20)) / 2.5) ** 2)) + 150 * np.exp(-(((b - 36) / 4) ** 2))
-    return np.round(h + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24)), float(np.log(100))
+    """Return h (bins,), db and D: a scene with two peaks, of more range than the display has.
+
+    Whether trimmings are measured by the first T [the paper's pseudo-code] or by the T before each trim
+    [pcond, Ward's program], the trims of such a histogram end at the same one.
+    """
+    b, D = np.arange(bins), float(np.log(100))
+    while True:
+        h = (
+            20
+            + 900 * np.exp(-(((b - rng.integers(8, 20)) / 1.2) ** 2))
+            + 300 * np.exp(-(((b - 36) / 1.5) ** 2))
+        )
+        h, db = np.round(h + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24))
+        trims = [(one.trimmings / h.sum(), one.trimmings / one.T) for one in ward.adjust_steps(h, db, D)]
+        if all(first > 0.028 or own < 0.022 for first, own in trims) and len(trims) > 3:
+            return h, db, D
 
 
 def asked(subject, h, db, D, **knobs):
@@ -20,7 +32,7 @@ def asked(subject, h, db, D, **knobs):
     came = states(subject.adjust_steps(h, db, D, **knobs))
     each = [one[0] if isinstance(one, tuple | list) else one for one in came]
     found = [finite(one, h.shape, what="h").astype(float) for one in each]
-    low = h < 10  # far below every ceiling
+    low = h < 25  # far below every ceiling
     if not np.all(found[-1][low] >= 0.9 * h[low]):
         raise Different(
             "h: expected bins below the ceiling to stay, got less", expected=h, came=found[-1], kind="curve"

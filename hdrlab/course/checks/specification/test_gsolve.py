@@ -12,9 +12,9 @@ from hdrlab.fast import debevec
 HAT = weights.hat()
 
 
-def samples(rng, N=50, P=5, *, response=None, noise=1.0):
+def samples(rng, N=50, P=5, *, response=None, noise=1.0, light=(-3, 3)):
     """Return Z (N, P) and B (P,) of a camera, frames one and a half stops apart, noise in levels."""
-    lE, B = rng.uniform(-3, 3, N), 1.5 * np.log(2) * (np.arange(P) - P // 2)
+    lE, B = rng.uniform(*light, N), 1.5 * np.log(2) * (np.arange(P) - P // 2)
     M = (response or laws.drawn_response(rng)).f(np.clip(0.2 * np.exp(lE[:, None] + B), 0, 1))
     return np.clip(np.round(255 * M + noise * rng.standard_normal(M.shape)), 0, 255).astype(int), B
 
@@ -27,8 +27,8 @@ def asked(subject, Z, B, smoothness, w):
     return g - g[len(w) // 2], lE - g[len(w) // 2]
 
 
-def same_curve(came, expected, tolerance=0.02):
-    same(came, expected, tolerance, what="g", kind="curve")
+def same_curve(came, expected, what="g"):
+    same(came, expected, 0.02, what=what, kind="curve")
 
 
 @pytest.mark.points(1)
@@ -52,10 +52,10 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
     Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.
     """
     response = laws.drawn_response(rng)
-    Z, B = samples(rng, N=100, response=response, noise=0)
+    Z, B = samples(rng, N=200, response=response, noise=0, light=(-2.4, -0.5))  # none of them clipped
     g, _ = asked(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
-    same(g, responses.true_g(response), 0.08, what="g", kind="curve", where=middle)
+    same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
 
 
 @pytest.mark.points(6)
@@ -87,11 +87,17 @@ def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subjec
         g, lE = asked(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
         misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
-    if not (np.all(np.diff(bends) < 0) and np.all(np.diff(misses) > 0) and bends[-1] < 1e-2 * bends[0]):
-        raise Different(f"expected bends that become less with lambda, got {[f'{b:.3g}' for b in bends]}")
+    if not (np.all(np.diff(bends) < 0) and bends[-1] < 1e-2 * bends[0]):
+        raise Different(f"sum (w g'')^2: expected less and less as lambda grows, got {_few(bends)}")
+    if not np.all(np.diff(misses) > 0):
+        raise Different(f"sum (w (g - lE - B))^2: expected more and more as lambda grows, got {_few(misses)}")
 
 
-@pytest.mark.points(2)
+def _few(numbers):
+    return ", ".join(f"{one:.3g}" for one in numbers)
+
+
+@pytest.mark.points(2, needs="test_the_curve_of_a_camera_comes_out")
 def test_the_order_of_the_frames_does_not_matter(subject, rng):
     """Does any line of yours look at the order of the frames?
 
@@ -102,10 +108,10 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
     Z, B = samples(rng, N=40)
     order = rng.permutation(len(B))
     g, _ = asked(subject, Z[:, order], B[order], 30.0, HAT)
-    same_curve(g, debevec.gsolve(Z, B, 30.0, HAT).g)
+    same_curve(g, asked(subject, Z, B, 30.0, HAT)[0], what="g of the frames in another order")
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_the_curve_of_a_camera_comes_out")
 def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
     """Twice the time in every frame is half the irradiance, and the same curve.
 
@@ -114,13 +120,12 @@ def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
     The right-hand side is w B[j]: B as it is given, neither its logarithm nor its exponential.
     """
     Z, B = samples(rng, N=40)
-    g, lE = asked(subject, Z, B + np.log(1000.0), 30.0, HAT)
-    truth = debevec.gsolve(Z, B, 30.0, HAT)
-    same_curve(g, truth.g)
-    same(lE, truth.lE - np.log(1000.0), 0.03, what="lE")
+    (g, lE), (moved, less) = (asked(subject, Z, one, 30.0, HAT) for one in (B, B + np.log(1000.0)))
+    same_curve(moved, g, what="g with times in milliseconds")
+    same(less, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_the_curve_of_a_camera_comes_out")
 def test_any_number_of_levels_will_do(subject, rng):
     """Is there a 256 in your code? The weights say how many levels there are.
 
@@ -128,7 +133,7 @@ def test_any_number_of_levels_will_do(subject, rng):
 
     The unknowns are g (n,) and then lE (N,): n + N columns.
     """
-    Z, B = samples(rng, N=30)
-    w = weights.hat(16)
-    g, _ = asked(subject, Z // 16, B, 3.0, w)
-    same_curve(g, debevec.gsolve(Z // 16, B, 3.0, w).g)
+    Z, B = samples(rng, N=60, noise=0, light=(-2.2, -0.5))
+    (g, _), (few, _) = asked(subject, Z, B, 10.0, HAT), asked(subject, Z // 16, B, 1.0, weights.hat(16))
+    fine = g[8::16] - g[136]  # g in the middle of each of the 16 levels
+    same(few[4:12], fine[4:12], 0.3, what="g of levels 4 to 11 of 16, beside yours of 256", kind="curve")

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import numbers, same
 
 
 def drawn(rng):
@@ -40,6 +40,20 @@ def test_any_fraction_can_be_asked_for(subject, rng):
     for q in (0.17, 0.33, 0.83):
         expected = np.sort(Y.ravel())[int(np.ceil(q * Y.size)) - 1]
         same(subject.threshold(histogram(Y), q), expected, 0, what=f"t of q = {q}")
+
+
+@pytest.mark.points(1, needs="test_any_fraction_can_be_asked_for")
+def test_several_fractions_give_a_code_each(subject, rng):
+    """The sheet asks for one more thing of q: may it be an array?
+
+    For an array of fractions an array of codes comes back, each for its own fraction.
+
+    np.searchsorted takes an array as it takes a number; np.argmax of a comparison needs q[:, None].
+    """
+    Y, q = drawn(rng), np.array([0.17, 0.5, 0.83])
+    expected = [subject.threshold(histogram(Y), float(one)) for one in q]
+    expected = [numbers(one, what="t").item() for one in expected]
+    same(subject.threshold(histogram(Y), q), expected, 0, what="the codes of three fractions")
 
 
 @pytest.mark.points(2)

@@ -1,0 +1,22 @@
+"""Orthogonal columns of what is in an equation."""
+
+import numpy as np
+
+
+def gsolve(Z, B, smoothness, w):
+    Z, w = np.asarray(Z), np.asarray(w, float)
+    (N, P), n = Z.shape, len(w)
+    A, b, k = np.zeros((N * P + 1 + n - 2, n + N)), np.zeros(N * P + 1 + n - 2), 0
+    for i in range(N):
+        for j in range(P):
+            trust = w[Z[i, j]]
+            A[k, Z[i, j]], A[k, n + i], b[k] = trust, -trust, trust * B[j]
+            k += 1
+    A[k, n // 2] = 1
+    for z in range(1, n - 1):
+        A[k + z, z - 1 : z + 2] = smoothness * w[z] * np.array([1, -2, 1])
+    used = A.any(axis=0)
+    x = np.zeros(n + N)
+    Q, R = np.linalg.qr(A[:, used])
+    x[used] = np.linalg.pinv(R, rcond=1e-10) @ (Q.T @ b)
+    return x[:n], x[n:]

@@ -1,0 +1,51 @@
+"""Right answers that were written from the sheets alone: none is refused."""
+
+import warnings
+from pathlib import Path
+
+import pytest
+import scoring
+
+from hdrlab.course import plan
+from hdrlab.course.checks import compare, inprocess
+
+FAIRNESS = Path(__file__).parents[2] / "benchmarks" / "fairness"
+pytestmark = pytest.mark.skipif(
+    not FAIRNESS.is_dir(), reason="benchmarks/ is no part of the installed package"
+)
+
+
+def asked(path):
+    """Return what share of its task's points an answer gets, and what each check says."""
+    task = path.parent.name
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # 0 / 0, as it may well happen in a student's process
+        subject = inprocess.Subject({task: scoring.functions(path)[task]})
+        return scoring.score(task, subject, plan.seed("secret", "ada", task))
+
+
+@pytest.mark.parametrize(
+    "path", sorted(FAIRNESS.glob("right/*/*.py")), ids=lambda path: f"{path.parent.name}-{path.stem}"
+)
+def test_a_right_answer_from_the_sheet_keeps_every_promise(path):
+    share, said = asked(path)
+    assert share == 1, {name: str(error) for name, error in said.items() if error}
+
+
+@pytest.mark.parametrize(
+    ("came", "noted"),
+    [
+        ([0.0, 1.0, 0.0], "w: list of 3 was taken for an array of shape (3,)"),
+        ([[0.0], [1.0], [0.0]], "w: shape (3, 1) was taken for (3,)"),
+    ],
+)
+def test_numbers_in_another_form_are_accepted_and_noted(came, noted):
+    compare.notes.clear()
+    assert compare.same(came, [0, 1, 0], 0, what="w").shape == (3,)
+    assert noted in compare.notes
+
+
+@pytest.mark.parametrize("came", [[1.0, [2.0]], [1.0, "2"], [[1.0, 2.0, 3.0, 4.0]], []])
+def test_what_is_no_such_list_is_not(came):
+    with pytest.raises(compare.Different):
+        compare.same(came, [1, 2], 0)
