@@ -32,3 +32,10 @@ def test(session: nox.Session, tier: str) -> None:
 
 for tier in (QUICK, *TIERS):
     nox.session(lambda session, tier=tier: test(session, tier), name=tier)
+
+
+@nox.session(venv_backend="uv")
+def lowest(session: nox.Session) -> None:
+    """Run the quick tier with the lowest versions that pyproject.toml names, whose warnings are let be."""
+    session.install("--resolution=lowest-direct", "--editable", ".[test]")
+    session.run("python", "-m", "pytest", "-W", "default", *session.posargs)

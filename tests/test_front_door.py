@@ -1,0 +1,130 @@
+"""What README, the guides and the workflows name is there: commands, options, files, versions, tiers."""
+
+import re
+import shlex
+import tomllib
+from pathlib import Path
+
+import click
+import pytest
+import yaml
+from tiers import QUICK, TIERS
+
+import hdrlab
+from hdrlab import cli
+
+ROOT = Path(__file__).resolve().parents[1]
+PAGES = ROOT / "hdrlab/course/site/pages"
+README = ROOT / "README.md"
+GUIDES = [README, ROOT / "CONTRIBUTING.md", *sorted(PAGES.glob("*.md"))]
+WORKFLOWS = sorted((ROOT / ".github").rglob("*.yml")) if README.exists() else []
+pytestmark = pytest.mark.skipif(not README.exists(), reason="reads a clone, and this is an installed package")
+
+
+def text_of(path):
+    return path.read_text(encoding="utf8")
+
+
+def typed(path):
+    """Return the hdrlab commands of a page, those of its listings and those in running text, as words."""
+    text = text_of(path)
+    lines = [line for block in re.findall(r"```sh\n(.*?)```", text, re.S) for line in block.splitlines()]
+    lines += re.findall(r"`([^`\n]+)`", re.sub(r"```.*?```", "", text, flags=re.S))
+    parts = [part for line in lines for part in re.split(r"&&|#", line)]
+    found = [re.match(r"\s*(?:[$] )?(?:env/bin/)?hdrlab (.+)", part) for part in parts]
+    return [shlex.split(one[1].split(" -- ")[0].replace("...", "")) for one in found if one]
+
+
+def command_of(words):
+    """Return the command of these words, and those that are left for it."""
+    command = cli.main
+    while isinstance(command, click.Group) and words and not words[0].startswith("-"):
+        assert words[0] in command.commands, f"there is no command {words[0]!r}"
+        command, words = command.commands[words[0]], words[1:]
+    return command, words
+
+
+def options_of(command):
+    return {one for knob in command.params for one in (*knob.opts, *knob.secondary_opts)} | {
+        "--help",
+        "--version",
+    }
+
+
+@pytest.mark.parametrize("path", GUIDES, ids=lambda path: path.name)
+def test_each_command_and_option_that_a_page_names_is_there(path):
+    for words in typed(path):
+        command, rest = command_of(words)
+        unknown = {word.partition("=")[0] for word in rest if re.match(r"--?[a-z]", word)} - options_of(
+            command
+        )
+        assert not unknown, f"hdrlab {' '.join(words)}"
+
+
+def test_commands_are_read_from_listings_and_from_running_text():
+    assert ["assemble", "photos/", "-o", "room.hdr", "--picture", "room.png", "--report", "room/"] in typed(
+        README
+    )
+    assert len(typed(PAGES / "instructors.md")) > 20
+
+
+def test_the_table_of_the_readme_names_every_command_once():
+    table = re.findall(r"^\| (`hdrlab .*?) \|", text_of(README), re.M)
+    named = [re.match(r"hdrlab (\w+)", one)[1] for row in table for one in re.findall(r"`([^`]+)`", row)]
+    hidden = {"doctor", "course"}  # in a row of grade, and in the section for those who teach
+    assert sorted(named) == sorted(set(cli.main.commands) - hidden)
+
+
+def test_the_table_of_promises_names_tests_that_there_are():
+    there = {path.name for path in (ROOT / "tests").rglob("*")}
+    for path in (ROOT / "SECURITY.md", PAGES / "instructors.md"):
+        named = set(re.findall(r"`(?:tests/)?(?:\w+/)*(test_\w+\.py)`", text_of(path)))
+        assert len(named) > 5 and not named - there
+
+
+def test_every_function_on_the_map_is_there():
+    names = [
+        name for line in hdrlab.__doc__.splitlines() if "  " in line for name in re.split(r"[,;] ", line[39:])
+    ]
+    names = [name for name in names if re.fullmatch(r"[\w.]+", name) and "." in name]
+    assert len(names) > 40
+    for name in names:
+        place = ROOT.joinpath("hdrlab", *name.split("."))
+        if not (place.is_dir() or place.with_suffix(".py").is_file()):
+            assert re.search(rf"\b{place.name}\b", text_of(module_file(place.parent))), name
+
+
+def module_file(place):
+    return place.with_suffix(".py") if place.with_suffix(".py").is_file() else place / "__init__.py"
+
+
+def test_links_between_the_pages_of_the_repository_lead_somewhere():
+    for path in (README, ROOT / "CONTRIBUTING.md", ROOT / "SECURITY.md", ROOT / "CHANGELOG.md"):
+        links = re.findall(r"\]\(([^)#:]+)\)", text_of(path))
+        local = [link for link in links if not link.startswith("../../actions/")]
+        assert not [link for link in local if not (path.parent / link).exists()]
+        named = {link.split("/")[4] for link in links if link.startswith("../../actions/workflows/")}
+        assert named <= {one.name for one in WORKFLOWS}
+
+
+def test_one_version_stands_in_the_package_the_changes_and_the_citation():
+    citation = yaml.safe_load(text_of(ROOT / "CITATION.cff"))
+    newest = re.search(r"^## (.+)$", text_of(ROOT / "CHANGELOG.md"), re.M)[1]
+    assert hdrlab.__version__ == newest == citation["version"]
+    assert citation["license"] == tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["license"]
+
+
+def test_the_workflows_run_every_tier_and_the_quick_one_on_three_systems():
+    jobs = yaml.safe_load(text_of(ROOT / ".github/workflows/ci.yml"))["jobs"]
+    assert set(jobs["tiers"]["strategy"]["matrix"]["tier"]) == set(TIERS)
+    systems = {one.partition("-")[0] for one in jobs["quick"]["strategy"]["matrix"]["os"]}
+    assert systems == {"ubuntu", "windows", "macos"} and {"run": f"nox -s {QUICK}"} in jobs["quick"]["steps"]
+
+
+@pytest.mark.parametrize("path", WORKFLOWS, ids=lambda path: path.name)
+def test_a_workflow_may_do_no_more_than_it_needs(path):
+    read = yaml.safe_load(text_of(path))
+    if path.parent.name == "workflows":
+        assert read["permissions"] == {"contents": "read"}
+        assert all("timeout-minutes" in job for job in read["jobs"].values())
+        assert "secrets." not in text_of(path)
