@@ -48,8 +48,7 @@ def check_names(names: Sequence[str], limits: Limits = LIMITS) -> list[PurePosix
     Traceback (most recent call last):
     hdrlab.course.archives.members.Refused: '../../etc/passwd' leads out of the archive's folder
     """
-    if len(names) > limits.members:
-        raise Refused(f"it has {len(names)} members, expected at most {limits.members}")
+    check_count(len(names), limits)
     paths = [_path(name, limits) for name in names]
     kinds: dict[str, bool] = {}  # folded path -> whether it is a file
     for path in paths:

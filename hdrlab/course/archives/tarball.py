@@ -11,17 +11,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import IO, Any
 
-from hdrlab.course.archives.members import (
-    PIECE,
-    Limits,
-    Member,
-    Refused,
-    check_count,
-    check_names,
-    check_sizes,
-    quote_name,
-    write,
-)
+from hdrlab.course.archives import members
+from hdrlab.course.archives.members import PIECE, Limits, Member, Refused, quote_name
 
 OPENERS: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
 HEADER = 1 << 16  # bytes of a header of tar: a long name, and not a bomb
@@ -40,14 +31,14 @@ def unpack(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
                 if not info.isreg() or info.issparse():
                     what = "link" if info.issym() or info.islnk() else "device or a sparse file"
                     raise Refused(f"{quote_name(info.name)} is a {what}, expected plain files")
-            paths = check_names([info.name for info in infos], limits)
-            members = [Member(path, info.size) for path, info in zip(paths, infos, strict=True)]
-            check_sizes(members, packed, limits)
-            for info, member in zip(infos, members, strict=True):
+            paths = members.check_names([info.name for info in infos], limits)
+            found = [Member(path, info.size) for path, info in zip(paths, infos, strict=True)]
+            members.check_sizes(found, packed, limits)
+            for info, member in zip(infos, found, strict=True):
                 source = opened.extractfile(info)
                 assert source is not None  # a plain file has one
-                write(source, fresh / member.path, member.size)
-    return members
+                members.write(source, fresh / member.path, member.size)
+    return found
 
 
 def _inflate(archive: Path, target: IO[bytes], packed: int, limits: Limits) -> None:
@@ -74,7 +65,7 @@ def _check_headers(file: IO[bytes], limits: Limits) -> None:
         count += kind not in b"xgLK"
     if not count:
         raise Refused("it holds no files, or is no .zip or .tar archive")
-    check_count(count, limits)
+    members.check_count(count, limits)
 
 
 def _headers(file: IO[bytes]) -> Iterator[tuple[bytes, int]]:

@@ -16,18 +16,8 @@ import zlib
 from collections.abc import Sequence
 from pathlib import Path
 
-from hdrlab.course.archives import tarball
-from hdrlab.course.archives.members import (
-    LIMITS,
-    Limits,
-    Member,
-    Refused,
-    check_count,
-    check_names,
-    check_sizes,
-    quote_name,
-    write,
-)
+from hdrlab.course.archives import members, tarball
+from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, quote_name
 from hdrlab.course.wording import plain
 
 DAMAGE = (OSError, EOFError, ValueError, RuntimeError, OverflowError, MemoryError, struct.error)
@@ -61,7 +51,7 @@ def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> 
         fresh = Path(scratch) / "files"
         fresh.mkdir()
         try:
-            members = (_zip if _is_zip(archive) else tarball.unpack)(archive, fresh, limits)
+            found = (_zip if _is_zip(archive) else tarball.unpack)(archive, fresh, limits)
         except Refused:
             raise
         except FAULTS as error:
@@ -69,7 +59,7 @@ def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> 
                 raise
             raise Refused(f"it is damaged, or no .zip or .tar archive ({plain(str(error), 80)})") from None
         os.rename(fresh, target)
-    return members
+    return found
 
 
 def _is_zip(archive: Path) -> bool:
@@ -81,17 +71,17 @@ def _zip(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
     _check_list(archive, limits)
     with zipfile.ZipFile(archive) as opened:
         infos = [info for info in opened.infolist() if not info.is_dir()]
-        check_count(len(opened.infolist()), limits)
+        members.check_count(len(opened.infolist()), limits)
         for info in infos:
             _check_entry(info)
-        paths = check_names([info.orig_filename for info in infos], limits)
-        members = [Member(path, info.file_size) for path, info in zip(paths, infos, strict=True)]
-        check_sizes(members, archive.stat().st_size, limits)
+        paths = members.check_names([info.orig_filename for info in infos], limits)
+        found = [Member(path, info.file_size) for path, info in zip(paths, infos, strict=True)]
+        members.check_sizes(found, archive.stat().st_size, limits)
         _check_apart(infos, opened.start_dir)
-        for info, member in zip(infos, members, strict=True):
+        for info, member in zip(infos, found, strict=True):
             with opened.open(info) as source:
-                write(source, fresh / member.path, member.size)
-    return members
+                members.write(source, fresh / member.path, member.size)
+    return found
 
 
 def _check_entry(info: zipfile.ZipInfo) -> None:
@@ -125,6 +115,6 @@ def _check_list(archive: Path, limits: Limits) -> None:
     count, size = struct.unpack_from("<HL", tail, at + 10)
     if b"PK\6\7" in tail[max(0, at - 20) : at]:
         raise Refused("it is a zip for more than 4 GB or 65535 members")
-    check_count(count, limits)
+    members.check_count(count, limits)
     if size > limits.members * ENTRY:
         raise Refused(f"its list of members takes {size} bytes, expected at most {limits.members * ENTRY}")

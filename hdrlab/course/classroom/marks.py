@@ -15,10 +15,6 @@ from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
-COLUMNS = (
-    *("student", "name", "team", "homework", "received", "late", "excused", "work", "of", "penalty", "score"),
-    *("grace left", "note"),
-)
 NOT_GRADED = "not graded"
 LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
 DAYS = range(15)  # of the what-if table
@@ -40,6 +36,9 @@ class Mark(NamedTuple):
     score: float
     left: int
     note: str = ""
+
+
+COLUMNS = (*Mark._fields[:-2], "grace left", "note")
 
 
 def marks(

@@ -85,22 +85,19 @@ def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Se
     scores = counted.points.values()
     whole = max(homework.points, 1e-9)
     bins = Counter(min(BINS - 1, int(BINS * score / whole)) for score in scores)
-    return (
-        templates(Path(__file__).parent)
-        .get_template(PAGE)
-        .render(
-            homework=homework,
-            count=len(scores),
-            median=statistics.median(scores) if scores else 0,
-            bins=[(100 // BINS * k, bins[k]) for k in range(BINS)],
-            promises=[
-                (*key, each.total(), each["holds"], each["fails"], each["no answer"])
-                for key, each in counted.outcomes.items()
-            ],
-            met=counted.met.most_common(),
-            notes=list(notes),
-            students=[(row, f"feedback/{quote(row.team)}/feedback.html") for row in rows],
-            nothing=[row for row in rows if not row.received],
-            late=[row for row in rows if row.late],
-        )
+    template = templates(Path(__file__).parent).get_template(PAGE)
+    return template.render(
+        homework=homework,
+        count=len(scores),
+        median=statistics.median(scores) if scores else 0,
+        bins=[(100 // BINS * k, bins[k]) for k in range(BINS)],
+        promises=[
+            (*key, each.total(), each["holds"], each["fails"], each["no answer"])
+            for key, each in counted.outcomes.items()
+        ],
+        met=counted.met.most_common(),
+        notes=list(notes),
+        students=[(row, f"feedback/{quote(row.team)}/feedback.html") for row in rows],
+        nothing=[row for row in rows if not row.received],
+        late=[row for row in rows if row.late],
     )

@@ -102,6 +102,18 @@ def head(node: ast.AST) -> list[ast.AST]:
     return [*getattr(node, "decorator_list", ()), *(one for one in parts if isinstance(one, ast.AST))]
 
 
+def modules(source: str | bytes) -> set[str]:
+    """Return what a text imports, dotted, with names that may be modules; nothing of what is no Python."""
+    found: set[str] = set()
+    with contextlib.suppress(*BROKEN):
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.Import):
+                found |= {alias.name for alias in node.names}
+            elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
+                found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+    return found
+
+
 def imported(sources: Iterable[str]) -> list[str]:
     """Return the parts of numpy and scipy that some sources import, so that they are imported once.
 
@@ -110,12 +122,7 @@ def imported(sources: Iterable[str]) -> list[str]:
     >>> imported(["from scipy import ndimage", "import scipy.sparse.linalg as la, os", "not Python"])
     ['scipy', 'scipy.ndimage', 'scipy.sparse.linalg']
     """
-    found = set()
+    found: set[str] = set()
     for source in sources:
-        with contextlib.suppress(*BROKEN):
-            for node in ast.walk(ast.parse(source)):
-                if isinstance(node, ast.Import):
-                    found |= {alias.name for alias in node.names}
-                elif isinstance(node, ast.ImportFrom) and node.module and node.level == 0:
-                    found |= {node.module} | {f"{node.module}.{alias.name}" for alias in node.names}
+        found |= modules(source)
     return sorted(one for one in found if one.split(".")[0] in ("numpy", "scipy"))

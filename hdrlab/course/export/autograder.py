@@ -31,13 +31,9 @@ def graded(root: Path, tier: str) -> bytes:
     source = root / "source"
     settings = json.loads((source / "settings.json").read_text(encoding="utf8"))
     homework = plan.read(source / "plan.toml").homeworks[settings["homework"]]
-    hidden = source / "hidden"
-    conditions = Conditions(
-        tier,
-        student(root) if settings["secret"] else "",
-        settings["secret"],
-        hidden if hidden.is_dir() else None,
-    )
+    hidden, secret = source / "hidden", settings["secret"]
+    who = student(root) if secret else ""
+    conditions = Conditions(tier, who, secret, hidden if hidden.is_dir() else None)
     return gradebook.gradescope(grading.grade(handed_in(root / "submission"), homework, conditions))
 
 

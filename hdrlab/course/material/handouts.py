@@ -116,14 +116,8 @@ def _markdown(text: str) -> dict[str, Any]:
 
 def _code(text: str, *, id: str = "", tags: Sequence[str] = (), **marks: Any) -> dict[str, Any]:
     metadata = {**({"hdrlab": marks} if marks else {}), **({"tags": list(tags)} if tags else {})}
-    cell: dict[str, Any] = {
-        "cell_type": "code",
-        "execution_count": None,
-        "outputs": [],
-        "metadata": metadata,
-        "source": text,
-    }
-    return {**cell, "id": id} if id else cell
+    cell: dict[str, Any] = {"cell_type": "code", "execution_count": None, "outputs": [], "metadata": metadata}
+    return {**cell, "source": text, **({"id": id} if id else {})}
 
 
 def _notebook(cells: Sequence[dict[str, Any]], name: str) -> dict[str, Any]:

@@ -63,8 +63,7 @@ def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) ->
         for one, other, share, forth, back in found.pairs[:ROWS]
     ]
     sheets.write_csv(out / "similar.csv", COLUMNS, table, private=True)
-    with replacing(out / "similar.html") as temporary:
-        temporary.touch(mode=0o600)
+    with replacing(out / "similar.html", private=True) as temporary:
         temporary.write_text(page(homework, each, found), encoding="utf8")
 
 

@@ -7,7 +7,7 @@ import ast
 import json
 import re
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.util import find_spec
 from pathlib import Path, PurePosixPath
 from typing import NamedTuple
@@ -15,12 +15,14 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, check_names, check_sizes
+from hdrlab.course.code import names
 from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
 from hdrlab.course.projects.words import ASKED
 from hdrlab.io import radiance
 from hdrlab.io.decode import look
 
 TEAM = 2  # students at most
+Said = tuple[bool, str]  # whether it is as it should be, and a sentence
 
 
 class Finding(NamedTuple):
@@ -33,31 +35,33 @@ class Finding(NamedTuple):
 
 def review(project: Project) -> list[Finding]:
     """Return what there is to say of each part that is asked for."""
-    checks = (_about, _source, _report, _photographs, _map, _artifact, _archive)
-    return [finding for check in checks for finding in check(project)]
+    return [Finding(part, *one) for part, check in CHECKS.items() for one in check(project)]
 
 
-def _about(project: Project) -> Iterator[Finding]:
+def _students(project: Project) -> Iterator[Said]:
     students = project.about.students
     if not students:
-        yield Finding("students", False, f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
+        yield (False, f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
     elif len(students) > TEAM:
-        yield Finding("students", False, f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
+        yield (False, f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
     else:
-        yield Finding("students", True, " and ".join(students))
-    if students and not project.about.title:
-        yield Finding("title", False, f'Give your artifact a title: title = "..." in {ABOUT}.')
+        yield (True, " and ".join(students))
 
 
-def _source(project: Project) -> Iterator[Finding]:
+def _title(project: Project) -> Iterator[Said]:
+    if project.about.students and not project.about.title:
+        yield False, f'Give your artifact a title: title = "..." in {ABOUT}.'
+
+
+def _source(project: Project) -> Iterator[Said]:
     if not project.sources:
-        yield Finding("source", False, "There is no source: put your programs and notebooks into the folder.")
+        yield (False, "There is no source: put your programs and notebooks into the folder.")
         return
     wrong = [one for path in project.sources for one in _unreadable(project, path)]
     wrong += _foreign(project)
-    yield from (Finding("source", False, one) for one in wrong)
+    yield from ((False, one) for one in wrong)
     if not wrong:
-        yield Finding("source", True, f"{len(project.sources)} files")
+        yield (True, f"{len(project.sources)} files")
 
 
 def _unreadable(project: Project, path: Path) -> Iterator[str]:
@@ -78,8 +82,8 @@ def _foreign(project: Project) -> list[str]:
     """Return the modules that Python files import and that are neither here nor installed."""
     here = {path.stem for path in project.sources} | {path.parent.name for path in project.sources}
     missing: dict[str, str] = {}
-    for path in project.sources:
-        for top in _imports(path) if path.suffix == ".py" else ():
+    for path in (one for one in project.sources if one.suffix == ".py"):
+        for top in dict.fromkeys(one.split(".")[0] for one in sorted(names.modules(path.read_bytes()))):
             if top not in here and top not in sys.stdlib_module_names and find_spec(top) is None:
                 missing.setdefault(top, project.name(path))
     return [
@@ -88,26 +92,12 @@ def _foreign(project: Project) -> list[str]:
     ]
 
 
-def _imports(path: Path) -> Iterator[str]:
-    try:
-        tree = ast.parse(path.read_bytes())
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Import):
-            yield from (one.name.split(".")[0] for one in node.names)
-        elif isinstance(node, ast.ImportFrom) and not node.level and node.module:
-            yield node.module.split(".")[0]
-
-
-def _report(project: Project) -> Iterator[Finding]:
+def _report(project: Project) -> Iterator[Said]:
     if project.page is None:
-        yield Finding("report", False, f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
+        yield (False, f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
         return
     if project.words and project.words.stat().st_mtime > project.page.stat().st_mtime:
-        yield Finding(
-            "report", False, f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again."
-        )
+        yield (False, f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again.")
     text = project.page.read_text(encoding="utf8", errors="replace")
     heads = " ".join(re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", text, re.DOTALL | re.IGNORECASE))
     missing = [name for name, says in ASKED.items() if not re.search(says, heads, re.IGNORECASE)]
@@ -115,21 +105,17 @@ def _report(project: Project) -> Iterator[Finding]:
         r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""", text
     )
     if missing:
-        yield Finding("report", False, f"{PAGE} has no heading about: {', '.join(missing)}.")
+        yield (False, f"{PAGE} has no heading about: {', '.join(missing)}.")
     if fetched:
-        yield Finding(
-            "report", False, f"{PAGE} fetches {fetched[0][:80]}, which may be gone when it is read."
-        )
+        yield (False, f"{PAGE} fetches {fetched[0][:80]}, which may be gone when it is read.")
     if not (missing or fetched):
-        yield Finding("report", True, PAGE)
+        yield (True, PAGE)
 
 
-def _photographs(project: Project) -> Iterator[Finding]:
+def _photographs(project: Project) -> Iterator[Said]:
     if len(project.photographs) < 2:
         count = len(project.photographs)
-        yield Finding(
-            "photographs", False, f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}."
-        )
+        yield (False, f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
         return
     wrong, exposures = [], set()
     for path in project.photographs:
@@ -145,45 +131,49 @@ def _photographs(project: Project) -> Iterator[Finding]:
         exposures.add(header.exposure)
     if not wrong and len(exposures) == 1:
         wrong = ["All photographs have the same exposure, which makes no bracket."]
-    yield from (Finding("photographs", False, one) for one in wrong)
+    yield from ((False, one) for one in wrong)
     if not wrong:
-        yield Finding("photographs", True, f"{len(project.photographs)}, {len(exposures)} exposures")
+        yield (True, f"{len(project.photographs)}, {len(exposures)} exposures")
 
 
-def _map(project: Project) -> Iterator[Finding]:
+def _map(project: Project) -> Iterator[Said]:
     if project.map is None:
-        yield Finding("map", False, "There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
+        yield (False, "There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
         return
     try:
         E = radiance.read_radiance(project.map, clean=True)
     except ValueError as error:
-        yield Finding("map", False, str(error).replace(str(project.map), project.name(project.map)))
+        yield (False, str(error).replace(str(project.map), project.name(project.map)))
         return
     if not np.any(E > 0) or E.max() == E.min():
-        yield Finding("map", False, f"{project.name(project.map)} holds one value everywhere.")
+        yield (False, f"{project.name(project.map)} holds one value everywhere.")
     else:
-        yield Finding("map", True, f"{project.name(project.map)}, {E.shape[1]} x {E.shape[0]}")
+        yield (True, f"{project.name(project.map)}, {E.shape[1]} x {E.shape[0]}")
 
 
-def _artifact(project: Project) -> Iterator[Finding]:
+def _artifact(project: Project) -> Iterator[Said]:
     if project.artifact is None:
-        yield Finding("artifact", False, "There is no artifact. Save your best picture as artifact.jpg.")
+        yield (False, "There is no artifact. Save your best picture as artifact.jpg.")
         return
     try:
         height, width = look(project.artifact).shape[:2]
     except ValueError as error:
-        yield Finding(
-            "artifact", False, str(error).replace(str(project.artifact), project.name(project.artifact))
-        )
+        yield (False, str(error).replace(str(project.artifact), project.name(project.artifact)))
         return
-    yield Finding("artifact", True, f"{project.name(project.artifact)}, {width} x {height}")
+    yield (True, f"{project.name(project.artifact)}, {width} x {height}")
 
 
-def _archive(project: Project, limits: Limits = LIMITS) -> Iterator[Finding]:
+def _archive(project: Project, limits: Limits = LIMITS) -> Iterator[Said]:
     """Yield what would make the course refuse the archive."""
     members = [Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files]
     try:
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.total, limits)
     except Refused as reason:
-        yield Finding("archive", False, f"The archive would be refused: {reason}.")
+        yield (False, f"The archive would be refused: {reason}.")
+
+
+CHECKS: dict[str, Callable[[Project], Iterator[Said]]] = {
+    **{"students": _students, "title": _title, "source": _source, "report": _report},
+    **{"photographs": _photographs, "map": _map, "artifact": _artifact, "archive": _archive},
+}

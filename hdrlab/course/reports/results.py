@@ -11,17 +11,10 @@ from typing import Any, Literal, NamedTuple
 VERSION = 1
 CREDIT = ("strict", "container")  # tiers that count
 # what a team's copy holds, and nothing else: of the whole, of a check, of a hidden one
-TEAM_SEES: tuple[str, ...] = (
-    "version",
-    "student",
-    "homework",
-    "title",
-    "tier",
-    "for_credit",
-    "score",
-    "max_score",
+TEAM_SEES = (
+    *("version", "student", "homework", "title", "tier", "for_credit", "score", "max_score", "problems"),
+    *("misconceptions", "checks", "submission", "specification", "seed", "versions"),
 )
-TEAM_SEES += ("problems", "misconceptions", "checks", "submission", "specification", "seed", "versions")
 OF_HIDDEN = ("task", "promise", "points", "max_points", "outcome", "hidden")
 OF_OWN = (*OF_HIDDEN, "name", "message", "hints", "drawing", "said")
 Outcome = Literal["holds", "fails", "no answer"]

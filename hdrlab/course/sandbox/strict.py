@@ -5,6 +5,7 @@ no place for a file, no environment, no privilege, and no way to get one. The pr
 once more: see filters.py.
 """
 
+import contextlib
 import os
 import shutil
 import subprocess
@@ -70,28 +71,24 @@ def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
 
 def launch(bwrap: str, control: socket) -> Launched:
     """Start the supervisor behind the walls; root becomes a spare user first."""
-    inside, after = contents(), _nothing
+    inside, held = contents(), contextlib.ExitStack()  # without a user, bubblewrap leaves nothing to clear up
     supervisor = command(inside.python, inside.program, control.fileno(), inside.packages)
     rules = _readable(filters.program("supervisor"))
     try:
         words = [bwrap, *walls(inside, inside.places, rules), *supervisor]
         if os.geteuid() == 0:
-            user, held = users.lease()
-            after = held.close
+            user, lease = users.lease()
+            held.callback(lease.close)
             staged = {place: f"{descent.STAGE}/{j}" for j, place in enumerate(inside.places)}
             words = [bwrap, *walls(inside, staged, rules), *supervisor]
             paths = list(inside.places.values())
             words = users.descend(user=user, stage=paths, command=words, environment={})
-        return Launched(start(words, {}, control.fileno(), rules), after)
+        return Launched(start(words, {}, control.fileno(), rules), held.close)
     except BaseException:
-        after()
+        held.close()
         raise
     finally:
         os.close(rules)
-
-
-def _nothing() -> None:
-    """Clear nothing up: bubblewrap leaves nothing behind."""
 
 
 def _readable(program: bytes) -> int:
