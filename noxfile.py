@@ -17,7 +17,7 @@ from tiers import QUICK, TIERS  # noqa: E402
 nox.options.sessions = [QUICK]
 EXTRAS = {"scenes": "test,scenes", "papers": "test,bench"}
 # in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
-TOGETHER = ("browser", "grading", "papers", "scenes", "wheel")
+TOGETHER = ("browser", "jupyterlab", "grading", "papers", "scenes", "wheel")
 
 
 def test(session: nox.Session, tier: str) -> None:
@@ -30,7 +30,7 @@ def test(session: nox.Session, tier: str) -> None:
     session.run("python", "-m", "pytest", f"--tier={tier}", *options, *session.posargs)
 
 
-for tier in (QUICK, *TIERS):
+for tier in TIERS:
     nox.session(lambda session, tier=tier: test(session, tier), name=tier)
 
 

@@ -31,7 +31,7 @@ set_hypothesis_home_dir(SCRATCH.name)
 def pytest_addoption(parser):
     parser.addoption(
         "--tier",
-        choices=[QUICK, *TIERS, ALL],
+        choices=[*TIERS, ALL],
         help="run the tests of this tier, see tests/tiers.py (quick; all where files are named)",
     )
 

@@ -1,5 +1,6 @@
 """The tiers of tests: their lists name what there is, and their report hides nothing."""
 
+import re
 import signal
 import subprocess
 import sys
@@ -18,11 +19,15 @@ def test_what_a_tier_lists_is_there(start):
     file, _, test = start.partition("::")
     there = [ROOT / file] if file.endswith("/") else list(ROOT.glob(f"{file}*"))
     assert there and all(path.exists() for path in there)
-    assert not test or f"\ndef {test}" in there[0].read_text(encoding="utf8")
+    assert not test or re.search(
+        rf"^(def|class) {test.partition('[')[0]}", there[0].read_text(encoding="utf8"), re.MULTILINE
+    )
 
 
-def test_nothing_is_of_two_tiers():
-    assert not [(one, other) for one in STARTS for other in STARTS if one != other and one.startswith(other)]
+def test_the_longest_start_counts():
+    assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestThree::test_a") == "browser"
+    assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestOthers0::test_a") == "jupyterlab"
+    assert len(set(STARTS)) == len(STARTS)
 
 
 def test_a_test_that_is_named_nowhere_is_quick_and_its_file_is_read():
@@ -34,7 +39,7 @@ def test_a_test_that_is_named_nowhere_is_quick_and_its_file_is_read():
 
 
 def test_a_file_that_holds_one_dear_test_is_read_for_both_tiers():
-    start = next(start for start in STARTS if "::" in start)
+    start = next(start for start in TIERS["papers"] if "::" in start)
     file, tier = start.partition("::")[0], tier_of(start)
     assert may_hold(file, tier) and may_hold(file, QUICK) and tier != QUICK
 

@@ -218,12 +218,11 @@ def test_a_frame_that_drips_is_late_and_not_waited_for(pair):
 
     dripping = threading.Thread(target=drip)
     dripping.start()
-    began = time.monotonic()
     with pytest.raises(TimeoutError):
-        channel.receive(theirs, began + 0.2)
+        channel.receive(theirs, time.monotonic() + 0.2)
+    assert dripping.is_alive()  # the rest of the frame is still to come
     stop.set()
     dripping.join()
-    assert time.monotonic() - began < 2
 
 
 def test_the_end_of_the_other_side_is_told_from_a_frame_cut_short(pair):

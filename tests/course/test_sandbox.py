@@ -140,14 +140,12 @@ def test_what_goes_wrong_is_said_in_plain_words_and_the_next_call_is_answered(su
 def test_a_call_that_takes_too_long_is_ended(running_subject):
     running_subject.fresh()
     running_subject._timeout, patience = 0.3, running_subject._timeout
-    began = time.monotonic()
     try:
         with pytest.raises(NoAnswer, match="endless took longer than 0.3 s"):
             running_subject.endless(1.0)
     finally:
         running_subject._timeout = patience
     assert running_subject.scaled(1.0) == 2.0
-    assert time.monotonic() - began < 10
 
 
 def test_nothing_is_kept_from_one_check_to_the_next(subject):
@@ -179,17 +177,6 @@ def test_grading_twice_gives_the_same(subject):
     first = subject.drawn(0).tolist(), int(subject.hashed(0))
     subject.fresh()
     assert first == (subject.drawn(0).tolist(), int(subject.hashed(0)))
-
-
-def test_a_check_starts_within_fifty_milliseconds(subject):
-    """The quickest counts: on a busy machine the others say how busy it is, and it is asked more often."""
-    spent = [np.inf]
-    while min(spent) >= 0.05 and len(spent) <= 100:
-        began = time.perf_counter()
-        subject.fresh()
-        subject.scaled(1.0)
-        spent.append(time.perf_counter() - began)
-    assert min(spent) < 0.05
 
 
 def test_a_sandbox_that_is_ended_from_outside_is_started_anew(subject):

@@ -194,9 +194,8 @@ def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
 def test_what_is_unchanged_is_not_made_again_and_what_is_gone_is_removed(made, tmp_path):
     folder, site, (one, two), _ = made
     before = {page: page.stat().st_mtime_ns for page in pages(site)}
-    begun = time.monotonic()
     ran = run("site", one, two, folder=folder)
-    assert "run now: 0" in ran.stdout and time.monotonic() - begun < 60
+    assert "run now: 0" in ran.stdout
     assert {page: page.stat().st_mtime_ns for page in pages(site)} == before
 
     ran = run("site", one, folder=folder)
