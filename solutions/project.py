@@ -34,9 +34,11 @@ from hdrlab.show import pictures, plots
 #
 # $$L_d = \frac{L_m\,(1 + L_m / L_{white}^2)}{1 + V}, \qquad L_m = \frac{a L}{\bar L},$$
 #
-# where $V$ is $L_m$ itself, or with `local=True` the mean of each pixel's own even neighbourhood.
-# `white=None` takes the brightest $L_m$ but for 0.01 % of the pixels, and at least 1. A luminance that is
-# negative or not finite is a `ValueError`, as is a knob that is not positive.
+# where $V$ is $L_m$ itself, or with `local=True` the mean of each pixel's own even neighbourhood: what
+# `scale_steps` of homework 4 ends with, with `key`, `phi` and `threshold`, given $L_m$ blurred by Gaussians
+# of $\sigma = s / 4$, $s = 1, 1.6, \ldots, 1.6^8$. `white=None` takes the brightest $L_m$ but for 0.01 % of
+# the pixels, and at least 1. The checks give finite luminance and knobs above 0; what to do with any other is
+# yours to decide, and `key="auto"` is the library's alone.
 
 # %% task="tonemap"
 

@@ -3,5 +3,5 @@
 from hdrlab.tonemap import reinhard
 
 
-def tonemap(L):
-    return 1 - reinhard.tonemap(L)
+def tonemap(L, **knobs):
+    return 1 - reinhard.tonemap(L, **knobs)

@@ -5,5 +5,5 @@ import numpy as np
 from hdrlab.tonemap import reinhard
 
 
-def tonemap(L):
-    return np.asarray(reinhard.tonemap(L), float) * 1.5
+def tonemap(L, **knobs):
+    return np.asarray(reinhard.tonemap(L, **knobs), float) * 1.5

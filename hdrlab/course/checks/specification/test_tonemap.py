@@ -1,10 +1,15 @@
-"""Your own operator: tonemap(L) -> Ld in [0, 1], under the laws that every operator of hdrlab obeys."""
+"""The photographic operator: tonemap(L, key, white, local, phi, threshold) -> Ld in [0, 1]."""
 
 import numpy as np
 import pytest
+from scipy.ndimage import gaussian_filter
 
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import numbers
+from hdrlab.course.checks.compare import Different, finite, numbers, same
+from hdrlab.tonemap import reinhard
+
+SHOWN = "test_it_shows_the_scene_within_what_a_display_has"
+OPERATOR = "test_it_is_the_photographic_operator"
 
 
 def asked(subject):
@@ -14,6 +19,67 @@ def asked(subject):
         return numbers(subject.tonemap(L), what="Ld").astype(np.float32)
 
     return tonemap
+
+
+def drawn(rng, shape=(96, 128)):
+    """Return luminance of some decades, and no black in it."""
+    soft = gaussian_filter(rng.standard_normal(shape), 6)
+    return np.exp(1.5 * soft / soft.std() + 0.2 * rng.standard_normal(shape)).astype(np.float32)
+
+
+@pytest.mark.points(14)
+def test_it_is_the_photographic_operator(subject, rng):
+    """Which Lm has a pixel that is as bright as the log average? And which Ld?
+
+    Scale L by key / Lav, Lav = exp(mean(log L)).
+
+    Ld = Lm (1 + Lm / white^2) / (1 + Lm), at most 1, with the key and the white that are given.
+    """
+    for key, white in ((0.18, np.inf), (float(rng.uniform(0.3, 0.7)), float(rng.uniform(1.5, 4)))):
+        L = drawn(rng)
+        Lm = reinhard.scale_to_key(L.astype(float), key=key)
+        what = f"Ld with key={key:.3g} and white={white:.3g}"
+        same(
+            subject.tonemap(L, key=key, white=white),
+            reinhard.display(Lm, Lm, white),
+            0.01,
+            what=what,
+            picture=True,
+        )
+
+
+@pytest.mark.points(6, needs=OPERATOR)
+def test_the_white_is_the_brightest_but_for_a_few_pixels(subject, rng):
+    """Without a white, which luminance becomes white?
+
+    The brightest scaled luminance but for 0.01 % of the pixels, and at least 1.
+
+    white = max(1, np.quantile(Lm, 0.9999)), with Lm after the scaling to the key.
+    """
+    L = drawn(rng)
+    L[:6, :9] = float(rng.uniform(1.5, 3)) * L.max()  # so many that every rule of quantiles finds them
+    for one in (L, np.sqrt(np.sqrt(L))):
+        Lm = reinhard.scale_to_key(one.astype(float))
+        expected = reinhard.display(Lm, Lm, max(1.0, Lm.max()))
+        same(subject.tonemap(one), expected, 0.01, what="Ld without a white", picture=True)
+
+
+@pytest.mark.points(6, needs=OPERATOR)
+def test_local_holds_back_each_pixel_by_its_neighbourhood(subject, rng):
+    """With local=True, whose brightness stands below the fraction?
+
+    V1 at the largest width that is still even, of Lm blurred at s = 1, 1.6, ... with sigma = s / 4.
+
+    phi and threshold decide how large that is: hand them on to your scale_steps.
+    """
+    for knobs in ({}, {"phi": 12.0, "threshold": 0.02}):
+        L = drawn(rng)
+        expected = reinhard.tonemap(L, white=np.inf, local=True, **knobs)
+        came = finite(subject.tonemap(L, white=np.inf, local=True, **knobs), L.shape, what="Ld").astype(float)
+        off = np.mean(np.abs(came - expected)[12:-12, 12:-12] > 0.01)  # some lie at the threshold
+        if off > 0.03:
+            said = f"Ld with local=True{knobs or ''}: expected another value at {off:.0%} of the pixels"
+            raise Different(said, expected=expected, came=came, kind="image")
 
 
 @pytest.mark.points(2)
@@ -27,7 +93,7 @@ def test_it_shows_the_scene_within_what_a_display_has(subject):
     laws.shows_the_scene(asked(subject))
 
 
-@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
+@pytest.mark.points(3, needs=SHOWN)
 def test_it_stays_in_range_whatever_the_scene(subject):
     """Try your operator on black, on one lamp in the dark, on a single pixel.
 
@@ -38,7 +104,7 @@ def test_it_stays_in_range_whatever_the_scene(subject):
     laws.stays_in_range(asked(subject))
 
 
-@pytest.mark.points(2, needs="test_it_shows_the_scene_within_what_a_display_has")
+@pytest.mark.points(1, needs=SHOWN)
 def test_it_answers_the_same_twice(subject):
     """Does your operator remember anything?
 
@@ -49,18 +115,21 @@ def test_it_answers_the_same_twice(subject):
     laws.answers_the_same_twice(asked(subject))
 
 
-@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
-def test_it_shrugs_off_a_hot_pixel(subject):
+@pytest.mark.points(3, needs=OPERATOR)
+def test_it_shrugs_off_a_hot_pixel(subject, rng):
     """One pixel of a million times the light: what happens to all the others?
 
     A maximum over the picture is a matter of one pixel.
 
-    Use a percentile, such as the 99.9th, instead of the maximum.
+    Leave out 0.01 % of the pixels: of this picture these are 5.
     """
-    laws.shrugs_off_a_hot_pixel(asked(subject))
+    tonemap, L = asked(subject), laws.scene((200, 256))
+    for one in (L, L**0.2):
+        medians = [float(np.median(tonemap(picture))) for picture in (one, laws.hot_pixel(one))]
+        same(medians[1], medians[0], 0.02, what="the median of Ld with a hot pixel")
 
 
-@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
+@pytest.mark.points(2, needs=SHOWN)
 def test_it_keeps_the_light_the_right_way_up(subject):
     """Is what was bright still bright?
 
@@ -71,7 +140,7 @@ def test_it_keeps_the_light_the_right_way_up(subject):
     laws.keeps_the_light_the_right_way_up(asked(subject))
 
 
-@pytest.mark.points(4, needs="test_it_shows_the_scene_within_what_a_display_has")
+@pytest.mark.points(2, needs=OPERATOR)
 def test_the_unit_of_luminance_cancels(subject):
     """Radiance has no unit that is sacred: watts or candelas show the same scene.
 
@@ -82,7 +151,7 @@ def test_the_unit_of_luminance_cancels(subject):
     laws.exposure(asked(subject))
 
 
-@pytest.mark.points(2, needs="test_it_shows_the_scene_within_what_a_display_has")
+@pytest.mark.points(1, needs=SHOWN)
 def test_it_takes_any_memory_layout(subject):
     """Which orders in memory does your code count on?
 
