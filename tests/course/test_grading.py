@@ -124,6 +124,21 @@ def test_a_missing_task_costs_its_own_points_alone(graded):
     assert found.score == 10 and any("irradiance was not found" in problem for problem in found.problems)
 
 
+@pytest.mark.parametrize("answer", ["[[1, 2], [3], 4]", "[[1], [[2]]]", "{'a': [1, [2]]}"])
+def test_a_ragged_answer_of_one_task_loses_no_other_tasks_sentence(graded, answer):
+    wrong = RIGHT.replace("np.minimum(z, n - 1 - z)", "np.abs(z - (n - 1) / 2)")
+    ragged = f"def irradiance(*given, **named):\n    return {answer}\n"
+    found = graded(wrong + ragged, of("hw2", "hat", "irradiance"))
+    assert list(found.misconceptions) == ["hat"] and results.points(found.of("irradiance"))[0] == 0
+
+
+def test_a_missing_task_is_said_once(graded):
+    found = graded(RIGHT, of("hw2", "hat", "irradiance"))
+    said = feedback.text(found), feedback.page(found)
+    assert [text.count("was not found") for text in said] == [1, 1]
+    assert not any(one.message for one in found.of("irradiance"))
+
+
 def test_hidden_checks_count_and_a_student_learns_the_outcome_alone(graded, tmp_path):
     hidden = tmp_path / "hidden"
     hidden.mkdir()
