@@ -344,7 +344,7 @@ ROWS = (
     Experiment(
         "slow",
         f"{VOTERS} voters within {WITHIN:g} s, while {SLOW:,} clients hold half a request; 1,024 descriptors",
-        lambda f: load(f, "apart", slow=SLOW, descriptors=1024),
+        lambda f: load(f / "slow", "apart", slow=SLOW, descriptors=1024),
         (*WHOLE, *UNDER_ATTACK),
     ),
     Experiment(

@@ -117,6 +117,7 @@ def _scaling(used: list[Used], count: int, what: str, numbers: tuple[int, ...]) 
 
 def among_hostile(folder: Path, count: int = HONEST) -> dict[str, Any]:
     """Return how a class fares that has every kind of hostile hand-in among its own."""
+    folder = folder / "mixed"  # others have written into it
     target = folder / "with"
     each = mixed.honest(count, target / "results")
     others = mixed.hostile(target / "results", each[0])
@@ -137,7 +138,7 @@ def among_hostile(folder: Path, count: int = HONEST) -> dict[str, Any]:
 def most_costly(folder: Path) -> dict[str, Any]:
     """Return what the worst submission of each kind costs, and which one it is."""
     each = list(costs.each())
-    used = along(partial(costs.cost, folder), range(len(each)), "costs")
+    used = along(partial(costs.cost, folder / "costs"), range(len(each)), "costs")
     found: dict[str, Any] = {
         "CPU seconds of the worst": max(one.cpu for one in used),
         "seconds of the worst": max(one.seconds for one in used),

@@ -16,6 +16,7 @@ import siege
 from traps import TRAPS
 
 from benchmarks import __main__ as command
+from benchmarks import class_
 from benchmarks.class_ import costs, grading, handed, judged, mixed
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed
@@ -150,6 +151,24 @@ def test_a_mixed_class_has_every_hostile_kind_that_the_tests_have_and_sixty_hone
     expected = {kind: set(getattr(hostile, name)) for kind, name in kinds.items()}
     assert which == {**expected, "attack": set(siege.NAMES), "trap": set(TRAPS)}
     assert len(others) >= 120 and each[0].file in taken
+
+
+def test_rows_write_into_folders_of_their_own(tmp_path, monkeypatch):
+    written = []
+    used = Used(1.0, 1.0, 1.0, 1.0, 1.0)
+
+    def graded(place, out, *words, **_):
+        written.append(out)
+        out.mkdir(parents=True)
+        (out / "gradebook.csv").write_text("student,note\n" + "\n".join(f"x{k:03d},n" for k in range(300)))
+        return used
+
+    monkeypatch.setattr(class_, "grade", graded)
+    monkeypatch.setattr(class_, "along", lambda work, each, _: [used] * len(each))
+    class_.whole(tmp_path, 12)
+    found = class_.among_hostile(tmp_path, 3)
+    assert len(set(written)) == len(written) == 4 and found["hostile ones of whom nothing is said"] == 0
+    assert class_.most_costly(tmp_path)["CPU seconds of the worst"] == 1
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there are names that this system cannot write")

@@ -169,6 +169,15 @@ def test_voters_of_a_second_process_lose_no_ballot_and_have_none_twice(tmp_path)
     assert found["voters"] == 24
 
 
+def test_rows_of_the_benchmark_write_into_folders_of_their_own(tmp_path, monkeypatch):
+    benchmark = pytest.importorskip("benchmarks.gallery", reason="the benchmarks are not installed")
+    folders = []
+    monkeypatch.setattr(benchmark, "load", lambda folder, how, **_: folders.append(folder / how) or {})
+    for row in benchmark.ROWS[:3]:
+        row.run(tmp_path)
+    assert len(set(folders)) == 3
+
+
 @served
 def test_a_server_that_is_killed_loses_no_acknowledged_ballot(tmp_path):
     from benchmarks import gallery as bench
