@@ -44,7 +44,7 @@ def by_grid(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) ->
     """Return Z (N, P[, 3]): of a grid of `count` pixels or a few fewer, those that every frame shows."""
     stack = as_stack(images)
     height, width = stack.shape[1:3]
-    rows = int(np.clip(np.sqrt(count * height / width), 1, height))
+    rows = int(np.clip(np.sqrt(count * height / width), 1, min(height, max(count, 1))))
     columns = int(np.clip(count // rows, 1, width))
     y = ((np.arange(rows) + 0.5) * height / rows).astype(int)
     x = ((np.arange(columns) + 0.5) * width / columns).astype(int)

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from hdrlab.core.arrays import to_256
@@ -58,6 +58,7 @@ def test_ranks_ignore_where_the_pixels_lie():
 
 
 @given(st.integers(1, 3000), st.integers(1, 40), st.integers(1, 40))
+@example(1, 4, 1)
 def test_a_grid_holds_pixels_of_the_photographs_and_no_more_than_asked_for(count, height, width):
     images = np.arange(height * width, dtype=np.uint16).reshape(1, height, width) % 256
     images = np.concatenate([images, images // 2]).astype(np.uint8)
