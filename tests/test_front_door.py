@@ -8,6 +8,7 @@ from pathlib import Path
 import click
 import pytest
 import yaml
+from PIL import Image
 from tiers import QUICK, TIERS
 
 import hdrlab
@@ -112,6 +113,12 @@ def test_one_version_stands_in_the_package_the_changes_and_the_citation():
     newest = re.search(r"^## (.+)$", text_of(ROOT / "CHANGELOG.md"), re.M)[1]
     assert hdrlab.__version__ == newest == citation["version"]
     assert citation["license"] == tomllib.loads(text_of(ROOT / "pyproject.toml"))["project"]["license"]
+
+
+def test_the_moving_picture_of_the_readme_moves_and_is_small():
+    path = ROOT / "README.webp"
+    with Image.open(path) as film:
+        assert path.name in text_of(README) and film.n_frames > 20 and path.stat().st_size < 1_000_000
 
 
 def test_the_workflows_run_every_tier_and_the_quick_one_on_three_systems():

@@ -8,6 +8,7 @@ at all.
 import os
 import sys
 from collections.abc import Sequence
+from io import TextIOWrapper
 
 import click
 
@@ -28,9 +29,11 @@ from hdrlab.cli import (
 
 def run(arguments: Sequence[str] | None = None) -> None:
     """Run the command and exit: 0 where all went well, 2 for bad input, 130 after Ctrl-C."""
-    os.environ.setdefault(
-        "OPENBLAS_NUM_THREADS", "1"
-    )  # the products here are small: threads only wait on them
+    # the products here are small: threads only wait on them
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, TextIOWrapper):  # a pipe of Windows has no sign such as ✗
+            stream.reconfigure(errors="replace")
     try:
         sys.exit(main.main(arguments, prog_name="hdrlab", standalone_mode=False))
     except click.exceptions.Abort:

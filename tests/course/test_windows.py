@@ -34,9 +34,13 @@ def on_windows(tmp_path):
     (tmp_path / "plan.toml").write_text(PLAN, encoding="utf8")
     (tmp_path / "hw2.py").write_text(GOOD, encoding="utf8")
 
-    def run(*words):
+    def run(*words, **more):
         ran = subprocess.run(
-            [launcher, *words], cwd=tmp_path, env=environment, capture_output=True, encoding="utf8"
+            [launcher, *words],
+            cwd=tmp_path,
+            env=environment | more,
+            capture_output=True,
+            encoding=more.get("PYTHONIOENCODING", "utf8"),
         )
         return ran.returncode, ran.stdout, ran.stderr
 
@@ -65,6 +69,15 @@ def test_a_student_checks_a_function_in_a_notebook(on_windows):
 def test_a_student_checks_a_file_at_the_terminal(on_windows):
     code, out, err = on_windows("-m", "hdrlab", "check", "hw2.py", "--plan", "plan.toml")
     assert code == 0 and "✗" not in out and "10 of 10 points" in out, (out, err)
+
+
+@lacking
+def test_a_pipe_that_lacks_a_sign_gets_another_in_its_place(on_windows, tmp_path):
+    wrong = GOOD.replace("n - 1 -", "n -")
+    (tmp_path / "hw2.py").write_text(wrong, encoding="utf8")
+    words = ("-X", "utf8=0", "-m", "hdrlab", "check", "hw2.py", "--plan", "plan.toml")
+    code, out, err = on_windows(*words, PYTHONIOENCODING="cp1252")
+    assert code == 0 and "of 10 points" in out, (out, err)
 
 
 @lacking
