@@ -24,7 +24,7 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import luminance
 
 # brackets of a row, of each of the sound kinds, and of those that one row distinguishes
-COUNT, SOUND = 16, 30
+COUNT, SOUND = 12, 14
 # stops
 COSTLY = 0.1
 # pixels at the border that do not count, where frames were moved

@@ -320,3 +320,26 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
         said = " ".join(quote.replace("> ", "").split()).removeprefix("note: ")
         for part in re.split(r"[+-]?\d+\.\d+|frame\d\.jpg", said):
             assert part.strip(" ,:;") in printed, quote
+
+
+@pytest.mark.parametrize(
+    "opening",
+    [
+        "the photographs contradict their exposure times",
+        "the estimated times depart from those stated",
+        "the stated times contradict the pixels",
+        "the photographs contradict each other by",
+        "the corners change against the middle",
+        "do not lie on each other",
+        "the photographs disagree by",
+        "no level stands in two frames",
+        "no response was found",
+        "left out, for the other photographs contradict it",
+        "too dark or too bright to be laid on each other",
+        "the times could not be checked by the pixels",
+    ],
+)
+def test_the_page_on_warnings_quotes_this_one(opening):
+    page = Path(cases.__file__).parent / "pages" / "verdicts.md"
+    quotes = [line for line in page.read_text("utf-8").splitlines() if line.startswith("> ")]
+    assert any(opening in line for line in quotes)
