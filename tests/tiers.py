@@ -41,6 +41,7 @@ TIERS = {
         "tests/course/test_misconceptions.py::test_nine_in_ten_are_recognised",
         "tests/course/test_toy.py",
         "tests/course/test_traps_in_a_class.py",
+        "tests/course/test_windows.py::test_an_instructor_grades_a_class",
     ),
     "papers": (
         "tests/test_papers.py",
