@@ -34,6 +34,15 @@ for tier in TIERS:
     nox.session(lambda session, tier=tier: test(session, tier), name=tier)
 
 
+@nox.session
+def coverage(session: nox.Session) -> None:
+    """Print which branches of hdrlab the quick tier takes, file by file, and in all."""
+    if session.virtualenv.is_sandboxed:
+        session.install("--editable", ".[test,cover]")
+    report = ["--cov=hdrlab", "--cov-branch", "--cov-report=term:skip-covered"]
+    session.run("python", "-m", "pytest", f"--tier={QUICK}", *report, *session.posargs)
+
+
 @nox.session(venv_backend="uv")
 def lowest(session: nox.Session) -> None:
     """Run the quick tier with the lowest versions that pyproject.toml names, whose warnings are let be."""

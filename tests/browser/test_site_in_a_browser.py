@@ -33,7 +33,7 @@ def site(browser, kept, tmp_path_factory):
     """The site of all notebooks."""
     folder = tmp_path_factory.mktemp("site")
     (folder / "site" / CACHE).mkdir(parents=True)
-    (kept / "executed").mkdir(exist_ok=True)
+    (kept / "executed").mkdir(parents=True, exist_ok=True)
     (folder / "site" / CACHE / "executed").symlink_to(kept / "executed")
     command = [sys.executable, "-m", "hdrlab", "site", "--out", str(folder / "site"), "--jobs", "2"]
     ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
