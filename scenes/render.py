@@ -22,8 +22,8 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.cli.terminal import elapsed
 from hdrlab.core.colour import luminance
 from hdrlab.io.maps.exr import LARGEST_HALF
-from hdrlab.io.maps.layers import write_layers
 from hdrlab.scenes.places import PLACES
+from scenes.files import write_layers
 from scenes.lighting import SMOOTH, radiance
 from scenes.models.place import Light, Place
 from scenes.tracer import Float, Frame, mitsuba, scene, sensor, sharp

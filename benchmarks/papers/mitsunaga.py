@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_most, near, spread
 from hdrlab.core.steps import last
-from hdrlab.response import marginal, mitsunaga, selection
+from hdrlab.response import marginal, mitsunaga, polynomial, selection
 from hdrlab.response.self_calibration import average
 from hdrlab.show.plots.lectures import ambiguity
 
@@ -35,6 +35,15 @@ class Trials(NamedTuple):
     paper: Float
     turns: NDArray[np.intp]
     ours: Float
+
+
+class Valley(NamedTuple):
+    """Figure 4: the error (K,) at ratios R (K,), where it has local minima, and the ratio a search finds."""
+
+    R: Float
+    error: Float
+    minima: Float
+    found: float
 
 
 def section5(*, seed: int = SEED, trials: int = 100, ours: bool = True) -> Trials:
@@ -61,9 +70,38 @@ def marginal_error(one: ambiguity.Trial) -> float:
     return ambiguity.mean_error(marginal.fit(one.Z, start.c[0], start.R, stated=STATED, trust=TRUST).c, one.c)
 
 
-def figure4(*, seed: int = SEED, sigma: float = 0.0) -> ambiguity.Valley:
+def search_ratio(M: Float, start: float, order: int, *, reach: float = 1.25, steps: int = 81) -> float:
+    """Return the ratio of two frames M (N, 2) with the lowest error in start / reach ... start * reach.
+
+    The line search of [Mitsunaga99 sec. 4]. For clean samples, which leave no error at the truth: noise lifts
+    that minimum and moves it far, and then alternating is better.
+    """
+    R = start * reach ** np.linspace(-1, 1, steps)
+    R = R[R < 1]
+    k = int(np.argmin(ambiguity.scan_ratios(M, R, order)))
+    fine = np.linspace(R[max(k - 1, 0)], R[min(k + 1, len(R) - 1)], steps)
+    return float(fine[np.argmin(ambiguity.scan_ratios(M, fine, order))])
+
+
+def scan_valley(
+    c: Float, *, ratio: float = 0.7, start: float = 0.625, sigma: float = 0.0, rng: int = 0
+) -> Valley:
+    """Return figure 4 of the paper for a camera c: two frames, the truth at `ratio`, a guess at `start`.
+
+    Samples are not quantised. With sigma = 0 the error touches 0 at the truth; with noise it does not.
+    """
+    draw = np.random.default_rng(rng)
+    E = 10 ** draw.uniform(-2, 0, 1000)
+    M = polynomial.brightness(E[:, None] * [ratio, 1], c) + sigma * draw.standard_normal((1000, 2))
+    order, R = len(c) + 1, np.linspace(0.3, 0.95, 261)
+    error = ambiguity.scan_ratios(M, R, order)
+    inner = (error[1:-1] < error[:-2]) & (error[1:-1] < error[2:])
+    return Valley(R, error, R[1:-1][inner], search_ratio(M, start, order))
+
+
+def figure4(*, seed: int = SEED, sigma: float = 0.0) -> Valley:
     """Return the error along the ratio of two frames, truth 0.7, and what a search from 0.625 finds."""
-    return ambiguity.scan_valley(ambiguity.draw_curve(np.random.default_rng(seed)), sigma=sigma)
+    return scan_valley(ambiguity.draw_curve(np.random.default_rng(seed)), sigma=sigma)
 
 
 def canon(*, seed: int = SEED) -> tuple[Float, Float]:

@@ -7,6 +7,7 @@ near    RMS below which two curves count as copies: a prior holds none of the cu
 Samples are read with noise of 0.001, seed 0.
 """
 
+import re
 from collections.abc import Mapping
 from pathlib import Path
 
@@ -15,13 +16,20 @@ from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, at_most, real, spread
 from hdrlab.calibration.chart import NEUTRAL
-from hdrlab.io.emor import read_curves, read_emor
+from hdrlab.io.emor import read_curves
 from hdrlab.response import space
 
 Float = NDArray[np.float64]
 PLACES = NEUTRAL[:5]  # the chart's grays but black: as exposures, where white is at 0.9 of the range
 EMOR, OURS = "RMS with 3, 5, 11 published components", "RMS with 3, 5, 11 components of ours"
 SAMPLES = "RMS of a response from 5 samples, mean, %"
+
+
+def read_emor(path: Path) -> space.Space:
+    """Return the published components: blocks, `name =` and numbers: the axis, the mean, the components."""
+    parts = re.split(r"^\s*\w+(?:\(\d+\))?\s*=", path.read_text(encoding="latin-1"), flags=re.MULTILINE)
+    _, mean, *components = (np.array(numbers.split(), np.float64) for numbers in parts[1:])
+    return space.Space(mean, np.stack(components), np.ones(len(components)))
 
 
 def rms(curves: Float, like: Float) -> Float:
@@ -73,8 +81,7 @@ def measured(folder: Path) -> Float:
 def components(folder: Path) -> Mapping[str, ArrayLike]:
     """Return what the published components leave of 201 curves, and what those computed here do."""
     curves, emor = measured(folder), read_emor(real(folder, "crf_curves") / "emor.txt")
-    published = space.Space(emor.mean, emor.components, np.ones(len(emor.components)))
-    bases = {EMOR: published, OURS: space.fit_space(curves, 11)}
+    bases = {EMOR: emor, OURS: space.fit_space(curves, 11)}
     return {who: list(projection(curves, basis).values()) for who, basis in bases.items()}
 
 

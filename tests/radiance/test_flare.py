@@ -47,17 +47,6 @@ def test_a_clear_lens_changes_nothing(room):
     assert np.array_equal(lens.add_glare(room, GlareSpread(0.0)), room)
 
 
-def test_a_reflection_lies_across_the_middle_as_a_disc_with_its_share_of_light():
-    E = np.zeros((121, 161), np.float32)
-    E[30, 50] = 1e6
-    disc = lens.reflect(E, place=-0.5, radius=10, share=1e-3)
-    y, x = np.nonzero(disc > disc.max() / 2)
-    assert (y.mean(), x.mean()) == pytest.approx((60 + 15, 80 + 15), abs=0.6)
-    assert len(y) == pytest.approx(np.pi * (0.5 * 10) ** 2, rel=0.15)  # half as large, as all of its picture
-    inner = disc[(np.hypot(*(np.indices(E.shape) - np.array([75, 95])[:, None, None])) < 3)]
-    assert np.ptp(inner) < 0.02 * inner.max()
-
-
 @pytest.mark.parametrize(
     "spread", [GlareSpread(1.0), GlareSpread(-0.1), GlareSpread(0.1, 0.0), GlareSpread(0.1, 2.0, -1.0)]
 )
@@ -66,12 +55,6 @@ def test_a_lens_without_a_meaning_is_refused(spread):
         lens.add_glare(np.ones((4, 4)), spread)
     with pytest.raises(ValueError, match="share"):
         flare.remove_glare(np.ones((4, 4)), spread=spread)
-
-
-@pytest.mark.parametrize("wrong", [{"place": 0}, {"radius": 0}, {"share": 1}])
-def test_a_reflection_without_a_meaning_is_refused(wrong):
-    with pytest.raises(ValueError, match="expected a place"):
-        lens.reflect(np.ones((4, 4)), **wrong)
 
 
 # Its removal

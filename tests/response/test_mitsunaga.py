@@ -22,6 +22,11 @@ STATED = np.full(3, 0.5)
 CANON, CANON_STATED = np.array([0.419, 0.292, 0.570, 0.512]), np.array([0.5, 0.25, 0.5, 0.5])
 
 
+@pytest.fixture(scope="module")
+def papers():
+    return pytest.importorskip("benchmarks.papers.mitsunaga")
+
+
 def clean(c, R, count=400):
     """Return samples M (1, N, P) without noise or levels."""
     exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
@@ -224,15 +229,14 @@ def test_the_literal_scheme_slides_along_the_u_ambiguity():
 
 
 @pytest.mark.parametrize("seed", range(5))
-def test_figure_4_the_line_search_finds_the_ratio(seed):
-    valley = ambiguity.scan_valley(ambiguity.draw_curve(np.random.default_rng(seed)))
+def test_figure_4_the_line_search_finds_the_ratio(seed, papers):
+    valley = papers.figure4(seed=seed)
     assert abs(valley.found - 0.7) < 0.01
     assert np.abs(valley.minima - 0.7).min() < 0.01 and len(valley.minima) > 1
 
 
-def test_figure_4_noise_moves_the_minimum():
-    c = ambiguity.draw_curve(np.random.default_rng(0))
-    quiet, noisy = ambiguity.scan_valley(c), ambiguity.scan_valley(c, sigma=0.005)
+def test_figure_4_noise_moves_the_minimum(papers):
+    quiet, noisy = papers.figure4(), papers.figure4(sigma=0.005)
     assert quiet.error.min() < 0.05 * noisy.error.min()
 
 

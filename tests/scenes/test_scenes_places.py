@@ -13,9 +13,10 @@ import pytest
 from hdrlab import scenes
 from hdrlab.core.colour import luminance
 from hdrlab.io.maps import exr
-from hdrlab.io.maps.layers import read_layers, write_layers
+from hdrlab.io.maps.layers import read_layers
 from hdrlab.scenes import places
 from scenes import denoise, relay, render, tracer
+from scenes.files import write_layers
 from scenes.models import openings, shapes, sun, surfaces
 from scenes.models.place import Camera, Light, Place
 

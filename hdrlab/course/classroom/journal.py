@@ -12,7 +12,6 @@ import os
 from collections import Counter, deque
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from types import TracebackType
 from typing import NamedTuple, Protocol, Self
 
 from hdrlab.course import scratch
@@ -68,9 +67,7 @@ class Executor(Protocol):
     def __enter__(self) -> Self:
         """Make ready."""
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         """End what runs."""
 
 

@@ -25,24 +25,7 @@ HOMEWORK = "hw2"
 TEAM, MEMBERS = "t1", ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
 DONE = ("hat", "irradiance", "update")  # of who has not come to the end
-HOSTILE = """\
-# %% It prints what a grader prints when a check holds.
-def hat(*given, **named):
-    print("PASS\\n{'outcome': 'holds'}\\n2 passed in 0.01s", flush=True)
-
-# %% It ends the process before anything is compared.
-def gsolve(*given, **named):
-    import os
-    os._exit(0)
-
-# %% It raises what a page might run and a terminal obey.
-def update(*given, **named):
-    raise ValueError("\\x1b[2J<script>alert(1)</script>")
-
-# %% It answers with what claims to equal everything.
-def recover(*given, **named):
-    return type("Anything", (), {"__eq__": lambda self, other: True})()
-"""
+ATTACKS = Path(__file__).parent / "toy_attacks.txt"  # in place of functions
 COMMAND = (
     "hdrlab grade {folder}/submissions --homework hw2 --roster {folder}/roster.csv"
     " --received {folder}/received.csv --secret-file {folder}/secret.txt -o {folder}/results"
@@ -84,7 +67,9 @@ def hand_ins(homework: Homework) -> Iterator[Handed]:
     yield Handed("s11_hw2.zip", archive, -5, "An archive: 100.")
     trap = packed({"hw2.ipynb": right, "../s01_hw2.ipynb": b"{}"})
     yield Handed("s12_hw2.zip", trap, -4, "An archive that would overwrite another's file: refused, 0.")
-    yield Handed("s13_hw2.py", HOSTILE.encode(), -6, "Attacks on the grader in place of functions: 0 points.")
+    yield Handed(
+        "s13_hw2.py", ATTACKS.read_bytes(), -6, "Attacks on the grader in place of functions: 0 points."
+    )
 
 
 def packed(files: Mapping[str, bytes]) -> bytes:

@@ -19,21 +19,8 @@ from hdrlab.io.files import replacing
 LIBRARY = Path(hdrlab.__file__).parent
 SKIPPED = (".pyc", ".ipynb")
 LARGE = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")  # no check needs them
+SCRIPTS = Path(__file__).parent / "gradescope_files"  # which Gradescope runs
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the same course gives the same zip
-SETUP = """#!/usr/bin/env bash
-# Run once by Gradescope when the image is made.
-set -euo pipefail
-apt-get update -qq
-DEBIAN_FRONTEND=noninteractive apt-get install -y -qq python3 python3-venv
-python3 -m venv /autograder/env
-/autograder/env/bin/pip install --quiet -r /autograder/source/requirements.txt
-"""
-RUN = """#!/usr/bin/env bash
-# Run by Gradescope for each submission.
-cd /autograder
-export PYTHONPATH=/autograder/source PYTHONDONTWRITEBYTECODE=1
-/autograder/env/bin/python -m hdrlab.course.export.autograder
-"""
 
 
 def export(
@@ -54,8 +41,7 @@ def export(
     for name in plan.homeworks:
         files = {
             **library,
-            "setup.sh": SETUP.encode(),
-            "run_autograder": RUN.encode(),
+            **{script.name: script.read_bytes() for script in SCRIPTS.iterdir()},
             "requirements.txt": "\n".join(requirements()).encode() + b"\n",
             "plan.toml": (plan_file or plans.PLAN).read_bytes(),
             "settings.json": json.dumps({"homework": name, "secret": secret}).encode(),

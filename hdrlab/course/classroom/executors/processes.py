@@ -4,7 +4,6 @@ import os
 import threading
 from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
-from types import TracebackType
 from typing import Self
 
 from hdrlab.course.classroom.executors import alone as process
@@ -36,9 +35,7 @@ class Processes:
         self._threads = ThreadPoolExecutor(self._jobs, "hdrlab-grade")
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._stopped.set()  # an error, or Ctrl-C: what runs will be done again by the next run
         self._threads.shutdown(cancel_futures=True)
 

@@ -39,15 +39,6 @@ class Drift(NamedTuple):
     off_power: F64
 
 
-class Valley(NamedTuple):
-    """Figure 4: the error (K,) at ratios R (K,), where it has local minima, and the ratio a search finds."""
-
-    R: F64
-    error: F64
-    minima: F64
-    found: float
-
-
 def draw_curve(rng: np.random.Generator, *, order: int = 5, least: float = 0.02) -> F64:
     """Return c of a rising polynomial drawn at random.
 
@@ -147,32 +138,3 @@ def scan_ratios(M: F64, R: ArrayLike, order: int) -> F64:
     samples, M = neighbours(M, order), M[in_range(M)[:, 0]]
     each = np.atleast_1d(R)[:, None]
     return np.array([brightness_error(M, r, coefficients(gram(*samples, r))) for r in each])
-
-
-def search_ratio(M: F64, start: float, order: int, *, reach: float = 1.25, steps: int = 81) -> float:
-    """Return the ratio of two frames M (N, 2) with the lowest error in start / reach ... start * reach.
-
-    The line search of [Mitsunaga99 sec. 4]. For clean samples, which leave no error at the truth: noise lifts
-    that minimum and moves it far, and then alternating is better.
-    """
-    R = start * reach ** np.linspace(-1, 1, steps)
-    R = R[R < 1]
-    k = int(np.argmin(scan_ratios(M, R, order)))
-    fine = np.linspace(R[max(k - 1, 0)], R[min(k + 1, len(R) - 1)], steps)
-    return float(fine[np.argmin(scan_ratios(M, fine, order))])
-
-
-def scan_valley(
-    c: F64, *, ratio: float = 0.7, start: float = 0.625, sigma: float = 0.0, rng: int = 0
-) -> Valley:
-    """Return figure 4 of the paper for a camera c: two frames, the truth at `ratio`, a guess at `start`.
-
-    Samples are not quantised. With sigma = 0 the error touches 0 at the truth; with noise it does not.
-    """
-    draw = np.random.default_rng(rng)
-    E = 10 ** draw.uniform(-2, 0, 1000)
-    M = brightness(E[:, None] * [ratio, 1], c) + sigma * draw.standard_normal((1000, 2))
-    order, R = len(c) + 1, np.linspace(0.3, 0.95, 261)
-    error = scan_ratios(M, R, order)
-    inner = (error[1:-1] < error[:-2]) & (error[1:-1] < error[2:])
-    return Valley(R, error, R[1:-1][inner], search_ratio(M, start, order))
