@@ -91,7 +91,7 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         ways = sorted((TESTS / "equivalent").glob("hw2_*.py"))
         return [(way.stem, ".py", way.read_bytes()) for way in islice(cycle(ways), count)]
     if kind == "mistake":
-        wrong = sorted(MISTAKES.glob("*.py"))
+        wrong = sorted(MISTAKES.rglob("*.py"))
         names = [one.stem for one in wrong if imitation.mistake(one.stem).task in ids]
         return [(name, ".ipynb", _mistaken(name)) for name in islice(cycle(names), count)]
     if kind == "half":

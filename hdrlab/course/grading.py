@@ -24,6 +24,7 @@ from hdrlab.course import plan, submission
 from hdrlab.course.checks import SPECIFICATION, running
 from hdrlab.course.material import handouts
 from hdrlab.course.plan import Homework
+from hdrlab.course.reports import causes
 from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable
@@ -190,42 +191,39 @@ def specification(files: Sequence[Path]) -> str:
 
 
 def _checks(heard: Sequence[dict[str, Any]], homework: Homework) -> Iterator[Check]:
-    """Yield each promise: it holds where it holds for all of its cases.
-
-    A promise about shape, identity or invariance, which a constant may keep, names the promise about the
-    substance that it `needs`: where that one fails it earns nothing.
-    """
+    """Yield each promise: it holds where it holds for all of its cases."""
     cases: dict[tuple[str, str, bool], list[dict[str, Any]]] = {}
     for line in heard:
         if "check" in line:
             cases.setdefault((line["task"], line["name"], line["hidden"]), []).append(line)
     ended = {line["ended"]: line for line in heard if "ended" in line and line["outcome"] == "holds"}
     ended |= {line["ended"]: line for line in heard if "ended" in line and line["outcome"] != "holds"}
-    worth = {task.id: Fraction(str(task.points)) for task in homework.tasks}
-    shares = {
-        task: sum(Fraction(one[0]["points"]) for key, one in cases.items() if key[0] == task)
-        for task in worth
-    }
-    endings = {key: [ended.get(one["check"], SILENT) for one in each] for key, each in cases.items()}
-    failures = {key: [one for one in each if one["outcome"] != "holds"] for key, each in endings.items()}
-    failed = {key[:2]: cases[key][0]["promise"] for key, broken in failures.items() if broken}
-    for (task, name, hidden), each in cases.items():
-        broken = failures[task, name, hidden]
-        whole = Fraction(each[0]["points"]) * worth[task] / (shares[task] or 1)
-        missing = failed.get((task, each[0]["needs"]))
-        needs = f"It holds, and earns its points where this holds, too: {missing}" if missing else ""
-        notes = lines(endings[task, name, hidden][0].get("message", ""), MESSAGE)
-        yield Check(
-            task=task,
-            name=name,
-            promise=each[0]["promise"],
-            points=Fraction() if broken or missing else whole,
-            max_points=whole,
-            outcome=broken[0]["outcome"] if broken else "holds",
-            message=lines(broken[0]["message"], MESSAGE) if broken else needs or notes,
-            hints=tuple(each[0]["hints"]),
-            drawing=broken[0].get("drawing", Drawing()) if broken else Drawing(),
-            said=lines((broken or endings[task, name, hidden])[0]["said"], SAID),
-            hidden=hidden,
-            kind=broken[0].get("kind", "") if broken else "",
-        )
+    named = {line["recognised"]: line for line in heard if "recognised" in line}
+    for task in homework.tasks:
+        own = [each for key, each in cases.items() if key[0] == task.id]
+        weights = [Fraction(each[0]["points"]) for each in own]
+        shares = causes.in_halves(Fraction(str(task.points)), weights) if own else []
+        checks = [_check(each, ended, whole) for each, whole in zip(own, shares, strict=True)]
+        needs = {each[0]["name"]: each[0]["needs"] for each in own}
+        once = named.get(task.id, {}).get("once", False)
+        yield from causes.traced(checks, needs, named=task.id in named, once=once)
+
+
+def _check(each: Sequence[dict[str, Any]], ended: dict[str, dict[str, Any]], whole: Fraction) -> Check:
+    """Return a promise with the first of its cases that does not hold."""
+    endings = [ended.get(one["check"], SILENT) for one in each]
+    shown = next((one for one in endings if one["outcome"] != "holds"), endings[0])
+    return Check(
+        task=each[0]["task"],
+        name=each[0]["name"],
+        promise=each[0]["promise"],
+        points=Fraction(),
+        max_points=whole,
+        outcome=shown["outcome"],
+        message=lines(shown["message"], MESSAGE),
+        hints=tuple(each[0]["hints"]),
+        drawing=shown.get("drawing", Drawing()),
+        said=lines(shown["said"], SAID),
+        hidden=each[0]["hidden"],
+        kind=shown.get("kind", ""),
+    )

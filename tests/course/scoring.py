@@ -2,10 +2,13 @@
 
 import inspect
 import runpy
+from fractions import Fraction
 from importlib import import_module
 
 from hdrlab.course import plan
-from hdrlab.course.checks import plugin
+from hdrlab.course.checks import misconceptions, plugin
+from hdrlab.course.reports import causes
+from hdrlab.course.reports.results import Check
 
 
 def functions(path):
@@ -24,8 +27,8 @@ def checks(task):
     return found
 
 
-def score(task, subject, seed=0):
-    """Return what share of a task's points a subject gets, and what each check says: None where it holds."""
+def answered(task, subject, seed=0):
+    """Return what each check of a task says of a subject: None where it holds."""
     said = {}
     for name, check, *_ in checks(task):
         wanted = inspect.signature(check).parameters
@@ -36,7 +39,21 @@ def score(task, subject, seed=0):
             said[name] = error
         else:
             said[name] = None
-    earned = sum(
-        points for name, _, points, _, needs in checks(task) if said[name] is None and not said.get(needs)
-    )
-    return earned / sum(points for _, _, points, *_ in checks(task)), said
+    return said
+
+
+def score(task, subject, seed=0):
+    """Return what share of a task's points a subject gets, and what each check says: None where it holds.
+
+    As in grading: a well-known mistake that explains all answers costs half at most.
+    """
+    said = answered(task, subject, seed)
+    found = misconceptions.closest(task, subject.calls[: plugin.CALLS]) if any(said.values()) else None
+    worth = [Fraction(str(points)) for _, _, points, *_ in checks(task)]
+    each = [
+        Check(task, name, name, Fraction(), points, "fails" if said[name] else "holds")
+        for (name, *_), points in zip(checks(task), worth, strict=True)
+    ]
+    needs = {name: needs or "" for name, *_, needs in checks(task)}
+    traced = causes.traced(each, needs, named=found is not None, once=found is not None and found.once)
+    return float(sum(one.points for one in traced) / sum(worth)), said

@@ -119,6 +119,27 @@ def test_a_function_without_a_good_answer_fails_in_plain_words(graded, body, sai
     assert found.score == 0 and any(said in one.message for one in found.checks), found.checks[0].message
 
 
+def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_other_task(graded):
+    endless = RIGHT + "def irradiance(*given):\n    while True: pass\n"
+    found = graded(endless, of("hw2", "hat", "irradiance"), PRACTICE._replace(timeout=1.0))
+    first, *others = found.of("irradiance")
+    assert "took longer than" in first.message and results.points(found.of("hat")) == (10, 10)
+    assert all((one.kind, one.message, one.follows) == ("late", "", first.promise) for one in others)
+
+
+def test_a_reply_that_is_lost_fails_its_check_and_no_other(graded):
+    dies_at_large = RIGHT.replace("    z = ", "    if n > 60000: import os; os._exit(0)\n    z = ")
+    found = graded(dies_at_large)
+    assert [one.outcome for one in found.checks].count("no answer") == 1 and 5 < found.score < 10
+
+
+def test_lambda_read_as_1_costs_half_and_is_told_once(graded):
+    wrong = imitation.texts(of("hw2", "gsolve"), ["gsolve_lambda_read_as_1"])["gsolve"]
+    found = graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False))
+    assert 15 <= found.score < 20
+    assert [one.follows for one in found.checks if one.outcome != "holds"].count("") == 1
+
+
 def test_a_missing_task_costs_its_own_points_alone(graded):
     found = graded(RIGHT, of("hw2", "hat", "irradiance"))
     assert found.score == 10 and any("irradiance was not found" in problem for problem in found.problems)

@@ -79,5 +79,36 @@ def test_nonsense_is_no_known_mistake():
         assert misconceptions.closest("gsolve", [(given, {}, answer)]) is None
 
 
+def unscaled(one):
+    """Return the answers that a wrong function gives in another scale or gauge, which the checks accept."""
+    others = {
+        "hat": lambda w: [256 * float(one) for one in w],
+        "gsolve": lambda both: tuple(part - both[0][0] for part in both),
+        "recover_steps": lambda states: [7 * np.asarray(state[0]) for state in states],
+        "recover": lambda g: g + 3.0,
+        "solve": lambda u: u - u.min(),
+    }
+    return lambda *given, **named: others[one.task](inprocess.plain(one.function(*given, **named)))
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        *("hat_ends_count", "gsolve_log2_of_the_times", "recover_steps_exponential_start"),
+        *("recover_times_believed", "solve_wrong_sign"),
+    ],
+)
+def test_a_mistake_is_named_in_every_scale_and_gauge_that_the_checks_accept(name):
+    one = KNOWN[NAMES.index(name)]
+    subject = inprocess.Subject({one.task: unscaled(one)})
+    scoring.answered(one.task, subject, plan.seed("secret", "ada", one.task))
+    assert misconceptions.closest(one.task, subject.calls[:20]) == one
+
+
+@pytest.mark.parametrize("one", [one for one in KNOWN if one.once], ids=lambda one: one.name)
+def test_a_mistake_costs_half_at_most_unless_it_misses_what_the_task_is_about(one):
+    assert asked(one, "ada")[0] >= 0.5
+
+
 def test_no_two_sentences_are_the_same():
     assert [said for said, count in Counter(one.sentence for one in KNOWN).items() if count > 1] == []

@@ -3,4 +3,5 @@
 from pathlib import Path
 
 SPECIFICATION = Path(__file__).parent / "specification"  # test_<task>.py, the promises of a task
-MISTAKES = Path(__file__).parent / "mistakes"  # <task>_<mistake>.py, the wrong function and a sentence
+# <task>_<mistake>.py, the wrong function and a sentence; in method/ those that miss what the task is about
+MISTAKES = Path(__file__).parent / "mistakes"

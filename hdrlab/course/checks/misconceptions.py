@@ -2,7 +2,7 @@
 
 The folder `mistakes` holds a file for each mistake, whose name begins with the id of its task: a docstring
 that says to the student what is wrong, and the wrong function. All are asked what the student was asked.
-Wrong files are ours, and run here.
+Wrong files are ours, and run here. Answers are compared in the gauge or scale that the checks leave free.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
@@ -28,24 +28,28 @@ MOST = 1e3  # a difference beyond all measure, as of another shape
 
 
 class Misconception(NamedTuple):
-    """A wrong file: its name, the task, the sentence for the student, and the wrong function."""
+    """A wrong file: its name, the task, the sentence for the student, and the wrong function.
+
+    `once` is whether it costs half of the task at most: all but those that miss what the task is about.
+    """
 
     name: str
     task: str
     sentence: str
     function: Callable[..., Any]
+    once: bool = True
 
 
 @cache
 def known() -> tuple[Misconception, ...]:
     """Return all wrong files there are."""
-    return tuple(_read(path) for path in sorted(MISTAKES.glob("*.py")))
+    return tuple(_read(path) for path in sorted(MISTAKES.rglob("*.py")))
 
 
 def _read(path: Path) -> Misconception:
     names = runpy.run_path(str(path))
     task, sentence = task_of(path.stem), " ".join(names["__doc__"].split())
-    return Misconception(path.stem, task, sentence, names[task])
+    return Misconception(path.stem, task, sentence, names[task], path.parent == MISTAKES)
 
 
 def task_of(name: str) -> str:
@@ -66,7 +70,9 @@ def closest(task: str, calls: Sequence[Call]) -> Misconception | None:
     Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.
     """
     right = plan.function(plan.read().task(task))
-    far = [difference(came, call_quietly(right, given, named)) for given, named, came in calls]
+    calls = [(given, named, in_gauge(task, came)) for given, named, came in calls]
+    truths = [in_gauge(task, call_quietly(right, given, named)) for given, named, _ in calls]
+    far = [difference(call[2], truth) for call, truth in zip(calls, truths, strict=True)]
     if max(far, default=0) <= ROUNDING or all(came is None for _, _, came in calls):
         return None
     scores = [(_distance(one, calls, far), one) for one in known() if one.task == task]
@@ -74,12 +80,35 @@ def closest(task: str, calls: Sequence[Call]) -> Misconception | None:
     return min(agreeing, key=lambda pair: pair[0])[1] if agreeing else None
 
 
+def _of_states(came: Any) -> list[Any]:
+    """Return f^-1 of each state, in shares of f^-1(128)."""
+    found = [state[0] if isinstance(state, tuple | list) else state for state in came]
+    return [f / f[128] for f in found]
+
+
+GAUGES: dict[str, Callable[[Any], Any]] = {
+    "hat": lambda w: w / w.max(),
+    "gsolve": lambda both: tuple(one - both[0][len(both[0]) // 2] for one in both),
+    "recover": lambda g: g - g[128],
+    "recover_steps": _of_states,
+    "solve": lambda u: u - u.mean(),
+}
+
+
+def in_gauge(task: str, answer: Any) -> Any:
+    """Return an answer in the gauge or scale in which it is compared; one of another form as it is."""
+    try:
+        return GAUGES[task](as_listed(answer) if task in ("hat", "recover", "solve") else answer)
+    except Exception:  # which a student may answer in any form
+        return answer
+
+
 def _distance(one: Misconception, calls: Sequence[Call], far: Sequence[float]) -> float | None:
     """Return how far the student's answers are from the wrong ones in all, None where a call disagrees."""
     total = 0.0
     for (given, named, came), right in zip(calls, far, strict=True):
-        near = difference(came, call_quietly(one.function, given, named))
-        if near > max(ROUNDING, NEARER * right):
+        near = difference(came, in_gauge(one.task, call_quietly(one.function, given, named)))
+        if near > max(ROUNDING, NEARER * min(right, 1.0)):
             return None
         total += near
     return total

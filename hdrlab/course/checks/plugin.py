@@ -46,12 +46,15 @@ def pytest_configure(config: pytest.Config) -> None:
 
 
 class Missing:
-    """The subject of a task that was not handed in."""
+    """The subject of a task that was not handed in, or that took too long: nothing is asked of it."""
 
     said = ""
 
+    def __init__(self, kind: str = "missing") -> None:
+        self._kind = kind
+
     def __getattr__(self, name: str) -> Any:
-        raise NoAnswer("", "missing")  # which is said once, above all of its checks
+        raise NoAnswer("", self._kind)
 
 
 class Checking:
@@ -62,6 +65,7 @@ class Checking:
         self.open = ExitStack()
         self.calls: dict[str, list[tuple[Any, ...]]] = {}
         self.failed: set[str] = set()
+        self.late: set[str] = set()
 
     def pytest_sessionstart(self) -> None:
         """Start the sandbox first: it gets ready while the checks are collected."""
@@ -76,6 +80,8 @@ class Checking:
         """Return the student's functions, afresh: nothing that one check left behind serves the next."""
         if _task(request.node) not in self.job["sources"]:
             return Missing()
+        if _task(request.node) in self.late:
+            return Missing("late")
         self.submission.fresh()
         compare.notes.clear()
         return self.submission
@@ -125,6 +131,8 @@ class Checking:
         if not self._is_hidden(item):
             self.failed.add(_task(item))
         kind = raised.kind if isinstance(raised, NoAnswer) else ""
+        if kind == "late":
+            self.late.add(_task(item))
         told = {"outcome": "no answer" if kind else "fails", "kind": kind}
         differs = _differs(raised) if self.job["draw"] else None
         self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
@@ -134,7 +142,7 @@ class Checking:
         for task in sorted(self.failed):
             with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
                 if found := misconceptions.closest(task, self.calls.get(task, [])):
-                    self._write(recognised=task, sentence=found.sentence)
+                    self._write(recognised=task, sentence=found.sentence, once=found.once)
 
     def pytest_unconfigure(self) -> None:
         """Close the sandbox."""

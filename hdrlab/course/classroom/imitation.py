@@ -60,7 +60,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
 
 def mistake(name: str) -> Mistake:
     """Return a wrong file, read and not run."""
-    file = MISTAKES / f"{name}.py"
+    file = next(MISTAKES.rglob(f"{name}.py"))
     text = file.read_text(encoding="utf8")
     body = ast.parse(text).body[1:]
     house: dict[str, str] = {}

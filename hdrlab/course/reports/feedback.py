@@ -28,9 +28,9 @@ def fragment(result: Result, *, private: bool = False) -> str:
     return str(_environment().get_template("feedback.html").module.whole(result, private, True))  # type: ignore[attr-defined]
 
 
-def bar(points: float, whole: float, what: str) -> str:
+def bar(points: float, whole: float, what: str, unit: str = "points") -> str:
     """Return how far something has come, as a piece of a page."""
-    return str(_environment().get_template("feedback.html").module.bar(points, whole, what))  # type: ignore[attr-defined]
+    return str(_environment().get_template("feedback.html").module.bar(points, whole, what, unit))  # type: ignore[attr-defined]
 
 
 def page(result: Result, *, private: bool = False) -> str:
@@ -47,14 +47,15 @@ def text(result: Result, *, hints: int = 0, private: bool = False) -> str:
         if task in result.misconceptions:
             lines.append(f"  It looks as if: {result.misconceptions[task]}")
         for check in result.of(task):
-            lines.append(f"  {MARKS[check.outcome]} {check.promise}")
+            from_it = f" (follows from: {check.follows})" if check.follows else ""
+            lines.append(f"  {MARKS[check.outcome]} {check.promise}{from_it}")
             lines += [f"      {line}" for line in _why(check, hints, private)]
     lines.append(f"{result.homework}: {number(result.score)} of {number(result.max_score)} points")
     return "\n".join(lines)
 
 
 def _why(check: Check, hints: int, private: bool) -> list[str]:
-    if check.hidden and not private:
+    if check.follows or (check.hidden and not private):
         return []
     if check.outcome == "holds":
         return [check.message] if check.message else []

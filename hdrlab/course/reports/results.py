@@ -16,7 +16,7 @@ TEAM_SEES = (
     *("misconceptions", "checks", "submission", "specification", "seed", "versions"),
 )
 OF_HIDDEN = ("task", "promise", "points", "max_points", "outcome", "hidden")
-OF_OWN = (*OF_HIDDEN, "name", "message", "hints", "drawing", "said")
+OF_OWN = (*OF_HIDDEN, "name", "message", "hints", "drawing", "said", "follows")
 Outcome = Literal["holds", "fails", "no answer"]
 
 
@@ -44,6 +44,7 @@ class Check(NamedTuple):
     said : what the function printed meanwhile
     hidden : whether it is one of the instructor's own, of which a student sees the outcome alone
     kind : of no answer: "missing", "raised", "late", "died", "refused", "damaged", or "killed" from outside
+    follows : of a failure that follows from another one of its task: the promise that failed there
     """
 
     task: str
@@ -58,6 +59,7 @@ class Check(NamedTuple):
     said: str = ""
     hidden: bool = False
     kind: str = ""
+    follows: str = ""
 
 
 class Result(NamedTuple):
@@ -193,6 +195,7 @@ def from_json(data: bytes) -> Result:
 
 
 def _check_from_json(read: dict[str, Any]) -> Check:
-    own = {"kind": "", **{name: read[name] for name in Check._fields if name != "kind" or name in read}}
+    early = {"kind": "", "follows": ""}  # which a result of an early version lacks
+    own = early | {name: read[name] for name in Check._fields if name not in early or name in read}
     own |= {name: Fraction(read["exact"][name]) for name in ("points", "max_points")}
     return Check(**{**own, "hints": tuple(read["hints"]), "drawing": drawing_from_json(read["drawing"])})

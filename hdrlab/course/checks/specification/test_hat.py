@@ -50,6 +50,7 @@ def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng
     w = asked(subject, n)
     if not (np.all(np.diff(w[: n // 2]) > 0) and np.all(np.diff(w[n // 2 :]) < 0)):
         raise Different("w: expected a hat", expected=hat(n), came=w, kind="curve")
+    same(w, hat(n), 0.02, what="w", kind="curve")  # ends that count are another promise
 
 
 @pytest.mark.points(3)
@@ -63,7 +64,6 @@ def test_clipped_levels_do_not_count(subject, rng):
     n = some(rng)
     w = asked(subject, n)
     same(w[[0, -1]], [0, 0], 1e-6, what=f"the weights of levels 0 and {n - 1}")
-    same(w, hat(n), 1e-3, what="w", kind="curve")
 
 
 @pytest.mark.points(3)
