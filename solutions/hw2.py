@@ -27,8 +27,10 @@ import numpy as np
 from hdrlab import scenes
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling
-from hdrlab.course.notebook import check
+from hdrlab.course.notebook import check, use_plan
 from hdrlab.show import pictures, plots
+
+use_plan("hw2")
 
 # %% [markdown]
 # ## The photographs

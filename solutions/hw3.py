@@ -16,8 +16,10 @@ import numpy as np
 
 from hdrlab import scenes
 from hdrlab.capture import camera, responses
-from hdrlab.course.notebook import check
+from hdrlab.course.notebook import check, use_plan
 from hdrlab.show import pictures, plots
+
+use_plan("hw3")
 
 # %% [markdown]
 # ## The photographs

@@ -22,8 +22,10 @@ import numpy as np
 
 from hdrlab import scenes
 from hdrlab.core import colour
-from hdrlab.course.notebook import check
+from hdrlab.course.notebook import check, use_plan
 from hdrlab.show import pictures
+
+use_plan("hw4")
 
 # %% [markdown]
 # ## The scene

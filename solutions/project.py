@@ -22,9 +22,11 @@ import numpy as np
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core import colour
-from hdrlab.course.notebook import check
+from hdrlab.course.notebook import check, use_plan
 from hdrlab.io import photos
 from hdrlab.show import pictures, plots
+
+use_plan("project")
 
 # %% [markdown] about="tonemap"
 # ## 1 · The operator ({points})

@@ -14,12 +14,13 @@ from hdrlab.course.code.names import imported
 from hdrlab.course.grading import Conditions
 from hdrlab.course.material import handouts
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import feedback, results
+from hdrlab.course.reports import feedback
 from hdrlab.course.reports.results import Result
 from hdrlab.course.submission import Submission
 
 PRACTICE = Conditions(tier="practice")
 _latest: dict[str, Result] = {}  # of each task in this kernel, for the homework's bar
+_plan: dict[str, Homework] = {}  # the homeworks whose sheets said in this kernel what is asked
 
 
 class Feedback:
@@ -69,22 +70,28 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
-    shown = None
-    result = None
-    for result in grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE):
-        if len(tasks) > 1:
-            shown = _show(feedback.bar(*results.points(result.checks), f"{homework.name}, checking"), shown)
-    assert result is not None  # the last one always comes
-    if shown is not None:
-        _show("", shown)
+    steps = grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE)
+    shown = _show(feedback.bar(0, 1, f"{name}, checking", "of its promises"), None)
+    for done, result in enumerate(steps, 1):  # the last one always comes
+        asked = len(result.checks)
+        _show(feedback.bar(min(done, asked), asked, f"{name}, checking", "promises"), shown)
+    _show("", shown)
     for task in tasks:
         _latest[task] = result._replace(checks=result.of(task), problems=())
     return Feedback(result, homework)
 
 
+def use_plan(name: str, **points: float) -> None:
+    """Take a homework's tasks and their points from its sheet; without any, from hdrlab's own plan."""
+    own = plan.read()
+    tasks = tuple(own.task(id)._replace(points=float(worth)) for id, worth in points.items())
+    known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(name=name, title=name)
+    _plan[name] = known._replace(tasks=tasks or known.tasks)
+
+
 def find_tasks(name: str) -> tuple[Homework, list[str]]:
     """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
-    homeworks = plan.read().homeworks
+    homeworks = _plan | {key: one for key, one in plan.read().homeworks.items() if key not in _plan}
     if name in homeworks:
         return homeworks[name], [task.id for task in homeworks[name].tasks]
     for homework in homeworks.values():

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from hdrlab.course import plan
+from hdrlab.course import notebook, plan
 from hdrlab.course.code import names
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Task
@@ -131,6 +131,23 @@ def test_what_the_plan_leaves_out_is_left_out_with_its_prose_and_its_pictures():
     made = handouts.handout((SOURCES / "hw2.py").read_text(encoding="utf8"), few)
     text = "\n".join(cell["source"] for cell in made.assignment["cells"])
     assert "(3 points)" in text and "def hat" in text and "gsolve" not in text and "Robertson" not in text
+
+
+def test_the_sheet_brings_the_points_of_its_plan_to_check(made, monkeypatch):
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    hw2 = PLAN.homeworks["hw2"]
+    ours = hw2._replace(tasks=(Task("hat", "core.weights.hat", 20.0),))
+    sheet = handouts.handout((SOURCES / "hw2.py").read_text(encoding="utf8"), ours).assignment
+    (cell,) = [cell["source"] for cell in sheet["cells"] if "use_plan(" in cell["source"]]
+    assert cell.endswith('use_plan("hw2", hat=20)')
+    monkeypatch.setattr(notebook, "_plan", {})
+    exec(cell[cell.index("use_plan(") :], {"use_plan": notebook.use_plan})
+    for name in ("hat", "hw2"):
+        homework, tasks = notebook.find_tasks(name)
+        assert homework.points == 20 and tasks == ["hat"]
+    assert notebook.find_tasks("ev")[0] == PLAN.homeworks["hw1"]
+    notebook.use_plan("hw2")
+    assert notebook.find_tasks("hw2")[0].points == 100
 
 
 SHORT = """

@@ -7,11 +7,13 @@ task="gsolve"   becomes the function's signature and docstring over a stub, or, 
                 function yields or returns by name is given before it, and `check("gsolve")` follows.
 about="gsolve hat"  is left out where the plan leaves one of these tasks out; a picture shows what they do
 {points}, {due}, {total}, {late}, {hand}   in the prose stand for what the plan says
+use_plan("hw2")   gets the points of each task, so that `check` knows them wherever the sheet goes
 """
 
 import json
 import shutil
 import tempfile
+import textwrap
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -67,7 +69,7 @@ def handout(source: str, homework: Homework, late: str = "") -> Handout:
         elif about:  # a picture of what the task does: nothing to see before it is written
             made = [(_code(cell.source, tags=["raises-exception"]), _code(cell.source))]
         else:
-            made = [(_code(cell.source, given=True), _code(cell.source, given=True))]
+            made = [(_code(_planned(cell.source, homework), given=True),) * 2]
         for notebook, column in zip(both, zip(*made, strict=True), strict=True):
             notebook += column
     return Handout(homework.name, *(_notebook(cells, homework.name) for cells in both))
@@ -86,6 +88,13 @@ def _task_cells(
         _code(blocks[task.id].text, task=task.id, id=name),
     )
     yield (_code(f'check("{task.id}")', id=f"check-{task.id}"),) * 2
+
+
+def _planned(text: str, homework: Homework) -> str:
+    """Return a cell in which `use_plan` says what each task is worth."""
+    points = ", ".join(f"{task.id}={task.points:g}" for task in homework.tasks)
+    said = textwrap.fill(f'use_plan("{homework.name}", {points})', 96, subsequent_indent=9 * " ")
+    return text.replace(f'use_plan("{homework.name}")', said)
 
 
 def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
