@@ -3,7 +3,7 @@
 import errno
 import os
 import secrets
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -49,6 +49,14 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     except BaseException:  # Ctrl-C as well
         temporary.unlink(missing_ok=True)
         raise
+
+
+def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
+    """Return the suffix of a file's name in small letters, or raise a ValueError where it is not known."""
+    suffix = Path(path).suffix.lower()
+    if suffix not in known:
+        raise ValueError(f"{path}: expected {what} ({', '.join(known)}), got {suffix or 'no suffix'}")
+    return suffix
 
 
 def reserve(file: BinaryIO, size: int) -> None:

@@ -19,7 +19,7 @@ from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.types import Array, Mask
 from hdrlab.io import raw
 from hdrlab.io.decode import Header, decode, look
-from hdrlab.io.files import replacing
+from hdrlab.io.files import replacing, require_suffix
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
@@ -172,9 +172,7 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     >>> read_photo(path).tolist()
     [[0, 255], [0, 255]]
     """
-    suffix = Path(path).suffix.lower()
-    if suffix not in PICTURES:
-        raise ValueError(f"{path}: expected a picture file ({', '.join(PICTURES)}), got {suffix or 'none'}")
+    suffix = require_suffix(path, PICTURES, "a picture file")
     picture = as_picture(image)
     with replacing(path) as name:
         Image.fromarray(picture).save(name, **PICTURES[suffix])

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.types import F32
+from hdrlab.io.files import require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe
 
 SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
@@ -114,7 +115,4 @@ def write_radiance(
 
 def format_of(path: str | Path) -> ModuleType:
     """Return the module that reads and writes files of this suffix, or raise a ValueError."""
-    suffix = Path(path).suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ValueError(f"{path}: expected a radiance file ({', '.join(SUFFIXES)}), got {suffix or 'none'}")
-    return SUFFIXES[suffix]
+    return SUFFIXES[require_suffix(path, SUFFIXES, "a radiance file")]

@@ -21,7 +21,7 @@ from numpy.typing import ArrayLike
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64
 from hdrlab.io import pfscurves
-from hdrlab.io.files import replacing
+from hdrlab.io.files import replacing, require_suffix
 
 # bytes: three channels of 65536 levels take 10 million
 MAX_FILE_BYTES = 32 << 20
@@ -104,10 +104,7 @@ def read_curve(path: str | Path) -> F64:
 
 def suffix_of(path: str | Path) -> str:
     """Return the suffix that names a file's format, or raise a ValueError."""
-    suffix = Path(path).suffix.lower()
-    if suffix not in FORMS:
-        raise ValueError(f"{path}: expected a response curve ({', '.join(FORMS)})")
-    return suffix
+    return require_suffix(path, FORMS, "a response curve")
 
 
 def insert_name(path: str | Path, name: str) -> Path:

@@ -19,12 +19,12 @@ import numpy as np
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.core.types import F32, Array
 from hdrlab.io import photos, radiance, web
-from hdrlab.io.files import MAX_PIXELS, replacing
+from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
 
 FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
 ANIMATIONS = {".gif"}
 SUFFIXES = FILMS | ANIMATIONS
-WRITTEN = {".gif", ".mp4"}
+WRITTEN = (".gif", ".mp4")
 MISSING = "films need the extra `video` (pip install hdrlab[video]); folders of frames and .gif do without"
 
 
@@ -201,8 +201,5 @@ def require_new(folder: Path) -> None:
 
 def require_writable(path: Path) -> None:
     """Raise a ValueError for a suffix that is not written, or for films where PyAV is not installed."""
-    suffix = path.suffix.lower()
-    if suffix not in WRITTEN:
-        raise ValueError(f"{path}: expected {' or '.join(sorted(WRITTEN))}, got {suffix or 'no suffix'}")
-    if suffix in FILMS:
+    if require_suffix(path, WRITTEN, "a film") in FILMS:
         require_films(path)

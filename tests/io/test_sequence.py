@@ -172,7 +172,7 @@ def test_the_command_makes_maps_of_a_film(folder, tmp_path, capsys):
         (["-o", "out.gif", "--times", "1"], "at least two exposures"),
         (["-o", "out.gif", "--times", "1,x"], "expected seconds"),
         (["-o", "out.gif", "--times", "1,1/0"], "expected seconds"),
-        (["-o", "out.txt", "--times", "1,4"], "expected .gif or .mp4"),
+        (["-o", "out.txt", "--times", "1,4"], "expected a film (.gif, .mp4)"),
         (["-o", "frames", "--times", "1,4"], "new or empty"),
         (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a turn"),
         (["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"], "expected a rate"),

@@ -15,8 +15,11 @@ from pathlib import Path
 from typing import Any
 
 import hdrlab
+from hdrlab.course.code import names
+from hdrlab.show.pages.templates import templates
 
 NOT_LIBRARY = ("hdrlab.cli", "hdrlab.course", "hdrlab.__main__", "hdrlab.demo", "hdrlab.scenes.")
+RST = Path(__file__).parent / "rst"  # templates of the pages
 ENTRY = re.compile(r"(\S+(?: \S+)*?) {2,}(\S.*)")  # of a legend: a letter, two spaces or more, what it is
 NAME = re.compile(r"\b[a-z_]+(?:\.[a-z_0-9]+)+\b|^pipeline\b")
 DOCTEST = ">>> "
@@ -38,18 +41,7 @@ def summary(name: str) -> str:
 
 def imported(sources: Iterable[str], known: Sequence[str]) -> set[str]:
     """Return the modules out of `known` that these cells of a notebook import."""
-    found = set()
-    for source in sources:
-        try:
-            tree = ast.parse(source)
-        except SyntaxError:  # a cell of IPython's own language
-            continue
-        for node in ast.walk(tree):
-            if isinstance(node, ast.ImportFrom) and node.module:
-                found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-            elif isinstance(node, ast.Import):
-                found |= {alias.name for alias in node.names}
-    return found & set(known)
+    return set().union(*map(names.modules, sources)) & set(known)
 
 
 def pages(titles: dict[str, str], uses: dict[str, set[str]]) -> Iterator[tuple[str, str]]:
@@ -60,53 +52,21 @@ def pages(titles: dict[str, str], uses: dict[str, set[str]]) -> Iterator[tuple[s
     titles : name of a notebook -> its title
     uses : name of a notebook -> the modules that it imports
     """
-    names = modules()
-    chapters = [name for name in names if name.count(".") == 1]
-    yield "reference/index.rst", _index(chapters)
-    for name in names:
+    known = modules()
+    env = templates(RST)
+    env.filters |= {"short": short, "summary": summary, "escaped": escaped}
+    index, page, lecture_map = map(env.get_template, ("chapters.rst", "module.rst", "map.rst"))
+    yield "reference/index.rst", index.render(chapters=[name for name in known if name.count(".") == 1])
+    for name in known:
         played = [notebook for notebook in titles if name in uses[notebook]]
-        parts = [each for each in names if each.startswith(f"{name}.")]
-        yield f"reference/{short(name)}.rst", _page(name, parts, played)
-    yield "map.rst", _map(names, uses)
+        parts = [each for each in known if each.startswith(f"{name}.")]
+        yield f"reference/{short(name)}.rst", page.render(name=name, parts=parts, played=played)
+    yield "map.rst", lecture_map.render(rows=[_row(*row, known, uses) for row in rows()])
 
 
 def short(name: str) -> str:
     """Return a module's name as the lecture's map has it: without the package."""
     return name.removeprefix("hdrlab.")
-
-
-def _title(text: str) -> str:
-    return f"{text}\n{'=' * len(text)}\n\n"
-
-
-def _listed(names: Sequence[str]) -> str:
-    rows = "".join(
-        f"   * - :doc:`{short(one)} </reference/{short(one)}>`\n     - {escaped(summary(one))}\n"
-        for one in names
-    )
-    return f".. list-table::\n   :widths: 30 70\n   :class: modules\n\n{rows}\n"
-
-
-def _index(chapters: Sequence[str]) -> str:
-    lead = (
-        "A chapter of the lecture is a folder, and a paper is a file in it, with one function for each of "
-        "its equations. :doc:`The map </map>` goes from the lecture to the functions, and ``[source]`` "
-        "beside a name to its lines.\n\n"
-    )
-    tree = "".join(f"   {short(name)}\n" for name in chapters)
-    return f"{_title('Reference')}{lead}{_listed(chapters)}\n.. toctree::\n   :hidden:\n\n{tree}"
-
-
-def _page(name: str, parts: Sequence[str], played: Sequence[str]) -> str:
-    text = _title(short(name))
-    if played and not parts and len(played) <= 8:
-        links = ", ".join(f":doc:`{notebook.split('_')[0]} </notebooks/{notebook}>`" for notebook in played)
-        text += f".. rst-class:: played\n\nIn the notebooks: {links}\n\n"
-    text += f".. automodule:: {name}\n   :members:\n   :member-order: bysource\n\n"
-    if parts:
-        tree = "".join(f"   {short(one)}\n" for one in parts)
-        text += f"{_listed(parts)}\n.. toctree::\n   :hidden:\n\n{tree}"
-    return text
 
 
 def rows() -> list[tuple[str, str]]:
@@ -130,22 +90,13 @@ def rows() -> list[tuple[str, str]]:
     return table
 
 
-def _map(names: Sequence[str], uses: dict[str, set[str]]) -> str:
-    text = _title("From the lecture to the code")
-    text += "Each row is a part of the lecture, the functions that do it, and the notebooks that play it.\n\n"
-    text += ".. list-table::\n   :header-rows: 1\n   :widths: 34 48 18\n   :class: map\n\n"
-    text += "   * - Lecture\n     - Where\n     - Notebooks\n"
-    for lecture, where in rows():
-        linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <{_home(found[0])}>`", where)
-        told = {_module(f"hdrlab.{word}", names) for word in NAME.findall(where)}
-        playing = [notebook for notebook in uses if told & uses[notebook]]
-        said = (
-            "most"
-            if len(playing) > 8
-            else ", ".join(f":doc:`{notebook.split('_')[0]} </notebooks/{notebook}>`" for notebook in playing)
-        )
-        text += f"   * - {escaped(lecture)}\n     - {linked}\n     - {said}\n"
-    return text
+def _row(
+    lecture: str, where: str, known: Sequence[str], uses: dict[str, set[str]]
+) -> tuple[str, str, list[str]]:
+    """Return a row of the map: the lecture's name, links to the functions, the notebooks that play them."""
+    linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <{_home(found[0])}>`", where)
+    told = {_module(f"hdrlab.{word}", known) for word in NAME.findall(where)}
+    return lecture, linked, [notebook for notebook in uses if told & uses[notebook]]
 
 
 def _home(word: str) -> str:

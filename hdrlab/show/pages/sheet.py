@@ -15,7 +15,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from hdrlab.core.picture import Statistics
-from hdrlab.io.files import replacing
+from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show.pictures import require_alt
 from hdrlab.tonemap.quality import Quality
 
@@ -156,8 +156,7 @@ def write_sheet(path: str | Path, sheet: Figure) -> None:
 
 def check_suffix(path: str | Path) -> None:
     """Raise a ValueError where a sheet cannot be written under this name."""
-    if Path(path).suffix.lower() != ".png":
-        raise ValueError(f"{path}: expected a .png for the sheet, whose alt text travels in it")
+    require_suffix(path, (".png",), "a sheet, whose alt text travels in it")
 
 
 def _blank(width: int, height: int) -> Figure:

@@ -22,7 +22,7 @@ from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS, radiance
 from hdrlab.core.types import F64
 from hdrlab.diagnostics.bootstrap import Band
 from hdrlab.diagnostics.residuals import frame_offsets, rms
-from hdrlab.io.files import replacing
+from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show import plots
 from hdrlab.show.pages.wording import signed
 from hdrlab.show.pictures import require_alt
@@ -232,7 +232,4 @@ def write_plot(path: str | Path, figure: Figure) -> None:
 
 def check_suffix(path: str | Path) -> str:
     """Return .png or .svg, or raise a ValueError where a plot cannot be written under this name."""
-    suffix = Path(path).suffix.lower()
-    if suffix not in SUFFIXES:
-        raise ValueError(f"{path}: expected {' or '.join(SUFFIXES)} for a plot, got {suffix or 'no suffix'}")
-    return suffix
+    return require_suffix(path, SUFFIXES, "a plot")

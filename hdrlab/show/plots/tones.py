@@ -108,18 +108,14 @@ def trims(
 
 
 def bands(
-    spreads: Mapping[str, tuple[ArrayLike, ArrayLike, ArrayLike]],
-    *,
-    middle: float | None = None,
-    span: tuple[float, float] | None = None,
-    ax: Axes | None = None,
+    spreads: Mapping[str, tuple[ArrayLike, ArrayLike, ArrayLike]], *, middle: float | None = None
 ) -> Axes:
     """Draw what becomes of each luminance, from least to greatest: a curve is a line, an operator a band.
 
     Each of `spreads` is (L, least Ld, greatest Ld), as of `tonemap.curves.spread`; `middle` is the luminance
     at 0 stops, by default the median of the first L.
     """
-    ax = ax or axes()
+    ax = axes()
     if not 0 < len(spreads) < len(LINES):
         raise ValueError(f"expected 1 to {len(LINES) - 1} operators in one picture, got {len(spreads)}")
     for (colour, style), (name, (L, least, greatest)) in zip(LINES[1:], spreads.items(), strict=False):
@@ -132,8 +128,6 @@ def bands(
         ax.plot(stops, low, linestyle=style, color=colour, linewidth=1.2, label=name)
         ax.plot(stops, high, linestyle=style, color=colour, linewidth=1.2)
     ax.set(xlabel="luminance, stops from the median", ylabel="level on the display", ylim=(-3, 258))
-    if span is not None:
-        ax.set_xlim(*span)
     ax.legend(loc="upper left", framealpha=0.9)
     return ax
 

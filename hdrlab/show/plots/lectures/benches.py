@@ -35,6 +35,7 @@ F = 8.0  # f-number of the benches
 COARSE = 96  # pixels: meters do not look closer, and the picture is only looked at
 SAMPLES = 500  # of a calibration: enough for pictures as small as those of the bench
 SENSOR = Sensor()
+NOISY = camera.Camera(full_well=20_000, read_noise=5)
 
 
 class Shot(NamedTuple):
@@ -107,20 +108,12 @@ class Calibrated(NamedTuple):
     truth: NDArray[np.float64]  # (256,) the camera's own
 
 
-def calibrate_shaken(
-    E: ArrayLike,
-    *,
-    radius: int = 6,
-    count: int = 5,
-    stops: float = 2.0,
-    full_well: float = 20_000,
-    rng: int = 0,
-) -> Calibrated:
+def calibrate_shaken(E: ArrayLike, *, radius: int = 6, count: int = 5, stops: float = 2.0) -> Calibrated:
     """Return a calibration of `count` gray photographs, `stops` apart, shaken by up to `radius` pixels."""
     L = luminance(E)
-    offsets = camera.shake(count, radius=radius, rng=rng)
+    offsets = camera.shake(count, radius=radius)
     times = camera.times_around(L, count, stops=stops)
-    taken = camera.shoot(L, times, camera.Camera(full_well=full_well, read_noise=5), offsets=offsets, rng=rng)
+    taken = camera.shoot(L, times, NOISY, offsets=offsets)
     found = pipeline.aligned(taken, "mtb")
     wrong = int(np.any(found.offsets - found.offsets[count // 2] != offsets, axis=1).sum())
     both = [debevec.recover(one.images, one.times, samples=SAMPLES) for one in (taken, found.bracket)]

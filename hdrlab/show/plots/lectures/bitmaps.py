@@ -8,6 +8,7 @@ Bits that agree are white or nearly black, those that differ orange, and what is
 the four part as well.
 """
 
+from collections.abc import Mapping
 from textwrap import wrap
 
 import numpy as np
@@ -22,6 +23,7 @@ from hdrlab.core.arrays import describe
 from hdrlab.core.types import Mask
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.show.plots import picture_axes
+from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 from hdrlab.show.plots.nearest import show
 
 Image = NDArray[np.uint8]
@@ -29,7 +31,6 @@ Offset = tuple[int, int]
 AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
 DIFFER, OUTSIDE = (230, 159, 0), (0, 90, 160)
 CENTRE, BEST = "#808080", "#D55E00"
-WIDTH = 5.4  # inches, as the other plots have
 
 
 def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None) -> Image:
@@ -85,25 +86,12 @@ def nine(state: State) -> Figure:
     return figure
 
 
-def surface(errors: ArrayLike, *, marks: dict[str, Offset] | None = None) -> Figure:
+def surface(errors: ArrayLike, *, marks: Mapping[str, Offset] | None = None) -> Figure:
     """Return the errors of all offsets as a map, with named offsets marked on it."""
     found = np.asarray(errors, np.float64)
     if found.ndim != 2 or found.shape[0] != found.shape[1] or len(found) % 2 == 0:
         raise ValueError(f"expected errors (2 n + 1, 2 n + 1), got {describe(found)}")
-    n = len(found) // 2
-    figure = Figure(figsize=(WIDTH, 4.2), dpi=100)
-    ax = figure.add_axes((0.13, 0.14, 0.65, 0.82))
-    ends = (-n - 0.5, n + 0.5, n + 0.5, -n - 0.5)
-    shown = ax.imshow(100 * found, extent=ends, interpolation="nearest", aspect="auto")
-    for (name, (dy, dx)), (marker, size) in zip((marks or {}).items(), (("o", 14), ("x", 9)), strict=False):
-        look = {"markerfacecolor": "none", "markeredgecolor": "#FFFFFF", "markeredgewidth": 2}
-        ax.plot(dx, dy, label=name, linestyle="none", marker=marker, markersize=size, **look)  # type: ignore[arg-type]
-    ax.set(xlabel="dx, pixels to the right", ylabel="dy, pixels down")
-    bar = figure.add_axes((0.8, 0.14, 0.035, 0.82))
-    figure.colorbar(shown, cax=bar, label="bits that differ, %")
-    if marks:
-        ax.legend(loc="lower left", facecolor="#404040", labelcolor="#FFFFFF", framealpha=0.8)
-    return figure
+    return draw_offsets(100 * found, "bits that differ, %", marks)
 
 
 def words(rows: dict[str, ArrayLike]) -> Figure:

@@ -20,9 +20,9 @@ from hdrlab.align.light import error, lattice
 from hdrlab.core.arrays import describe
 from hdrlab.show.plots import bare, picture_axes
 from hdrlab.show.plots.figures import false_colour
+from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 from hdrlab.show.plots.nearest import show
 
-WIDTH = 5.4  # inches, as the other plots have
 REACH = 0.6  # d at which the colours end: one photograph 1.86 times as bright as the other
 COLOURS = "PuOr_r"
 LINE, POINT = "#0072B2", "#D55E00"
@@ -53,18 +53,7 @@ def correlation(c: ArrayLike, *, marks: Mapping[str, tuple[float, float]] | None
     found = np.asarray(c, np.float64)
     if found.ndim != 2 or found.shape[0] % 2 == 0 or found.shape[1] % 2 == 0:
         raise ValueError(f"expected the correlation at shifts -n to n, got {describe(found)}")
-    y, x = found.shape[0] // 2, found.shape[1] // 2
-    figure = Figure(figsize=(WIDTH, 3.9), dpi=100)
-    ax = figure.add_axes((0.13, 0.15, 0.65, 0.81))
-    ends = (-x - 0.5, x + 0.5, y + 0.5, -y - 0.5)
-    shown = ax.imshow(found / np.abs(found).max(), extent=ends, interpolation="nearest", aspect="auto")
-    for (name, (dy, dx)), (marker, size) in zip((marks or {}).items(), (("o", 14), ("x", 9)), strict=False):
-        ax.plot(dx, dy, marker, label=name, markersize=size, mfc="none", mec="#FFFFFF", mew=2)
-    ax.set(xlabel="dx, pixels to the right", ylabel="dy, pixels down")
-    figure.colorbar(shown, cax=figure.add_axes((0.8, 0.15, 0.035, 0.81)), label="correlation / its largest")
-    if marks:
-        ax.legend(loc="lower left", facecolor="#404040", labelcolor="#FFFFFF", framealpha=0.8)
-    return figure
+    return draw_offsets(found / np.abs(found).max(), "correlation / its largest", marks)
 
 
 def level(state: State) -> Figure:
