@@ -1,6 +1,8 @@
 """What the commands share: kinds of options, progress, and text that becomes values."""
 
+import os
 from collections.abc import Iterable, Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -8,12 +10,50 @@ import click
 
 Item = TypeVar("Item")
 FILE = click.Path(path_type=Path)
+OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the same command reads
 SUFFIXES = ".hdr, .exr or .pfm"
 CLEAN = click.option(
     "--clean",
     is_flag=True,
     help="Repair even a map of which most is NaN, infinite or below 0; without it, a part is repaired.",
 )
+
+
+class Command(click.Command):
+    """A command that writes over nothing that it reads."""
+
+    def invoke(self, ctx: click.Context) -> Any:
+        """Run the command, or raise a ValueError where an output is one of the files that it would read."""
+        from hdrlab.io.files import require_other
+
+        given = [(one.type is OUT, _paths(ctx.params.get(str(one.name)))) for one in self.params]
+        written = [path for is_out, paths in given if is_out for path in paths]
+        read = [path for is_out, paths in given if written and not is_out for path in paths]
+        require_other(written, [file for path in read for file in (path, *_photographs(path))])
+        return super().invoke(ctx)
+
+
+class Group(click.Group):
+    """A group of such commands."""
+
+    command_class = Command
+
+
+command = partial(click.command, cls=Command)
+
+
+def _paths(value: Any) -> list[Path]:
+    """Return what the value of an option, or each of its values, may name."""
+    each = value if isinstance(value, tuple) else (value,)
+    return [Path(one) for one in each if isinstance(one, str | Path)]
+
+
+def _photographs(folder: Path) -> list[Path]:
+    """Return the photographs in a folder, which are read where the folder is named; none of a file."""
+    from hdrlab.io import photos
+
+    inside = folder.iterdir() if os.path.isdir(folder) else ()
+    return [path for path in inside if path.suffix.lower() in photos.SUFFIXES]
 
 
 def no_tier(reason: str) -> ValueError:

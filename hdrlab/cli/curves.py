@@ -43,9 +43,9 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
     return lambda *_, **__: g
 
 
-@click.command()
+@common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
-@click.option("-o", "--out", multiple=True, type=common.FILE, help=f"Curve to write: {SUFFIXES}. Repeatable.")
+@click.option("-o", "--out", multiple=True, type=common.OUT, help=f"Curve to write: {SUFFIXES}. Repeatable.")
 @click.option(
     "--times",
     metavar="exif|estimate|FILE",
@@ -56,7 +56,7 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
 @click.option("--align", type=click.Choice(["auto", *catalogue.names("align"), "none"]), default="mtb")
 @click.option("--response", type=click.Choice([*METHODS, "all"]), default="debevec")
-@click.option("--plot", type=common.FILE, help="Picture of curve, band and residuals: .png or .svg.")
+@click.option("--plot", type=common.OUT, help="Picture of curve, band and residuals: .png or .svg.")
 @click.option("--rounds", type=click.IntRange(0), default=50, help="Of the bootstrap; 0 for no band.")
 @click.option("--seed", default=1, help="Of the bootstrap.")
 def calibrate(

@@ -9,7 +9,7 @@ from hdrlab.cli import common
 MODES = ("spot", "partial", "centre", "average", "matrix")
 
 
-@click.command()
+@common.command()
 @click.argument("low", type=float, required=False)
 @click.argument("high", type=float, required=False)
 @click.option("--map", "source", type=common.FILE, help="A radiance map in cd/m^2 instead of LOW and HIGH.")
@@ -49,7 +49,7 @@ def plan(low: float | None, high: float | None, source: Path | None, thirds: boo
         click.echo(f"  {name:>7} s  (really {time:.6g} s) holds {dark:.3g} to {bright:.3g} cd/m^2")
 
 
-@click.command()
+@common.command()
 @click.argument("photo", type=common.FILE)
 @click.option("--mode", type=click.Choice(MODES), default="centre", help="Whom the meter asks.")
 @click.option(
@@ -86,9 +86,9 @@ def meter(photo: Path, mode: str, at: str) -> None:
         click.echo(f"taken with {_seconds(said.seconds)} s; with {name} s it would be right")
 
 
-@click.command()
+@common.command()
 @click.argument("photo", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.FILE, help="Picture to write: .png, .jpg or .tif.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
 @click.option(
     "--by", type=click.Choice(["auto", "skin", "blocks"]), default="auto", help="What matters, see below."
 )

@@ -12,7 +12,7 @@ FOLDER = click.argument("folder", type=common.FILE)
 NEEDS = ("starlette", "uvicorn")
 
 
-@click.group()
+@click.group(cls=common.Group)
 def gallery() -> None:
     """Let the class vote on its artifacts: init, add, links, serve, close, results."""
 
@@ -79,7 +79,7 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
 
 @gallery.command()
 @FOLDER
-@click.option("-o", "--out", required=True, type=common.FILE, help="CSV of links, for your eyes alone.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="CSV of links, for your eyes alone.")
 @click.option("--address", required=True, help="Where voters reach the gallery: https://vote.example.edu.")
 @click.option("--roster", type=common.FILE, help="Adds the addresses of its column email.")
 @click.option("--renew", multiple=True, metavar="STUDENT", help="A new link for this one alone. Repeatable.")
@@ -144,7 +144,7 @@ def close(folder: Path) -> None:
 
 @gallery.command()
 @FOLDER
-@click.option("-o", "--out", required=True, type=common.FILE, help="CSV for the gradebook.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="CSV for the gradebook.")
 def results(folder: Path, out: Path) -> None:
     """Write who voted and how each artifact fared, after the end of the vote."""
     import time

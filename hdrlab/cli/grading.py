@@ -24,12 +24,12 @@ SECRET = click.option(
 )
 
 
-@click.command()
+@common.command()
 @click.argument("submission", type=click.Path(path_type=Path))
 @HOMEWORK
 @click.option("--task", metavar="NAME", help="Only this one, such as gsolve.")
 @click.option("--hints", type=click.IntRange(0, 3), default=0, help="So many hints of what does not hold.")
-@click.option("--page", type=common.FILE, help="The same as a page with pictures: a .html file.")
+@click.option("--page", type=common.OUT, help="The same as a page with pictures: a .html file.")
 @PLAN
 def check(
     submission: Path, homework: str | None, task: str | None, hints: int, page: Path | None, plan: Path | None
@@ -56,7 +56,7 @@ def check(
         click.echo(page)
 
 
-@click.command()
+@common.command()
 @click.argument("submission", type=click.Path(path_type=Path))
 @HOMEWORK
 @click.option(
@@ -66,7 +66,7 @@ def check(
     help="How its code is kept apart; see doctor.",
 )
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py.")
-@click.option("-o", "--out", type=common.FILE, default="results", help="Folder for the results.")
+@click.option("-o", "--out", type=common.OUT, default="results", help="Folder for the results.")
 @click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
 @SECRET
 @click.option(
@@ -130,7 +130,7 @@ def grade(
     click.echo(out / "feedback.html")
 
 
-@click.command()
+@common.command()
 def doctor() -> None:
     """Say which tiers of isolation this machine can give, and what is missing for the others."""
     from hdrlab.course.sandbox import doctor as visiting
@@ -142,14 +142,14 @@ def doctor() -> None:
             click.echo(f"{'':<10}{remedy}")
 
 
-@click.group()
+@click.group(cls=common.Group)
 def course() -> None:
     """The course: its handouts, and other systems' forms of it."""
 
 
 @course.command()
 @click.option("--sources", type=FOLDER, default="solutions", help="The prose, a file for each homework.")
-@click.option("--out", type=common.FILE, default="assignments", help="Folder for the handouts.")
+@click.option("--out", type=common.OUT, default="assignments", help="Folder for the handouts.")
 @click.option("--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it.")
 @click.option("--jobs", type=click.IntRange(1), default=2, help="How many notebooks run at a time.")
 @PLAN
@@ -170,8 +170,8 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Pat
 
 
 @course.command()
-@click.option("--nbgrader", type=common.FILE, metavar="DIR", help="A course for nbgrader, in this folder.")
-@click.option("--gradescope", type=common.FILE, metavar="DIR", help="An autograder zip for each homework.")
+@click.option("--nbgrader", type=common.OUT, metavar="DIR", help="A course for nbgrader, in this folder.")
+@click.option("--gradescope", type=common.OUT, metavar="DIR", help="An autograder zip for each homework.")
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
 @SECRET
 @PLAN

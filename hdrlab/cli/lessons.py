@@ -9,7 +9,7 @@ from hdrlab.cli import common
 FIRST = "notebooks/00_welcome.ipynb"
 
 
-@click.command()
+@common.command()
 @click.option("--out", type=common.FILE, default="hdrlab-demo", help="Folder for the results.")
 @click.option("--seed", default=1, help="Of noise and hand shake.")
 def demo(out: Path, seed: int) -> None:
@@ -20,7 +20,7 @@ def demo(out: Path, seed: int) -> None:
         click.echo(line)
 
 
-@click.command()
+@common.command()
 @click.option("--folder", type=common.FILE, default="hdrlab-course", help="Your copy of the notebooks.")
 @click.option("--copy-only", is_flag=True, help="Copy the notebooks and do not start JupyterLab.")
 @click.argument("options", nargs=-1, type=click.UNPROCESSED)

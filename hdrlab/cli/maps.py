@@ -10,9 +10,9 @@ from hdrlab.pipeline import catalogue
 WAY = click.option("--way", type=click.Choice(["hue", "ratio"]), default="hue", help="Of colour, see below.")
 
 
-@click.command()
+@common.command()
 @click.argument("source", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.FILE, help="Picture to write: .png, .jpg or .tif.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
 @click.option(
     "--operator",
     type=click.Choice(["photograph", *catalogue.names("tonemap")]),
@@ -54,9 +54,9 @@ def tonemap(
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 
-@click.command()
+@common.command()
 @click.argument("source", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.FILE, help="Contact sheet to write: .png.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="Contact sheet to write: .png.")
 @click.option("--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]")
 @click.option("--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see below.")
 @WAY
@@ -78,9 +78,9 @@ def compare(source: Path, out: Path, operators: str | None, size: int, way: str,
     click.echo(f"{out}: {len(names)} operators, {common.size(E)}")
 
 
-@click.command()
+@common.command()
 @click.argument("source", type=common.FILE)
-@click.argument("target", type=common.FILE)
+@click.argument("target", type=common.OUT)
 @click.option("--half", is_flag=True, help="Half floats in .exr: half the size, values up to 65504.")
 @common.CLEAN
 def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
@@ -92,7 +92,7 @@ def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
     click.echo(f"{target}: {common.size(E)}")
 
 
-@click.command()
+@common.command()
 @click.argument("files", nargs=-1, required=True, type=common.FILE)
 def info(files: tuple[Path, ...]) -> None:
     """Say what FILES are: radiance maps or photographs, their size, values and exposure."""

@@ -16,10 +16,10 @@ WORDS = ("exif", "stated", "estimate")
 FUSION = "the picture is an exposure fusion of the photographs"
 
 
-@click.command()
+@common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
 @click.option(
-    "-o", "--out", required=True, type=common.FILE, help=f"Radiance map to write: {common.SUFFIXES}."
+    "-o", "--out", required=True, type=common.OUT, help=f"Radiance map to write: {common.SUFFIXES}."
 )
 @click.option(
     "--times",
@@ -61,9 +61,7 @@ FUSION = "the picture is an exposure fusion of the photographs"
     default="photograph",
     help="photograph chooses its settings by the map; the others have their papers'.",
 )
-@click.option(
-    "--picture", type=common.FILE, help="Picture to write as well, tone-mapped: .png, .jpg or .tif."
-)
+@click.option("--picture", type=common.OUT, help="Picture to write as well, tone-mapped: .png, .jpg or .tif.")
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
 @click.option("--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too.")
 def assemble(

@@ -11,8 +11,8 @@ from hdrlab.cli import common
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 
 
-@click.command()
-@click.option("--out", type=common.FILE, default="site", help="Folder for the site: empty, or one of before.")
+@common.command()
+@click.option("--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before.")
 @click.option(
     "--notebooks",
     metavar="FILE",

@@ -9,7 +9,7 @@ from hdrlab.cli import common
 PROJECT = click.argument("project", type=common.FILE, default=".")
 
 
-@click.command()
+@common.command()
 @PROJECT
 @click.option("--example", is_flag=True, help="Write report.md with the headings that are asked for.")
 def report(project: Path, example: bool) -> None:
@@ -36,9 +36,9 @@ def report(project: Path, example: bool) -> None:
     click.echo(f"{written.page}: with {', '.join(written.placed) or 'words alone'}")
 
 
-@click.command()
+@common.command()
 @PROJECT
-@click.option("-o", "--out", type=common.FILE, default="submission.zip", help="The archive.")
+@click.option("-o", "--out", type=common.OUT, default="submission.zip", help="The archive.")
 @click.option("--keep-metadata", is_flag=True, help="Leave location and serial numbers in the photographs.")
 @click.option("--force", is_flag=True, help="Make the archive though something is missing.")
 def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
@@ -51,6 +51,8 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     from hdrlab.course.projects import review
     from hdrlab.course.projects import submit as handing
 
+    if out.exists() and not handing.is_archive(out):
+        raise ValueError(f"{out}: expected a new name or an archive of before, this is another file")
     found = projects.look(project)
     found = found._replace(files=tuple(one for one in found.files if one.resolve() != out.resolve()))
     findings = review.review(found)

@@ -3,7 +3,7 @@
 import errno
 import os
 import secrets
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from typing import BinaryIO
@@ -57,6 +57,22 @@ def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
     if suffix not in known:
         raise ValueError(f"{path}: expected {what} ({', '.join(known)}), got {suffix or 'no suffix'}")
     return suffix
+
+
+def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
+    """Raise a ValueError where a file to be written is one that is read, under whatever name.
+
+    Links lead to the same file, and so does another name where capitals do not count.
+    """
+    inputs = {_identity(path): path for path in read if os.path.exists(path)}
+    for path in written:
+        if os.path.exists(path) and (source := inputs.get(_identity(path))):
+            raise ValueError(f"{path}: expected another name to write to, {source} is read and would be lost")
+
+
+def _identity(path: Path) -> tuple[int, int]:
+    found = path.stat()
+    return found.st_dev, found.st_ino
 
 
 def reserve(file: BinaryIO, size: int) -> None:

@@ -83,6 +83,14 @@ def write(project: Project, archive: Path, files: list[Packed], *, now: datetime
     return digest
 
 
+def is_archive(path: Path) -> bool:
+    """Return whether a file is an archive that `write` has made."""
+    if not zipfile.is_zipfile(path):
+        return False
+    with zipfile.ZipFile(path) as opened:
+        return MANIFEST in opened.namelist()
+
+
 def summary(files: list[Packed]) -> dict[str, Any]:
     """Return how many files told something that was left out, what, and which may still tell."""
     told = [one for one in files if one.removed]

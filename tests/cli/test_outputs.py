@@ -1,0 +1,78 @@
+"""An output is never an input: what a command reads is there, byte for byte, when it ends."""
+
+import os
+
+import numpy as np
+import pytest
+
+from hdrlab import cli, scenes
+from hdrlab.capture import camera
+from hdrlab.io import files, radiance
+from hdrlab.io.photos import write_picture
+
+COMMANDS = {
+    "assemble": "photos/a.png photos/b.png --stops 2 -o room.hdr --picture photos/b.png",
+    "assemble a folder": "photos --stops 2 -o room.hdr --picture photos/b.png",
+    "assemble in a folder": "{here}/photos --stops 2 -o room.hdr --picture ./photos/../photos/b.png",
+    "calibrate --times": "photos --times times.csv -o times.csv",
+    "calibrate --plot": "photos --times times.csv --plot photos/b.png",
+    "correct": "photos/b.png -o photos/b.png",
+    "tonemap": "photos/room.hdr -o link.png",
+    "compare": "photos/room.hdr -o link.png",
+    "convert": "photos/room.hdr hard.hdr",
+    "check": "hw2.py --page hw2.py",
+    "grade": "photos --homework hw2 --roster times.csv -o photos",
+    "course build": "--sources photos --out photos",
+    "submit": "photos --force -o photos/notes.txt",
+}
+
+
+@pytest.fixture
+def here(tmp_path, monkeypatch):
+    """A folder of photographs and a map, to which links lead from outside."""
+    (tmp_path / "photos").mkdir()
+    shot = camera.shoot(scenes.room((48, 64)), [0.1, 0.4], camera.Camera(sensitivity=0.05), rng=1)
+    for name, image in zip("ab", shot.images, strict=True):
+        write_picture(tmp_path / f"photos/{name}.png", image)
+    radiance.write_radiance(tmp_path / "photos/room.hdr", np.ones((4, 5, 3)))
+    (tmp_path / "photos/notes.txt").write_text("three days of work")
+    (tmp_path / "times.csv").write_text("file,seconds\na.png,0.1\nb.png,0.4\n")
+    (tmp_path / "hw2.py").write_text("def hat():\n    pass\n")
+    os.link(tmp_path / "photos/room.hdr", tmp_path / "hard.hdr")
+    (tmp_path / "link.png").symlink_to("photos/room.hdr")
+    monkeypatch.chdir(tmp_path)
+    return tmp_path
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_no_command_writes_over_what_it_reads(name, here, capsys):
+    before = contents(here)
+    words = name.split()[: 2 if name.startswith("course") else 1]
+    with pytest.raises(SystemExit) as stop:
+        cli.run([*words, *COMMANDS[name].format(here=here).split()])
+    said = capsys.readouterr().err
+    assert stop.value.code == 2 and said.count("\n") == 1 and ("another name" in said or "a new name" in said)
+    assert contents(here) == before
+
+
+def test_a_command_may_be_run_again_beside_its_photographs(here, capsys):
+    for _ in range(2):
+        with pytest.raises(SystemExit) as stop:
+            cli.run(["assemble", "photos", "--stops", "2", "-o", "photos/room.hdr", "--picture", "room.png"])
+        assert not stop.value.code
+
+
+def test_other_capitals_are_the_same_name_where_the_disk_says_so(tmp_path):
+    """As on Windows and macOS: there both names lead to one file, which a link shows here."""
+    (tmp_path / "IMG.JPG").write_bytes(b"original")
+    os.link(tmp_path / "IMG.JPG", tmp_path / "img.jpg")
+    with pytest.raises(ValueError, match="img.jpg: expected another name to write to"):
+        files.require_other([tmp_path / "img.jpg"], [tmp_path / "IMG.JPG"])
+
+
+def test_a_word_that_no_file_could_be_called_is_no_file(tmp_path):
+    files.require_other([tmp_path], ["x" * 5000, "a\0b", ""])
