@@ -1,22 +1,24 @@
 """What `assemble` says of simulated brackets: false alarms on sound ones, misses on those with an ill.
 
-warned   a doubt is said, or the bracket is refused
-cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it)
+warned   a doubt is said, or that something moved, or the bracket is refused
+cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it),
+         once one is laid on the other, since a map is as good where the camera turned
 costly   a cost above 0.1 stops; `missed` is the share of these without a warning, %
 
 An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs no word.
 """
 
 from collections.abc import Mapping
+from contextlib import suppress
 from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from skimage.registration import phase_cross_correlation
 
 from benchmarks.experiments import Experiment, along, at_most
+from benchmarks.peers import opencv
 from benchmarks.verdicts import brackets, ills
 from hdrlab import pipeline
 from hdrlab.core.arrays import Array
@@ -39,26 +41,25 @@ class Verdict(NamedTuple):
 
 
 def assembled(taken: Bracket) -> tuple[Array | None, tuple[str, ...]]:
-    """Return the luminance of the map, and the doubts; no map, and the reason, where it is refused."""
+    """Return the luminance of the map, and what is said against it; no map where it is refused."""
     try:
         found = pipeline.assemble(taken)
     except ValueError as reason:
         return None, (f"refused: {reason}",)
-    return luminance(found.E), found.doubts
+    return luminance(found.E), (*found.doubts, *(note for note in found.notes if "something moved" in note))
 
 
 def measure_cost(found: Array, sound: Array) -> float:
-    """Return the mean size of log2 (found / sound), up to a factor and a shift, over what both maps show."""
+    """Return the mean size of log2 (found / sound), up to a factor and a motion, over what both maps show."""
     h, w = np.minimum(found.shape, sound.shape)
-    both = [np.log2(np.maximum(_middle(one, h, w), 1e-9)) for one in (sound, found)]
-    seen = np.ones((h, w), bool)
-    for one in (found, sound):
-        seen &= _middle(one, h, w) > 0
-    shift = np.rint(phase_cross_correlation(*both, normalization=None)[0]).astype(int)
-    shift = shift if np.abs(shift).max() < BORDER else np.zeros(2, int)
-    off = (np.roll(both[1], shift, (0, 1)) - both[0])[BORDER:-BORDER, BORDER:-BORDER]
-    seen = (seen & np.roll(seen, shift, (0, 1)))[BORDER:-BORDER, BORDER:-BORDER]
-    return float(np.mean(np.abs(off[seen] - np.median(off[seen]))))
+    a, b = (np.log2(np.maximum(_middle(one, h, w), 1e-9)).astype(np.float32) for one in (sound, found))
+    cv2, moved = opencv(one=True), np.eye(2, 3, dtype=np.float32)
+    with suppress(cv2.error):  # where the two have nothing in common
+        _, moved = cv2.findTransformECC(a, b, moved, cv2.MOTION_EUCLIDEAN)
+    laid = cv2.warpAffine(b, moved, (w, h), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, borderValue=np.nan)
+    both = (_middle(sound, h, w) > 0) & (laid > np.log2(1e-8))
+    off = (laid - a)[BORDER:-BORDER, BORDER:-BORDER][both[BORDER:-BORDER, BORDER:-BORDER]]
+    return float(np.mean(np.abs(off - np.median(off))))
 
 
 def _middle(E: Array, h: int, w: int) -> Array:

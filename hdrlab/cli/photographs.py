@@ -45,8 +45,8 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @click.option(
     "--ghosts",
     type=click.Choice(["none", "auto", "regions", "reference"]),
-    default="none",
-    help="What moved: as it is; each region by its best exposure, if motion is found (auto) or always; "
+    default="auto",
+    help="What moved: as it is; each region by its best exposure, if much moved (auto) or always; "
     "all of them by the middle photograph.",
 )
 @click.option(

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from hdrlab.core import weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
-from hdrlab.diagnostics import consistency
+from hdrlab.diagnostics import consistency, motion
 from hdrlab.diagnostics.contradictions import find_contradictions, warn_of_contradictions
 from hdrlab.diagnostics.outlying_frames import find_outlying_frames
 from hdrlab.fast.merge import merge_with_quality
@@ -66,7 +66,8 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     ghosts : {"none", "auto", "regions", "reference"}
         What becomes of what moved: it stays half transparent; or the map shows it as in a reference frame,
         the best exposure of each region, or the middle photograph in all: see `radiance.deghosting.ghosts`.
-        "auto" is "regions" where it finds motion, and leaves a map that contradicts itself nearly everywhere.
+        "auto" is "regions" where much moved, see `diagnostics.motion`, and leaves a map that contradicts
+        itself nearly everywhere.
     flare : {"none", "glare"}
         Whether veiling glare, the light that the lens scattered, is removed: see `radiance.flare`.
 
@@ -101,7 +102,7 @@ def assemble_steps(
     weight: str = "gaussian",
     method: str = "log",
     times: str = "correct",
-    ghosts: str = "none",
+    ghosts: str = "auto",
     flare: str = "none",
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
@@ -136,8 +137,11 @@ def assemble_steps(
     images, seconds, _, valid, _ = state.bracket
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
-    if ghosts != "none":
+    moved = motion.measure_motion(images, seconds, g, w(g), valid=valid)
+    if ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED):
         yield (state := deghost(state, ghosts, w, merge))
+    elif moved > motion.MOVED:
+        state = doubt_motion(state, moved)
     if flare != "none":
         yield (state := remove_glare(state))
     yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
@@ -170,10 +174,20 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
         valid=valid,
         merge=merge,
     )
+    share = np.mean(found.labels > 0)
+    if way == "auto" and 100 * share >= moving.WIDESPREAD:
+        return doubt_motion(state._replace(stage="ghosts"), share)
     notes = (*state.notes, moving.note(found, names))
-    if way == "auto" and 100 * np.mean(found.labels > 0) >= moving.WIDESPREAD:
-        return state._replace(stage="ghosts", notes=(*notes, "the map stays as it is (--ghosts regions)"))
     return state._replace(stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes)
+
+
+def doubt_motion(state: Assembly, share: float) -> Assembly:
+    """Return the Assembly with the doubt that this share of the picture moved, and is half transparent."""
+    said = (
+        f"the photographs contradict each other in {100 * share:.0f} % of the picture, as where leaves, "
+        "water or people moved, and the map shows all of them there: --ghosts regions shows one"
+    )
+    return state._replace(doubts=(*state.doubts, said))
 
 
 def remove_glare(state: Assembly) -> Assembly:

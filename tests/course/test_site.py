@@ -307,7 +307,9 @@ def test_every_case_that_a_guide_names_is_pictured_with_alt_text():
 def test_the_page_on_warnings_quotes_them_as_they_are_printed():
     package = Path(cases.__file__).parents[2]
     printed = ""
-    for file in (*(package / "diagnostics").glob("*.py"), *(package / "pipeline").glob("*.py")):
+    for file in (
+        file for room in ("diagnostics", "pipeline", "radiance") for file in (package / room).rglob("*.py")
+    ):
         nodes = list(ast.walk(ast.parse(file.read_text("utf-8"))))
         strings = [one.values for one in nodes if isinstance(one, ast.JoinedStr)]
         strings += [[one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
@@ -318,7 +320,7 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
     assert len(quotes) >= 7
     for quote in quotes:
         said = " ".join(quote.replace("> ", "").split()).removeprefix("note: ")
-        for part in re.split(r"[+-]?\d+\.\d+|frame\d\.jpg", said):
+        for part in re.split(r"frame\d\.jpg|[+-]?\d+(?:\.\d+)?", said):
             assert part.strip(" ,:;") in printed, quote
 
 
@@ -332,6 +334,8 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
         "the corners change against the middle",
         "do not lie on each other",
         "the photographs disagree by",
+        "something moved in",
+        "the photographs contradict each other in",
         "no level stands in two frames",
         "no response was found",
         "left out, for the other photographs contradict it",

@@ -1,0 +1,96 @@
+"""How much of the picture stands elsewhere in each photograph?
+
+x    ln E           (P, H, W, C), of each frame alone: g(Z) - ln t
+w    weights        (P, H, W, C), of levels that are neither clipped nor black
+r    residuals      x - (sum_j w x) / (sum_j w)
+R    of a block     (P, h, w), sum w r / sum w over its pixels and channels, so that noise averages out, less
+                    the frame's median: where a frame is off as a whole, its time or the response is
+d    deviation      (h, w), sqrt(sum_j W R^2 / sum_j W), W the sum of w over the block
+
+Leaves, water and people make d large where they are, though most pixels of each level agree, so that a median
+over levels, as in `consistency`, does not see them.
+"""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import as_mask
+from hdrlab.core.types import F32, Array, Mask
+from hdrlab.radiance.merge import TOP, as_tables
+
+# of a frame, on an even grid, that stand for the whole
+PIXELS = 180_000
+# side, in pixels of the grid
+BLOCK = 4
+# mean weight, of the highest, of a frame that measures a block
+FAINT = 0.2
+# ln E by which the frames of a still scene may differ in a block: 0.15 stops
+STILL = 0.15 * np.log(2)
+# of the blocks: where fewer are measured by two frames, nothing is known
+FEWEST = 0.1
+# of the blocks measured: sharpening, JPEG and edges make up to a tenth of a still scene's deviate
+MOVED = 0.1
+
+
+def measure_motion(
+    images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike, *, valid: ArrayLike | None = None
+) -> float:
+    """Return the share of the picture in which the photographs contradict each other.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16, aligned
+    times : (P,) seconds
+    g : (n,) or (n, 3), ln exposure of each level
+    w : (n,), weights of the levels
+    valid : (P, H, W) bool, optional, False where a photograph holds no picture
+
+    Returns
+    -------
+    float
+        Of the blocks that two photographs measure; 0 where these are few. Above MOVED, it is motion.
+
+    Raises
+    ------
+    ValueError
+        For arrays that do not fit together.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import movers, responses
+    >>> wall, ball = np.full((60, 90), 0.5, np.float32), movers.ball((60, 90), (30, 45), 12, 2.0)
+    >>> for step in (0, 30):
+    ...     taken = movers.shoot(wall, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
+    ...     measure_motion(taken.images, taken.times, responses.true_g("film"), np.ones(256)) > MOVED
+    False
+    True
+    """
+    stack, t, w, curves, top = as_tables(images, times, g, w, "log", TOP)
+    mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    few = (slice(None), slice(None, None, every), slice(None, None, every))
+    Z = stack[few].reshape(*stack[few].shape[:3], -1)
+    trust = weigh_levels(Z, w, top, None if mask is None else mask[few])
+    x = curves[Z, np.arange(Z.shape[-1])] - np.log(t)[:, None, None, None]
+    r = x - (trust * x).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
+    R, W = sum_blocks(trust * r), sum_blocks(trust)
+    W[W < FAINT * BLOCK**2 * Z.shape[-1]] = 0
+    R = R / np.maximum(W, 1e-9)
+    for one, own in zip(R, W, strict=True):
+        one -= np.median(one[own > 0]) if own.any() else 0
+    d = np.sqrt((W * R**2).sum(axis=0) / np.maximum(W.sum(axis=0), 1e-9))
+    measured = (W > 0).sum(axis=0) > 1
+    return float(np.mean(d[measured] > STILL)) if np.mean(measured) > FEWEST else 0.0
+
+
+def weigh_levels(Z: Array, w: Array, top: int, valid: Mask | None) -> F32:
+    """Return the weights (P, H, W, C), the highest 1; 0 for black levels and for pixels that clip."""
+    table = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
+    seen = (Z < top).all(axis=-1, keepdims=True)
+    return table[Z] * (seen if valid is None else seen & valid[..., None])
+
+
+def sum_blocks(values: Array) -> F32:
+    """Return the sums over channels and blocks of BLOCK x BLOCK pixels, (P, H / BLOCK, W / BLOCK)."""
+    h, w = values.shape[1] // BLOCK, values.shape[2] // BLOCK
+    whole = values[:, : h * BLOCK, : w * BLOCK]
+    return np.asarray(whole.reshape(len(whole), h, BLOCK, w, BLOCK, -1).sum(axis=(2, 4, 5)), np.float32)

@@ -1,0 +1,52 @@
+"""Motion that a median over levels does not see."""
+
+import numpy as np
+import pytest
+
+from benchmarks.verdicts import brackets, ills
+from hdrlab import pipeline
+from hdrlab.capture import movers, responses
+from hdrlab.diagnostics import motion
+
+WALL = np.full((60, 90), 0.5, np.float32)
+G, W = responses.true_g("film"), np.ones(256)
+
+
+def share(step, **change):
+    ball = movers.ball((60, 90), (30, 45), 12, 2.0)
+    taken = movers.shoot(WALL, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
+    given = {"images": taken.images, "times": taken.times, "g": G, "w": W} | change
+    return motion.measure_motion(**given)
+
+
+def test_the_share_of_the_picture_that_moved_is_measured():
+    assert share(0) == 0
+    assert motion.MOVED < share(15) < share(30) < 0.5
+
+
+def test_what_a_photograph_does_not_show_does_not_count():
+    shown = np.ones((3, 60, 90), bool)
+    shown[1:] = False
+    assert share(30, valid=shown) == 0
+
+
+def test_a_frame_whose_time_is_wrong_is_no_motion():
+    assert share(0, times=[0.25, 0.7, 1.0]) == 0
+
+
+def test_times_that_do_not_fit_the_photographs_are_an_error():
+    with pytest.raises(ValueError, match="expected 3 exposure times"):
+        share(30, times=[1.0, 2.0])
+
+
+@pytest.mark.parametrize("ill", ["wind", "water"])
+def test_leaves_and_water_are_noticed_where_the_spread_is_small(ill, tmp_path):
+    taken = brackets.shoot(brackets.plan(tmp_path, 3), ills.ILLS[ill])
+    found = pipeline.assemble(taken, align="none")
+    assert found.spread < 0.1
+    assert found.moving is not None or any("% of the picture" in one for one in found.doubts)
+
+
+def test_a_still_scene_through_sharpening_and_jpeg_is_not(tmp_path):
+    found = pipeline.assemble(brackets.shoot(brackets.plan(tmp_path, 3)), align="none")
+    assert found.moving is None and found.doubts == ()
