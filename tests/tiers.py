@@ -50,6 +50,8 @@ TIERS = {
         "tests/align/test_registration.py::test_the_arch_is_registered_to_the_measured",
         "tests/calibration/test_wilburn.py::test_the_spline_reads_real_responses",
         "tests/cli/test_long_commands.py",
+        "tests/diagnostics/test_motion.py::test_a_still_scene_through_sharpening",
+        "tests/diagnostics/test_motion.py::test_leaves_and_water",
         "tests/diagnostics/test_times_estimate.py::test_a_calibration_estimates_times_in_the_same_words[all",
         "tests/diagnostics/test_times_estimate.py::test_real_photographs_agree_better",
         "tests/diagnostics/test_validation_of_bitmaps.py::test_the_arch_is_aligned_to_a_pixel",

@@ -174,7 +174,7 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
         valid=valid,
         merge=merge,
     )
-    share = np.mean(found.labels > 0)
+    share = float(np.mean(found.labels > 0))
     if way == "auto" and 100 * share >= moving.WIDESPREAD:
         return doubt_motion(state._replace(stage="ghosts"), share)
     notes = (*state.notes, moving.note(found, names))
