@@ -50,8 +50,8 @@ use_plan("hw1")
 # ## 3 · How many photographs? ({points})
 #
 # A scene spans so many stops, one photograph holds $R$ of them (`usable`), and neighbours shall share $O$
-# (`overlap`), so that the response can be found. The first photograph covers $R$, each further one adds
-# $R - O$:
+# (`overlap`, less than $R$), so that the response can be found. The first photograph covers $R$, each further
+# one adds $R - O$:
 #
 # $$n = 1 + \left\lceil \frac{\text{scene} - R}{R - O} \right\rceil, \qquad\text{and at least } 1.$$
 
@@ -84,9 +84,9 @@ pictures.picture(
 # %% [markdown] about="threshold"
 # ## 4 · The threshold ({points})
 #
-# The histogram `h` (256,) counts the pixels of each code. The median is the lowest code with half of the
-# pixels at or below it; where the median is clipped one takes another share $q$ of them. Several $q$ may be
-# asked at once: for an array of shares return an array of codes.
+# The histogram `h` (256,) counts the pixels of each code. The threshold is the lowest code with a share of at
+# least $q$ of the pixels at or below it: the median for $q = 1/2$; where that is clipped one takes another
+# share. Several $q$ may be asked at once: for an array of shares return an array of codes.
 
 # %% task="threshold"
 
@@ -112,7 +112,7 @@ pictures.picture(
 #
 # A hand moves by dozens of pixels, and trying all offsets would take long. So one begins with small
 # pictures: each level has half the size, and each of its pixels is the rounded mean of $2 \times 2$ pixels
-# of the level below. An odd row or column at the end is left out.
+# of the level below; a mean of a half may go up or down. An odd row or column at the end is left out.
 
 # %% task="shrink"
 
@@ -120,8 +120,9 @@ pictures.picture(
 # ## 7 · Moving photographs ({points})
 #
 # An offset $(dy, dx)$ says where an image must move, down and to the right. Move the images `(P, H, W[,
-# 3])` by their offsets `(P, 2)`, and cut them to the rectangle that all of them cover, and an image that
-# stays, too: a pixel that comes from nowhere is no photograph.
+# 3])` by their offsets `(P, 2)`, and cut them to the rectangle that all of them cover: a pixel that comes
+# from nowhere is no photograph. An image that stays where it is, $(0, 0)$, counts among them even if there
+# is none, so one image that moves 3 rows down loses 3 rows.
 
 # %% task="shift"
 
@@ -130,12 +131,13 @@ pictures.picture(
 #
 # Now put it together. For a pair, from the coarsest level to the finest: bitmaps and exclusion bitmaps of
 # both; for the nine offsets around twice the one found so far, XOR the bitmaps, AND with both exclusion
-# bitmaps, count; the least count wins, and in a tie the centre does. Of the overlap alone, for the counts
-# of nine overlaps differ in size: compare shares.
+# bitmaps, count; the least count wins, and in a tie the centre does; between two others either may. Of the
+# overlap alone, for the counts of nine overlaps differ in size: compare shares of its pixels. Both images of
+# a pair have the same $q$; the median will do for all checks.
 #
 # Do this for each photograph and its neighbour in brightness, sum the offsets along the chain, and give
-# them relative to the image in the middle of brightness, whose offset is $(0, 0)$. `bits` is the number of
-# levels, so `bits=6` finds offsets up to 63 pixels.
+# them relative to the image in the middle of brightness, whose offset is $(0, 0)$; of an even number either
+# of the two in the middle. `bits` is the number of levels, so `bits=6` finds offsets up to 63 pixels.
 
 # %% task="align"
 # Return the offsets that lay every image on the one in the middle of their brightness.

@@ -58,7 +58,7 @@ pictures.picture(
 #
 # Near 0 rounding is as large as the signal, near the top the sensor is full. The hat trusts a level by how
 # far it is from both ends: over $n$ levels, $w(z) = z$ below the middle and $n - 1 - z$ above it, scaled to
-# 1 in the middle.
+# about 1 in the middle. What counts is one weight against another, so any scale will do.
 
 # %% task="hat"
 
@@ -113,11 +113,11 @@ pictures.picture(ax, alt="The sixty pixels' points, moved sideways by their ln E
 # ## 5 · Robertson: step by step ({points})
 #
 # Begin with the line of a linear camera, $f^{-1}(m) = m/128$, yield it, and then iterate: irradiances from
-# the curve, the curve from the irradiances, levels without pixels filled from their neighbours, and all
-# divided by $f^{-1}(128)$. Yield after every iteration, and end when $f^{-1}$ changes by less than
-# `tolerance` anywhere, or after `max_iterations`.
+# the curve, the curve from the irradiances, levels without pixels filled from their neighbours (on a line
+# between them, or from the nearest: as you like), and all divided by $f^{-1}(128)$. Yield after every
+# iteration, and end when $f^{-1}$ changes by less than `tolerance` anywhere, or after `max_iterations`.
 #
-# A yielded state begins with $f^{-1}$; that alone, in a tuple, is enough.
+# A yielded state begins with $f^{-1}$; that alone, in a tuple, is enough. A list of states will do, too.
 
 # %% task="recover_steps"
 # Yield the state of one channel, before the first iteration and after each.
@@ -145,7 +145,8 @@ pictures.picture(ax, alt="The curve after the last iteration winds about the tru
 #
 # is least squares in the $c_k$; then each $R_q$ is the quotient of the sums of $f^{-1}$ over the two frames
 # (the paper takes the mean of quotients, to which dark pixels add mostly noise); and so on, until $f^{-1}$
-# changes by less than `eps`. The sum begins with $k = 1$, so no light is level 0.
+# changes by less than `eps`, or for fifty turns. Each channel may have ratios of its own. The sum begins with
+# $k = 1$, so no light is level 0, where $g = -\infty$; put that there, or a part of what level 1 has.
 #
 # `images` are `(P, H, W[, 3])` bytes. Choose samples that both frames see well, between 0.05 and 0.98.
 # Return $g = \ln f^{-1}$, `(256,)` or `(256, 3)`, rising, with $g(128) = 0$ in each channel. Knobs that

@@ -48,9 +48,10 @@ pictures.picture(
 # $$\ln E = \frac{\sum_j w(Z_j)\,[\,g(Z_j) - \ln t_j\,]}{\sum_j w(Z_j)}.$$
 #
 # `images` are `(P, H, W[, 3])` bytes, `times` `(P,)` seconds, `g` `(256,)` or one column for each channel,
-# `w` `(256,)`, the hat where none is given. Return $E$ `(H, W[, 3])`. Where all weights are zero the
-# mean is undefined; the next task has an answer, and no check of this one looks there. (The library also
-# drops a frame for all channels of a pixel where one is clipped. No check asks for that either.)
+# `w` `(256,)`, where none is given the hat of homework 2, which is 0 at both ends. Return $E$ `(H, W[,
+# 3])`. Where all weights are zero the mean is undefined; the next task has an answer, and no check of this
+# one looks there. (The library also drops a frame for all channels of a pixel where one is clipped. No
+# check asks for that either.)
 
 # %% task="merge"
 # Return the radiance map E: the mean of the logarithms, weighted, over the photographs.
@@ -72,8 +73,8 @@ pictures.radiance(E, alt="The radiance map of the room in false colour")
 # The tightest bounds count. With one of them the map takes it; between two it takes the middle of their
 # logarithms; without any, $E = 0$. `Z` is `(P, M)`: levels of $M$ such pixels; `B` `(P,)` ln times; `shown`
 # `(P, M)` is False where a photograph does not show the pixel at all. Return $E$ `(M,)` and flags `(M,)`:
-# the sum of 1 where it was clipped in some photograph and 2 where it was dark in one, and 8 where nothing
-# is known.
+# the sum of 1 where it was clipped in some photograph that shows it and 2 where it was dark in one, and 8
+# where there is no bound. A level between gives none.
 
 # %% task="bound"
 # Return E (M,) and flags (M,) of pixels that no frame measures, from the frames' tightest bounds.
@@ -82,8 +83,8 @@ pictures.radiance(E, alt="The radiance map of the room in false colour")
 # ## 3 · Writing a portable float map ({points})
 #
 # PFM is the simplest file that holds radiance. Three lines of text: `PF` for colour or `Pf` for gray; width
-# and height; and a number whose *sign* says the order of the bytes, negative for little endian. Then the
-# values, float32, pixel by pixel, and row by row **from the bottom up**.
+# and height; and a number whose *sign* says the order of the bytes, negative for little endian; its size
+# says nothing. Then the values, float32, pixel by pixel, and row by row **from the bottom up**.
 #
 # Return the file as `bytes`.
 

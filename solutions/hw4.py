@@ -15,7 +15,7 @@
 #
 # Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
 # differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab itself is not there when your
-# work is graded.
+# work is graded. Where a sheet says yield, a list will do, and a plain tuple for a state.
 
 # %%
 import numpy as np
@@ -98,8 +98,8 @@ pictures.picture(
 # $$\text{base}(p) = \frac{\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)\; l(q)}
 #   {\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)}, \qquad l = \log_{10} L.$$
 #
-# Sums written out are exact and good enough: a loop over the offsets within $2\sigma_s$ or $3\sigma_s$, all
-# pixels at once.
+# Sums written out are exact and good enough: a loop over the offsets within $2\sigma_s$ or $3\sigma_s$, in a
+# square or a disc, all pixels at once. Past the edge there are no pixels, or mirrored ones.
 
 # %% task="layers"
 # Return base = bil(lL) and detail = lL - base.
@@ -145,7 +145,8 @@ pictures.picture(
 #
 # The eye does not mind a scale that varies slowly: $s = 1 / (k\, \mathrm{blur}(L))$ with a Gaussian blur,
 # so that a pixel $k$ times as bright as its neighbourhood becomes white ($k$ is `headroom`). The overview
-# prints a further factor $L$, a misprint. `sigma` is in pixels; the checks always give it.
+# prints a further factor $L$, a misprint. `sigma` is in pixels; the checks always give it. What stands past
+# the edge is yours to choose.
 
 # %% task="scale"
 # Return s = 1 / (k blur(L)).
@@ -168,7 +169,8 @@ pictures.picture(
 # $$\varphi_k = \Bigl(\frac{|\nabla l_k|}{\alpha\, \overline{|\nabla l_k|}}\Bigr)^{\beta - 1}, \qquad
 #   \Phi_d = \varphi_d, \qquad \Phi_k = \mathrm{enlarged}(\Phi_{k+1})\, \varphi_k.$$
 #
-# A slope below `noise` times the mean counts as that much. Enlarge by linear interpolation. Yield from the
+# A slope below `noise` times the mean counts as that much. Enlarge by linear interpolation. Which blur, and
+# where between the coarse pixels the fine ones lie, is yours to choose. Yield from the
 # coarsest level to the picture: $k$, $l_k$, $|\nabla l_k|$, $\varphi_k$, $\Phi_k$.
 
 # %% task="attenuation_steps"

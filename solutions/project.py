@@ -38,9 +38,10 @@ use_plan("project")
 #
 # where $V$ is $L_m$ itself, or with `local=True` the mean of each pixel's own even neighbourhood: what
 # `scale_steps` of homework 4 ends with, with `key`, `phi` and `threshold`, given $L_m$ blurred by Gaussians
-# of $\sigma = s / 4$, $s = 1, 1.6, \ldots, 1.6^8$. `white=None` takes the brightest $L_m$ but for 0.01 % of
-# the pixels, and at least 1. The checks give finite luminance and knobs above 0; what to do with any other is
-# yours to decide, and `key="auto"` is the library's alone.
+# of $\sigma = s / 4$, $s = 1, 1.6, \ldots, 1.6^8$. $\delta$ is that of homework 4, $10^{-6}$. `white=None`
+# takes the brightest $L_m$ but for 0.01 % of the pixels, by any rule of quantiles, and at least 1. The
+# checks give finite luminance and knobs above 0; what to do with any other is yours to decide, and
+# `key="auto"` is the library's alone.
 
 # %% task="tonemap"
 

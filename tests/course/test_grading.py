@@ -127,6 +127,13 @@ def test_after_a_call_that_took_too_long_the_rest_of_its_task_is_skipped_and_no_
     assert all((one.kind, one.message, one.follows) == ("late", "", first.promise) for one in others)
 
 
+@pytest.mark.parametrize("line", ["import cv2", "import hdrlab", "hat.weight = undefined"])
+def test_what_keeps_the_whole_task_from_running_is_told_once(graded, line):
+    found = graded(RIGHT.replace("    z = ", f"    {line}\n    z = "))
+    first, *others = found.checks
+    assert found.score == 0 and first.message and {one.follows for one in others} == {first.promise}
+
+
 def test_a_reply_that_is_lost_fails_its_check_and_no_other(graded):
     dies_at_large = RIGHT.replace("    z = ", "    if n > 60000: import os; os._exit(0)\n    z = ")
     found = graded(dies_at_large)
