@@ -140,11 +140,10 @@ def assemble_steps(
     moved = motion.measure_motion(images, seconds, g, w(g), valid=valid)
     if ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED):
         yield (state := deghost(state, ghosts, w, merge))
-    elif moved > motion.MOVED:
-        state = doubt_motion(state, moved)
     if flare != "none":
         yield (state := remove_glare(state))
-    yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid))
+    left = moved if state.moving is None else 0.0
+    yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid), left)
 
 
 def leave_out_contrary(state: Assembly) -> Assembly:
@@ -174,20 +173,10 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
         valid=valid,
         merge=merge,
     )
-    share = float(np.mean(found.labels > 0))
-    if way == "auto" and 100 * share >= moving.WIDESPREAD:
-        return doubt_motion(state._replace(stage="ghosts"), share)
+    if way == "auto" and 100 * np.mean(found.labels > 0) >= moving.WIDESPREAD:
+        return state._replace(stage="ghosts")
     notes = (*state.notes, moving.note(found, names))
     return state._replace(stage="ghosts", E=found.E, quality=found.quality, moving=found.labels, notes=notes)
-
-
-def doubt_motion(state: Assembly, share: float) -> Assembly:
-    """Return the Assembly with the doubt that this share of the picture moved, and is half transparent."""
-    said = (
-        f"the photographs contradict each other in {100 * share:.0f} % of the picture, as where leaves, "
-        "water or people moved, and the map shows all of them there: --ghosts regions shows one"
-    )
-    return state._replace(doubts=(*state.doubts, said))
 
 
 def remove_glare(state: Assembly) -> Assembly:
@@ -198,8 +187,11 @@ def remove_glare(state: Assembly) -> Assembly:
     )
 
 
-def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
-    """Return the Assembly with the medians of each level, and the warnings that follow from them."""
+def assess(state: Assembly, medians: NDArray[np.float64], moved: float) -> Assembly:
+    """Return the Assembly with the medians of each level, and the warnings that follow.
+
+    `moved` is the share of the picture in which ghosts are left; it counts where nothing else explains it.
+    """
     state = state._replace(stage="compare", medians=medians)
     if state.spread > timing.WORTHLESS:
         why = f"the photographs contradict each other by {state.spread:.2f} stops"
@@ -212,6 +204,11 @@ def assess(state: Assembly, medians: NDArray[np.float64]) -> Assembly:
         return state._replace(doubts=(*state.doubts, alone), fallback=alone)
     found = find_contradictions(images, times, valid=valid)
     said = warn_of_contradictions(found, names, state.spread)
+    if not said and moved > motion.MOVED:
+        said = (
+            f"the photographs contradict each other in {100 * moved:.0f} % of the picture, as where leaves, "
+            "water or people moved, and the map shows all of them there: --ghosts regions shows one"
+        )
     if not said and state.spread > CONTRADICTION:
         stops = zip(names, consistency.measure_deviations(medians), strict=True)
         off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)

@@ -77,6 +77,12 @@ def test_flare_is_the_last_stage_before_they_are_compared():
     assert np.median(found.E[found.glare]) < np.median(states[-3].E[found.glare])
 
 
+def test_wrong_times_are_not_called_motion(moving):
+    wrong = moving._replace(times=moving.times * np.array([1, 1, 8, 9, 10]))
+    found = pipeline.assemble(wrong, align="none", times="stated", ghosts="none")
+    assert len(found.doubts) == 1 and "contradict their exposure times" in found.doubts[0]
+
+
 def test_ways_that_there_are_not_are_refused(moving):
     for knobs in ({"ghosts": "some"}, {"flare": "sun"}):
         with pytest.raises(
