@@ -173,7 +173,7 @@ def test_the_command_makes_maps_of_a_film(folder, tmp_path, capsys):
         (["-o", "out.gif", "--times", "1,x"], "expected seconds"),
         (["-o", "out.gif", "--times", "1,1/0"], "expected seconds"),
         (["-o", "out.txt", "--times", "1,4"], "expected a film (.gif, .mp4)"),
-        (["-o", "frames", "--times", "1,4"], "new or empty"),
+        (["-o", "frames", "--times", "1,4"], "frames is read and would be lost"),
         (["-o", "out.gif", "--times", "1,2,3,4,5,6,7"], "at least a turn"),
         (["-o", "out.gif", "--times", "1,4", "--rate", "0", "--response", "linear"], "expected a rate"),
         (
@@ -187,6 +187,14 @@ def test_the_command_says_in_one_line_what_is_wrong(arguments, says, folder, tmp
     code, _, complaint = told(capsys, "video", "frames", *arguments)
     assert code == 2 and says in complaint and complaint.count("\n") == 1
     assert [path.name for path in tmp_path.iterdir()] == ["frames"]
+
+
+def test_maps_do_not_join_what_lies_in_a_folder(folder, tmp_path, capsys):
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "mine.txt").write_text("mine")
+    code, _, complaint = told(capsys, "video", folder, "-o", tmp_path / "full", "--times", "1,4")
+    assert code == 2 and "new or empty" in complaint and complaint.count("\n") == 1
+    assert [path.name for path in (tmp_path / "full").iterdir()] == ["mine.txt"]
 
 
 def test_a_bar_shows_the_progress_and_ctrl_c_leaves_what_was_there(tmp_path):
