@@ -130,8 +130,8 @@ def test_a_damaged_file_of_curves_is_refused_by_name(tmp_path):
 
 def test_the_published_components_are_orthonormal_and_of_three_digit_exponents(shared, papers):
     emor = papers.read_emor(shared("crf_curves") / "emor.txt")
-    assert emor.components.shape == (25, 1024) and emor.mean.shape == (1024,)
-    assert np.allclose(emor.components @ emor.components.T, np.eye(25), atol=1e-6)
+    assert emor.H.shape == (25, 1024) and emor.mean.shape == (1024,)
+    assert np.allclose(emor.H @ emor.H.T, np.eye(25), atol=1e-6)
 
 
 def test_the_published_components_leave_of_201_curves_what_is_known(shared, papers, curves):
