@@ -17,7 +17,8 @@ from tiers import QUICK, TIERS  # noqa: E402
 nox.options.sessions = [QUICK]
 EXTRAS = {"scenes": "test,scenes", "papers": "test,bench"}
 # in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
-TOGETHER = ("browser", "jupyterlab", "grading", "papers", "scenes", "wheel")
+# (in a browser they need not: what is dear there, the site, is one for all workers)
+TOGETHER = ("jupyterlab", "grading", "papers", "scenes", "wheel")
 
 
 def test(session: nox.Session, tier: str) -> None:

@@ -5,6 +5,7 @@ It shows the notebooks as they were run for the tests of notebooks, where these 
 
 import functools
 import http.server
+import os
 import subprocess
 import sys
 import threading
@@ -28,16 +29,29 @@ pytestmark = pytest.mark.skipif(
 )
 
 
-@pytest.fixture(scope="module")
-def site(browser, kept, tmp_path_factory):
-    """The site of all notebooks."""
-    folder = tmp_path_factory.mktemp("site")
-    (folder / "site" / CACHE).mkdir(parents=True)
+def make_site(folder, kept):
+    """Make the site of all notebooks in a folder."""
+    cache = folder / "site" / CACHE
+    cache.mkdir(parents=True)
     (kept / "executed").mkdir(parents=True, exist_ok=True)
-    (folder / "site" / CACHE / "executed").symlink_to(kept / "executed")
+    (cache / "executed").symlink_to(kept / "executed")
     command = [sys.executable, "-m", "hdrlab", "site", "--out", str(folder / "site"), "--jobs", "2"]
     ran = subprocess.run(command, cwd=folder, capture_output=True, text=True)
     assert ran.returncode == 0 and ran.stderr == "", ran.stderr
+
+
+@pytest.fixture(scope="session")
+def site(browser, kept, tmp_path_factory):
+    """The site of all notebooks, made once for all workers: one makes it, and who comes meanwhile waits."""
+    fcntl = pytest.importorskip("fcntl", reason="a lock between the workers is one of POSIX")
+    base = tmp_path_factory.getbasetemp()
+    folder = (base.parent if "PYTEST_XDIST_WORKER" in os.environ else base) / "site-of-all-notebooks"
+    folder.mkdir(exist_ok=True)
+    with open(folder / "lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        if not (folder / "made").exists():
+            make_site(folder, kept)
+            (folder / "made").touch()
     return folder / "site"
 
 
