@@ -25,6 +25,7 @@ from hdrlab.cli import (
     submitting,
     video,
 )
+from hdrlab.cli.terminal import visible
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
@@ -37,18 +38,15 @@ def run(arguments: Sequence[str] | None = None) -> None:
     try:
         sys.exit(main.main(arguments, prog_name="hdrlab", standalone_mode=False))
     except click.exceptions.Abort:
-        click.echo("hdrlab: interrupted", err=True)
-        sys.exit(130)
+        said, code = "interrupted", 130
     except click.ClickException as error:
-        click.echo(f"hdrlab: {error.format_message()}", err=True)
-        sys.exit(error.exit_code)
+        said, code = error.format_message(), error.exit_code
     except OSError as error:
-        about = f"{error.filename}: {error.strerror}" if error.filename else error
-        click.echo(f"hdrlab: {about}", err=True)
-        sys.exit(2)
+        said, code = f"{error.filename}: {error.strerror}" if error.filename else str(error), 2
     except (ValueError, MemoryError) as error:
-        click.echo(f"hdrlab: {error}", err=True)
-        sys.exit(2)
+        said, code = str(error) or type(error).__name__, 2
+    click.echo(f"hdrlab: {visible(said)}", err=True)
+    sys.exit(code)
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"], "show_default": True})

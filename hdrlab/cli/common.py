@@ -114,7 +114,7 @@ def size(E: Any) -> str:
     """Return what a radiance map is, in words: its size and its decades."""
     from hdrlab.scenes.computed.view import decades
 
-    return f"{E.shape[1]} x {E.shape[0]}, {decades(E):.1f} decades"
+    return f"{E.shape[1]} x {E.shape[0]}, " + (f"{decades(E):.1f} decades" if E.any() else "all black")
 
 
 def agreement(spread: float) -> str:

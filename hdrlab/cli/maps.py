@@ -5,6 +5,7 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
+from hdrlab.cli.terminal import visible
 from hdrlab.pipeline import catalogue
 
 WAY = click.option("--way", type=click.Choice(["hue", "ratio"]), default="hue", help="Of colour, see below.")
@@ -102,4 +103,4 @@ def info(files: tuple[Path, ...]) -> None:
         said = describe_file(file)
         click.echo(said.pop("file"))
         for key, value in said.items():
-            click.echo(f"  {key:<12} {value}")
+            click.echo(f"  {key:<12} {visible(value)}")

@@ -7,6 +7,22 @@ from threading import Event, Thread
 from time import monotonic
 from typing import TextIO
 
+# letters: what a file holds may be quoted in a message, and may be of any length
+LONGEST_MESSAGE = 2000
+
+
+def visible(text: object) -> str:
+    """Return text of any origin as a terminal may show it: controls are written out, and it is not too long.
+
+    Examples
+    --------
+    >>> print(visible("a \\x1b[2J of a title"))
+    a \\x1b[2J of a title
+    """
+    letters = str(text)[: LONGEST_MESSAGE + 1]
+    shown = "".join(one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in letters)
+    return shown if len(letters) <= LONGEST_MESSAGE else f"{shown[:LONGEST_MESSAGE]} ..."
+
 
 @contextmanager
 def elapsed(what: str, *, stream: TextIO | None = None, delay: float = 1.0) -> Iterator[None]:

@@ -15,6 +15,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.types import Array
 
+# e^80 is near the end of float32, in which radiance is kept
+LARGEST_LN_EXPOSURE = 80
+
 
 def describe(array: ArrayLike) -> str:
     """Return what came, for an error message: shape, dtype and range."""
@@ -120,6 +123,11 @@ def as_response(g: ArrayLike, n: int, channels: int) -> NDArray[np.float64]:
     if table.shape[1] not in (1, channels):
         wanted = "(n,) for gray" if channels == 1 else "(n,) or (n, 3)"
         raise ValueError(f"expected a response {wanted}, got shape {table.shape}")
+    if len(np.asarray(g)) not in (n, 256, 65536):
+        raise ValueError(f"expected a response of {n} levels, or of 256, got {describe(g)}")
+    if not np.all(table[-1] > table[0]) or np.abs(table).max() > LARGEST_LN_EXPOSURE:
+        most = LARGEST_LN_EXPOSURE
+        raise ValueError(f"expected ln exposures that rise, from -{most} to {most}, got {describe(table)}")
     return np.broadcast_to(table, (n, channels))
 
 
@@ -128,7 +136,10 @@ def as_table(table: ArrayLike, n: int) -> NDArray[np.float64]:
 
     A response of 256 levels serves 16-bit photographs so: level z of 65536 is level z / 257 of 256.
     """
-    array = np.asarray(table, dtype=np.float64)
+    given = np.asanyarray(table)
+    if given.dtype.kind not in "biuf" or np.ma.is_masked(given):
+        raise ValueError(f"expected a table of numbers, all of them known, got {describe(given)}")
+    array = np.asarray(given, dtype=np.float64)
     if array.ndim not in (1, 2) or len(array) < 2 or not np.all(np.isfinite(array)):
         raise ValueError(f"expected a finite table over pixel levels, (n,) or (n, 3), got {describe(array)}")
     if len(array) == n:

@@ -99,7 +99,8 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
 def mean_known(planes: F32, known: Mask) -> F32:
     """Return the mean of the known pixels of each 3 x 3, (H, W, C); 0 where there is none."""
     share = uniform_filter(known.astype(np.float32), 3, mode="constant")
-    total = uniform_filter(np.where(known[..., None], planes, 0), (3, 3, 1), mode="constant")
+    light = np.where(known[..., None], planes, 0).astype(np.float64)  # sums of which float32 may not hold
+    total = uniform_filter(light, (3, 3, 1), mode="constant")
     return np.where(share[..., None] > 0.05, total / np.maximum(share, 0.05)[..., None], 0)
 
 
@@ -111,8 +112,8 @@ def desaturate(E: F32, *, power: int = 1, weights: ArrayLike = LUMINANCE) -> F32
     """
     planes = E.reshape(*E.shape[:2], -1)
     below = planes.min(axis=-1) < 0
-    lost, repaired = planes[below], planes.copy()
-    w = np.asarray(weights, np.float32) if planes.shape[2] == 3 else np.ones(1, np.float32)
+    lost, repaired = planes[below].astype(np.float64), planes.copy()
+    w = np.asarray(weights, np.float64) if planes.shape[2] == 3 else np.ones(1)
     L = np.maximum(lost @ w, np.maximum(lost, 0) @ np.maximum(w, 0) / 2)
     t = (L / (L - lost.min(axis=-1))) ** power
     repaired[below] = np.maximum(L[:, None] + t[:, None] * (lost - L[:, None]), 0)

@@ -95,7 +95,7 @@ def read(path: str | Path | None = None) -> Plan:
     path = PLAN if path is None else Path(path)
     try:
         sheets = tomllib.loads(path.read_text(encoding="utf8"))
-    except tomllib.TOMLDecodeError as error:
+    except (ValueError, RecursionError) as error:  # of digits beyond counting, and brackets in brackets
         raise ValueError(f"{path}: expected a plan in TOML, {error}") from None
     late = _late(sheets.pop("late", {}), path)
     plan = Plan({name: _homework(name, sheet, path) for name, sheet in sheets.items()}, late)
@@ -121,13 +121,13 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
         tasks = tuple(Task(one["id"], one["function"], float(one["points"])) for one in sheet["tasks"])
         by_hand = tuple(ByHand(one["title"], float(one["points"])) for one in sheet.get("by_hand", ()))
         homework = Homework(name, sheet["title"], sheet["due"], tasks, by_hand)
-    except (KeyError, TypeError, ValueError) as error:
+    except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{path}: expected title, due and tasks in [{name}], {error!r}") from None
     if not isinstance(homework.due, datetime) or homework.due.tzinfo is None:
         raise ValueError(f"{path}: expected due of [{name}] as a date with time and zone, got {homework.due}")
     points = [one.points for one in tasks] + [one.points for one in by_hand]
-    if not (points and min(points) >= 0):
-        raise ValueError(f"{path}: expected tasks or work by hand, of at least 0 points each, in [{name}]")
+    if not (points and min(points) >= 0 and sum(points) < np.inf):
+        raise ValueError(f"{path}: expected tasks or work by hand, of 0 points or more each, in [{name}]")
     return homework
 
 

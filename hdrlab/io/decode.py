@@ -86,7 +86,8 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
         except ModuleNotFoundError:  # no codec: the file may be good
             raise
         except Exception as error:  # on damaged files the codecs raise what they like
-            raise ValueError(f"{header.path}: it is cut short or damaged ({error})") from None
+            why = str(error) or type(error).__name__
+            raise ValueError(f"{header.path}: it is cut short or damaged ({why})") from None
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
         got = f"{pixels.shape} {pixels.dtype}"
         raise ValueError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")

@@ -46,8 +46,10 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
             temporary.touch(mode=0o600)
         yield temporary
         os.replace(temporary, path)
-    except BaseException:  # Ctrl-C as well
+    except BaseException as error:  # Ctrl-C as well
         temporary.unlink(missing_ok=True)
+        if isinstance(error, OSError) and error.errno and error.filename in (None, str(temporary)):
+            error.filename = str(path)
         raise
 
 

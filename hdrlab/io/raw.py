@@ -39,6 +39,8 @@ def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
     """Return the upright shape (H, W, 3) and the Exposure of the RAW file at `path`."""
     with _open(path) as file:
         sizes, other = file.sizes, file.other
+        if file.num_colors != 3:
+            raise ValueError(f"{path}: expected a sensor of three colours, got {file.num_colors}")
         height, width = sizes.iheight, sizes.iwidth
         if sizes.flip in (5, 6):  # turned by a quarter
             height, width = width, height

@@ -10,7 +10,6 @@ f  f^-1      exp g, the exposure of each level, in any unit
 The first two keep every bit, the third 10 digits.
 """
 
-import zipfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import NamedTuple
@@ -18,15 +17,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import LARGEST_LN_EXPOSURE, describe
 from hdrlab.core.types import F64
 from hdrlab.io import pfscurves
+from hdrlab.io.emor import MAX_FILE_BYTES, read_npz
 from hdrlab.io.files import replacing, require_suffix
 
-# bytes: three channels of 65536 levels take 10 million
-MAX_FILE_BYTES = 32 << 20
-# ln exposure: e^80 is near the end of float32, in which other programs keep exposures
-MAX_LN_EXPOSURE = 80
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
 UNIT = " (ln exposure)"
 
@@ -125,8 +121,8 @@ def as_curve(g: ArrayLike) -> F64:
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curve)}")
     if len(curve) not in (256, 65536):
         raise ValueError(f"expected 256 or 65536 levels, got {len(curve)}: is it cut short?")
-    if not np.all(np.abs(curve) <= MAX_LN_EXPOSURE):  # NaN neither
-        limits = f"-{MAX_LN_EXPOSURE} to {MAX_LN_EXPOSURE}"
+    if not np.all(np.abs(curve) <= LARGEST_LN_EXPOSURE):  # NaN neither
+        limits = f"-{LARGEST_LN_EXPOSURE} to {LARGEST_LN_EXPOSURE}"
         raise ValueError(f"expected ln exposures from {limits}, got {describe(curve)}")
     return curve.astype(np.float64)
 
@@ -155,15 +151,7 @@ def _write_npz(path: Path, g: F64) -> None:
 
 
 def _read_npz(path: Path) -> F64:
-    try:
-        with zipfile.ZipFile(path) as archive:
-            claimed = archive.getinfo("g.npy").file_size
-        if claimed > MAX_FILE_BYTES:
-            raise ValueError(f"its g claims {claimed} bytes")
-        with np.load(path, allow_pickle=False) as file:
-            return np.asarray(file["g"])
-    except Exception as error:  # a damaged zip has many ways to say so
-        raise ValueError(f"expected an NPZ archive with g in it, {error}") from error
+    return read_npz(path, "g")[0]
 
 
 FORMS = {

@@ -8,6 +8,7 @@ name, and there is nothing to find on the path.
 Frames are decoded one at a time: a film need not fit into memory.
 """
 
+import struct
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
@@ -19,12 +20,14 @@ import numpy as np
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.core.types import F32, Array
 from hdrlab.io import photos, radiance, web
-from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
+from hdrlab.io.files import MAX_PIXELS, check_size, replacing, require_suffix
 
 FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
 ANIMATIONS = {".gif"}
 SUFFIXES = FILMS | ANIMATIONS
 WRITTEN = (".gif", ".mp4")
+# pixels that a byte of LZW stands for, at most
+BEST_GIF_RATIO = 1 << 12
 MISSING = "films need the extra `video` (pip install hdrlab[video]); folders of frames and .gif do without"
 
 
@@ -85,6 +88,8 @@ def require_films(path: Path) -> None:
 def decode_frames(path: Path) -> Iterator[Array]:
     """Yield the frames of a film or an animation, (H, W, 3) uint8."""
     film = path.suffix.lower() in FILMS
+    if not film:
+        check_frames(path)
     try:
         with iio.imopen(path, "r", plugin="pyav" if film else "pillow") as file:
             source: Any = file  # what its plug-in takes beyond the common type
@@ -97,6 +102,32 @@ def decode_frames(path: Path) -> Iterator[Array]:
         raise
     except Exception as error:  # on damaged files the codecs raise what they like
         raise ValueError(f"{path}: it is cut short or damaged ({error})") from None
+
+
+def check_frames(path: Path) -> None:
+    """Raise a ValueError where a frame of a GIF claims more pixels than it could hold [GIF89a sec. 20]."""
+    data = path.read_bytes().ljust(14, b"\0")
+    at = 13 + _colour_table(data[10])
+    while at + 10 < len(data) and data[at] != 0x3B:  # ;
+        if data[at] == 0x2C:  # , begins a frame
+            left, top, width, height, flags = struct.unpack_from("<4HB", data, at + 1)
+            across, down = left + width, top + height
+            check_size(path, down, across, across * down // BEST_GIF_RATIO, available=len(data))
+            at = _skip_blocks(data, at + 11 + _colour_table(flags))
+        else:  # ! begins what a program added, and anything else is skipped as Pillow does
+            at = _skip_blocks(data, at + 2) if data[at] == 0x21 else at + 1
+
+
+def _colour_table(flags: int) -> int:
+    """Return the bytes of the colours that follow the flags of a GIF or of one of its frames."""
+    return 3 << (flags & 7) + 1 if flags & 0x80 else 0
+
+
+def _skip_blocks(data: bytes, at: int) -> int:
+    """Return where a row of blocks ends, each of which begins with its length; the last has none."""
+    while at < len(data) and data[at]:
+        at += data[at] + 1
+    return at + 1
 
 
 def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:

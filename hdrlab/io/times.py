@@ -34,6 +34,8 @@ COLUMNS = {
 LEAST_ISO = 50
 # of the brightness of the photographs with the times of a list: less decides nothing
 CORRELATION = 0.5
+# letters: a name and a few numbers
+LONGEST_LINE = 10_000
 
 
 class TimeList(NamedTuple):
@@ -127,24 +129,27 @@ def read_times(path: str | Path) -> TimeList:
         text = Path(path).read_text("utf-8-sig")
     except UnicodeDecodeError:
         raise ValueError(f"{path}: expected a list of exposure times, this is not a text file") from None
-    numbered = [(n, _split(line.partition("#")[0])) for n, line in enumerate(text.splitlines(), 1)]
+    lines = text.splitlines()
+    if (longest := max(map(len, lines), default=0)) > LONGEST_LINE:
+        raise ValueError(f"{path}: expected lines with a file and its time, got one of {longest} letters")
+    numbered = [(n, _split(line.partition("#")[0])) for n, line in enumerate(lines, 1)]
     rows = [(f"{path}, line {n}", cells) for n, cells in numbered if cells]
     heading = _heading(rows[0][1]) if rows else None
-    names, read, certain = list[str](), list[Exposure](), False
+    read, certain = dict[str, Exposure](), False
     for where, cells in rows[bool(heading) :]:
         cell = _named_cells(where, heading, cells)
-        if cell["file"] in names:
+        if cell["file"] in read:
             raise ValueError(f"{where}: expected each file once, got {cell['file']} again")
         number = {what: _number(where, cell[what]) for what in list(HEADINGS)[:-1] if cell.get(what)}
         certain |= "rate" not in number or not cell["rate"][-1:].isdigit() or "/" in cell["rate"]
         seconds = number.get("seconds") or number.get("rate") or 1 / _number(where, cell.get("inverse", ""))
-        names.append(cell["file"])
-        read.append(Exposure(seconds, number.get("f_number"), number.get("iso")))
-    if not names:
+        read[cell["file"]] = Exposure(seconds, number.get("f_number"), number.get("iso"))
+    if not read:
         raise ValueError(f"{path}: expected a list of exposure times, it is empty")
+    each = list(read.values())
     given, inverted = (
-        dict(zip(names, equivalent([f"{path}: {name}" for name in names], one), strict=True))
-        for one in (read, [one._replace(seconds=1 / one.seconds) for one in read if one.seconds])
+        dict(zip(read, equivalent([f"{path}: {name}" for name in read], one), strict=True))
+        for one in (each, [one._replace(seconds=1 / one.seconds) for one in each if one.seconds])
     )
     return TimeList(given, None if certain else inverted)
 

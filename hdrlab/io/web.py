@@ -5,9 +5,11 @@ values  any shape, finite: radiance, for a script to compute with
 """
 
 import base64
+import io
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import Image as Pillow
 
 from hdrlab.core.optional import imageio_v3 as iio
 
@@ -87,7 +89,8 @@ def decode_picture(encoded: bytes) -> Image:
     >>> decode_picture(encode_webp(np.full((2, 3), 7, np.uint8), lossless=True)).shape
     (2, 3, 3)
     """
-    return as_rgb(iio.imread(encoded)[..., :3])
+    with Pillow.open(io.BytesIO(encoded), formats=("PNG", "JPEG", "WEBP", "GIF")) as image:
+        return np.asarray(image.convert("RGB"))
 
 
 def data_uri(encoded: bytes, kind: str = "webp") -> str:

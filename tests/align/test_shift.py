@@ -73,3 +73,10 @@ def test_offsets_that_leave_nothing_are_refused(offsets):
 def test_offsets_that_are_not_one_whole_pair_per_image_are_refused(offsets):
     with pytest.raises(ValueError, match="expected .*offsets"):
         shift(views([(0, 0), (0, 0)]), offsets)
+
+
+def test_offsets_that_are_all_positive_leave_no_row_beyond_the_pictures():
+    rows, columns = crop([[2, 5], [4, 3]], (20, 30))
+    assert (rows, columns) == (slice(4, 20), slice(5, 30))
+    rows, columns = crop([[-2, -5], [-4, -3]], (20, 30))
+    assert (rows, columns) == (slice(0, 16), slice(0, 25))

@@ -117,3 +117,11 @@ def test_where_all_are_full_the_light_is_at_least_that():
 def test_what_means_nothing_is_refused(call):
     with pytest.raises(ValueError, match="expected"):
         call()
+
+
+def test_a_pixel_at_the_very_level_that_counts_as_full_is_full():
+    """Light in the brightest sensor's last level may have been any amount: the next sensor has the word."""
+    Z = np.full((3, 9, 9), 40, np.uint8)
+    Z[2, 4, 4] = 255
+    *_, last = splitter.merge_steps(Z[::-1], [0.9, 0.07, 0.004], full=1.0)
+    assert last.case[4, 4] == 3 and last.case[0, 0] == 1

@@ -217,3 +217,12 @@ def test_a_light_that_comes_and_goes_changes_the_room_less():
         for span in (0, 1)
     )
     assert together < 0.7 * each
+
+
+def test_frames_that_are_dimmer_than_white_are_not_pulled_up_to_it():
+    """The white of a film is 1 or more: a dark and even room stays as dark as its key makes it."""
+    dim = steady.measure_frame(np.full((8, 8), 3.0))
+    average, white = steady.adapt([dim, dim], key=0.18)
+    assert white == 1 and average == pytest.approx(3.0, rel=1e-3)
+    bright = steady.measure_frame(np.where(np.eye(64) > 0, 3000.0, 3.0))
+    assert steady.adapt([bright], key=0.18)[1] > 1

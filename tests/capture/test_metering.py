@@ -154,3 +154,11 @@ def test_a_subject_is_a_part_of_its_picture_and_its_reflectance_is_as_told(name)
     assert np.all(np.isfinite(scene.E)) and scene.E.min() > 0
     assert 0.02 < scene.mask.mean() < 0.9
     assert {"backlight": 0.45, "snow": 0.86, "locomotive": 0.05}[name] == pytest.approx(scene.rho, rel=0.15)
+
+
+def test_the_centre_meter_fades_as_a_bell_does_and_ends_nowhere():
+    """The logarithm of its weights falls by the square of the distance, in the core as outside of it."""
+    w = metering.centre((61, 61))
+    away = (np.arange(61) - 30.0) ** 2
+    slope = np.diff(np.log(w[30])) / np.where(np.diff(away), np.diff(away), np.nan)
+    assert np.allclose(slope, slope[0], rtol=1e-6) and slope[0] < 0 and w.min() > 0

@@ -64,3 +64,12 @@ def test_the_second_differences_of_a_line_are_0_and_those_of_a_parabola_its_weig
     w, z = np.array([0.0, 1, 3, 2, 0]), np.arange(5.0)
     assert np.allclose(weights.second_differences(w, 10) @ (3 * z + 1), 0)
     assert np.allclose(weights.second_differences(w, 10) @ z**2, [20, 60, 40])
+
+
+def test_the_weight_below_the_top_knows_how_steep_the_response_is_up_to_the_top():
+    """Of f = z^2 the slope from a to b is a + b: 250 + 255 for level 254, whose window ends at 255."""
+    w = weights.snr(2 * np.log(np.maximum(np.arange(256), 1e-3) / 255))
+    slope = {254: 250 + 255, 253: 249 + 255, 128: 124 + 132}
+    share = {z: z**2 / across for z, across in slope.items()}
+    assert w[254] / w[128] == pytest.approx(share[254] / share[128], rel=1e-5)
+    assert w[253] / w[128] == pytest.approx(share[253] / share[128], rel=1e-5)

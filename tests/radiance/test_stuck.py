@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.radiance.stuck import find_stuck, neighbours_median
+from hdrlab.radiance.stuck import find_stuck, neighbours_median, repair_stuck
 
 
 def pair(shape=(7, 9), dtype=np.uint8):
@@ -70,3 +70,14 @@ def test_at_the_border_the_picture_is_continued_by_reflection():
     E = np.array([[100, 1, 5], [2, 3, 6], [7, 8, 9]], np.float32)
     mask = E == 100
     assert neighbours_median(E, mask).tolist() == [np.median([1, 1, 2, 2, 3, 3, 3, 3])]
+
+
+@pytest.mark.parametrize(("ratio", "mended"), [(2.0, True), (1.9, False)])
+def test_a_stop_of_exposure_is_enough_to_tell_a_hot_pixel(ratio, mended):
+    frames = np.full((2, 9, 9, 1), 60, np.uint8)
+    frames[1] = 120
+    frames[:, 4, 4] = 250
+    E = np.ones((9, 9, 1), np.float32)
+    E[4, 4] = 50
+    assert repair_stuck(E, frames, np.array([1.0, ratio]), None).any() == mended
+    assert E[4, 4] == (1 if mended else 50)

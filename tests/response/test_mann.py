@@ -91,3 +91,9 @@ STACK = np.tile(np.arange(256, dtype=np.uint8).reshape(16, 16), (2, 1, 1))
 def test_what_tells_nothing_is_refused(images, times, knobs):
     with pytest.raises(ValueError, match="expected"):
         mann.recover(images, times, **knobs)
+
+
+def test_black_is_a_quarter_of_a_level_and_no_light_at_all_is_none():
+    """Pixels of level 0 had from none to half a level of light: the middle of that is what they mean."""
+    for gamma in (1.0, 0.45):
+        assert mann.power_law(gamma)[0] == pytest.approx(np.log(0.25 / 128) / gamma)

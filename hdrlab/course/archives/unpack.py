@@ -20,7 +20,7 @@ from hdrlab.course.archives import members, tarball
 from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, quote_name
 from hdrlab.course.wording import plain
 
-DAMAGE = (OSError, EOFError, ValueError, RuntimeError, OverflowError, MemoryError, struct.error)
+DAMAGE = (OSError, EOFError, ValueError, RuntimeError, OverflowError, MemoryError, IndexError, struct.error)
 FAULTS = (*DAMAGE, tarfile.TarError, zipfile.BadZipFile, lzma.LZMAError, zlib.error)  # of the readers
 LOCAL = 30  # bytes of the header that stands before a member of a zip
 ENTRY = 1024  # bytes of its entry in the list, at most: 46, a name, and what some programs add
@@ -57,7 +57,8 @@ def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> 
         except FAULTS as error:
             if isinstance(error, OSError) and error.errno:  # a full disk is not the archive's fault
                 raise
-            raise Refused(f"it is damaged, or no .zip or .tar archive ({plain(str(error), 80)})") from None
+            why = plain(str(error) or type(error).__name__, 80)
+            raise Refused(f"it is damaged, or no .zip or .tar archive ({why})") from None
         os.rename(fresh, target)
     return found
 

@@ -48,13 +48,14 @@ def directory(block: bytes, at: int, sign: str) -> tuple[list[Entry], int]:
     (count,) = struct.unpack_from(f"{sign}H", block, at)
     if at + 6 + 12 * count > len(block):
         raise ValueError("expected the entries of a directory within the file")
-    entries = []
+    entries, left = [], len(block)  # bytes: values that lie over each other would fill any memory
     for k in range(count):
         place = at + 2 + 12 * k
         tag, kind, length = struct.unpack_from(f"{sign}HHL", block, place)
         size = SIZES.get(kind, 0) * length
         start = place + 8 if size <= 4 else struct.unpack_from(f"{sign}L", block, place + 8)[0]
-        if size and start + size <= len(block):
+        left -= size
+        if size and start + size <= len(block) and left >= 0:
             entries.append(Entry(tag, kind, length, bytes(block[start : start + size]), start))
     return entries, struct.unpack_from(f"{sign}L", block, at + 2 + 12 * count)[0]
 

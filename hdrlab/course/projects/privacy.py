@@ -46,7 +46,7 @@ def clean(name: str | Path, data: bytes) -> Cleaned:
             return _png(data)
         if data[:4] in (b"II*\0", b"MM\0*") and suffix in PICTURES | TIFF_LIKE:
             return _tiff(data, raw=suffix in TIFF_LIKE)
-    except (struct.error, IndexError) as error:
+    except (struct.error, IndexError, ValueError) as error:
         raise ValueError(f"{name}: expected a picture, it is cut short or damaged ({error})") from None
     raise ValueError(
         f"{name}: expected a JPEG, PNG, TIFF, DNG, NEF, ARW, CR2 or PEF file, others cannot be cleaned"

@@ -115,7 +115,7 @@ def _about(path: Path) -> About:
         return About()
     try:
         said: dict[str, Any] = tomllib.loads(path.read_text(encoding="utf8"))
-    except (tomllib.TOMLDecodeError, UnicodeDecodeError) as error:
+    except (ValueError, RecursionError) as error:
         raise ValueError(f"{path}: {error}; expected something like\n{EXAMPLE}") from None
     students = said.get("students", ())
     if isinstance(students, str):

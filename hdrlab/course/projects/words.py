@@ -30,6 +30,7 @@ ASKED = {  # what the assignment asks for -> what a heading about it says
     "bells and whistles": r"bells|whistle|bonus|extra",
 }
 MOST = 5_000_000  # bytes of words
+COLUMNS = 200  # of a table; lines with more are plain text
 SIDE = 1400  # pixels of a picture
 Pictures = dict[str, bytes]
 
@@ -72,6 +73,7 @@ def read(path: Path) -> Words:
         raise ValueError(f"{path}: expected words in UTF-8") from None
     except (ValueError, KeyError, TypeError, AttributeError, RecursionError) as error:
         raise ValueError(f"{path}: expected a notebook ({error})") from None
+    text = text.encode("utf8", "replace").decode("utf8")  # JSON may hold half a character
     if len(text) > MOST:
         raise ValueError(f"{path}: expected at most {MOST} letters, got {len(text)}")
     return sections(text, path.parent, pictures)
@@ -99,7 +101,9 @@ def notebook(text: str) -> tuple[str, Pictures]:
 def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words:
     """Return Markdown as Words; pictures are looked up by name, and then in the folder."""
     notes: list[str] = []
-    parser = MarkdownIt("commonmark", {"html": False, "linkify": False}).enable(["table", "strikethrough"])
+    parser = MarkdownIt("commonmark", {"html": False, "linkify": False}).enable("strikethrough")
+    if max(line.count("|") for line in text.split("\n")) <= COLUMNS:  # else its time grows with their square
+        parser.enable("table")
     parser.add_render_rule("image", _drawing(folder, pictures or {}, notes))
     tokens = parser.parse(text)
     heads = [k for k, one in enumerate(tokens) if one.type == "heading_open" and not one.level]

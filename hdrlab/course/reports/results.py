@@ -183,7 +183,10 @@ def from_json(data: bytes) -> Result:
     ValueError
         For anything else, and for a version of another hdrlab.
     """
-    read = json.loads(data)
+    try:
+        read = json.loads(data)
+    except RecursionError:
+        read = None
     if not isinstance(read, dict) or read.get("version") != VERSION:
         raise ValueError(f"expected a result of version {VERSION}, written by hdrlab grade")
     try:

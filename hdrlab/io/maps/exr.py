@@ -6,9 +6,11 @@ The picture is the display window: where the data window is smaller, the rest is
 """
 
 import contextlib
+import errno
 import io
 from collections.abc import Sequence
 from pathlib import Path
+from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,6 +24,9 @@ from hdrlab.io.files import check_size, replacing
 LARGEST_HALF = 65504.0
 # bytes of a picture in one of the file: more than any of the methods reaches
 BEST_COMPRESSION_RATIO = 1 << 16
+# pixels of a window that holds more than so many times the data's: more is no frame around a picture
+LARGEST_FRAME, FRAME_RATIO = 1 << 22, 64
+PRINTING = Lock()  # OpenEXR prints what is wrong, and the stream that catches it is everybody's
 Part = tuple[dict[str, Any], dict[str, Array]]
 COLOURS = ({"R", "G", "B"}, {"R", "G", "B", "A"})
 
@@ -63,6 +68,8 @@ def _header(path: str | Path, attributes: dict[str, Any]) -> Header:
         raise ValueError(f"{path}: expected channels of full size, got subsampled {', '.join(channels)}")
     windows = (attributes["dataWindow"], attributes["displayWindow"])
     data, display = (_window(path, window, len(channels)) for window in windows)
+    if display.height * display.width > max(LARGEST_FRAME, FRAME_RATIO * data.height * data.width):
+        raise ValueError(f"{path}: expected a display window not far beyond {data}, got {display}")
     return Header(channels, data, display, attributes)
 
 
@@ -140,7 +147,10 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False, comments: Seque
     if comments:
         header["comments"] = "\n".join(comments)
     with replacing(path) as name, OpenEXR.File(header, {"RGB" if E.ndim == 3 else "Y": pixels}) as file:
-        file.write(str(name))
+        try:
+            file.write(str(name))
+        except RuntimeError as error:
+            raise OSError(errno.EIO, f"{error}: is the disk full?", str(path)) from None
 
 
 def parts(
@@ -155,6 +165,7 @@ def parts(
     open_parts, printed = OpenEXR.File, io.StringIO()
     try:
         with (
+            PRINTING,
             contextlib.redirect_stdout(printed),
             open_parts(str(path), separate_channels, header_only) as file,
         ):
@@ -163,7 +174,8 @@ def parts(
                 channels = [(one.name, one.xSampling, one.ySampling) for one in part.header["channels"]]
                 planes = {name: channel.pixels for name, channel in part.channels.items()}
                 found.append(({**part.header, "channels": channels}, planes))
-            found[0]  # a file without a part is damaged too
+            if printed.getvalue() or not found:  # it tells of parts that it leaves out
+                raise ValueError("a part cannot be read")
             return found
     except Exception as error:  # damaged files make it raise what they like, UnicodeDecodeError included
         reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)

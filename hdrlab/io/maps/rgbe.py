@@ -144,7 +144,7 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
     E = np.empty((scanlines, length, 3), np.float32)
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
-    except imagecodecs.RgbeError:
+    except (imagecodecs.RgbeError, ValueError):
         raise ValueError(f"{path}: expected {scanlines} scanlines, they are damaged or cut short") from None
 
 

@@ -56,10 +56,10 @@ def parse(path: str | Path, head: bytes) -> Header:
         raise ValueError(f"{path}: expected a binary file, its line ends became CR LF: copied as text")
     values = dict(part.split("=", 1) for part in lines if "=" in part)
     if (form := values.get("FORMAT", "32-bit_rle_rgbe").strip()) != "32-bit_rle_rgbe":
-        raise ValueError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form}")
+        raise ValueError(f"{path}: expected FORMAT=32-bit_rle_rgbe, got {form[:60]!r}")
     sign, axis, first, sign2, axis2, second = match.groups()
     if axis == axis2:
-        raise ValueError(f"{path}: expected one X and one Y in the resolution, got {line}")
+        raise ValueError(f"{path}: expected one X and one Y in the resolution, got {line[:60]!r}")
     height, width = (int(first), int(second))[:: 1 if axis == "Y" else -1]
     check_size(path, height, width)
     return Header(height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start)
@@ -74,7 +74,7 @@ def _exposure(path: str | Path, lines: list[str]) -> F64:
             try:
                 product = product * np.array(value.split(), dtype=np.float64)
             except ValueError:
-                raise ValueError(f"{path}: expected one number or three in its header, got {line}") from None
+                raise ValueError(f"{path}: expected numbers in its header, got {line[:60]!r}") from None
     if not np.all(np.isfinite(product) & (product > 0)):
         raise ValueError(f"{path}: expected positive exposures in its header, got {product.tolist()}")
     return product

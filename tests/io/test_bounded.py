@@ -1,0 +1,193 @@
+"""No file can hurt: what claims more than it holds is refused in words, and nothing is left changed."""
+
+import io
+import struct
+import sys
+import threading
+import tracemalloc
+import zipfile
+
+import numpy as np
+import OpenEXR
+import pytest
+from PIL import Image
+
+from hdrlab import cli
+from hdrlab.core import gamut
+from hdrlab.fast.merge import merge
+from hdrlab.io import decode, files, photos, radiance, sequence, times, web
+from hdrlab.io.maps import exr, rgbe
+
+LEVELS = np.arange(256)
+
+
+def two_parts(path):
+    """Write a file of two parts whose first one's pixels are damaged."""
+    noise = np.random.default_rng(1).integers(0, 4, (64, 80, 3)).astype(np.float32)
+    kind = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+    parts = [OpenEXR.Part(dict(kind), {"RGB": noise + k}, name) for k, name in enumerate("ab")]
+    with OpenEXR.File(parts) as file:
+        file.write(str(path))
+    data = bytearray(path.read_bytes())
+    data[len(data) // 4 : len(data) // 4 + 200] = bytes(200)
+    path.write_bytes(data)
+
+
+@pytest.mark.parametrize("read", [exr.read, exr.read_dtypes])
+def test_the_second_part_of_an_exr_never_stands_for_a_damaged_first(tmp_path, read):
+    two_parts(tmp_path / "parts.exr")
+    with pytest.raises(ValueError, match=r"parts\.exr: expected an OpenEXR file, it is cut short or damaged"):
+        read(tmp_path / "parts.exr")
+
+
+def test_a_display_window_far_beyond_the_data_is_refused_and_a_frame_is_not(tmp_path):
+    for rows, refused in ((300, False), (1_000_000, True)):
+        window = (np.array([0, 0], np.int32), np.array([16, rows], np.int32))
+        header = {
+            "type": OpenEXR.scanlineimage,
+            "compression": OpenEXR.NO_COMPRESSION,
+            "displayWindow": window,
+        }
+        with OpenEXR.File(header, {"Y": np.ones((12, 17), np.float32)}) as file:
+            file.write(str(tmp_path / "window.exr"))
+        if refused:
+            with pytest.raises(ValueError, match="display window"):
+                exr.read(tmp_path / "window.exr")
+        else:
+            assert exr.read(tmp_path / "window.exr").shape == (rows + 1, 17)
+
+
+def test_files_read_at_once_leave_the_streams_as_they_were(tmp_path):
+    radiance.write_radiance(tmp_path / "one.exr", np.ones((40, 50, 3)))
+    stream, before = sys.stdout, threading.active_count()
+
+    def read():
+        for _ in range(20):
+            exr.read(tmp_path / "one.exr")
+
+    threads = [threading.Thread(target=read) for _ in range(8)]
+    for each in threads:
+        each.start()
+    for each in threads:
+        each.join()
+    assert sys.stdout is stream and threading.active_count() == before
+
+
+def gif(*frames):
+    """Return a GIF of a canvas of 8 x 8 with frames (width, height) and no colours behind them."""
+    blocks = b"".join(b"," + struct.pack("<4HB", 0, 0, *size, 0) + b"\2\2\x4c\1\0" for size in frames)
+    return b"GIF89a" + struct.pack("<2H3B", 8, 8, 0x80, 0, 0) + bytes(6) + blocks + b";"
+
+
+@pytest.mark.parametrize("frames", [[(12041, 12079)], [(8, 8), (2048, 35328)]])
+def test_an_animation_takes_no_more_memory_than_its_bytes_may_stand_for(tmp_path, frames):
+    (tmp_path / "film.gif").write_bytes(gif(*frames))
+    tracemalloc.start()
+    with pytest.raises(ValueError, match=r"film\.gif: its header claims"):
+        list(sequence.read(tmp_path / "film.gif"))
+    assert tracemalloc.get_traced_memory()[1] < 20e6
+    tracemalloc.stop()
+
+
+def test_an_animation_in_pieces_is_read_as_before(tmp_path):
+    pictures = [Image.fromarray(np.full((20, 30, 3), 60 * k, np.uint8)) for k in range(3)]
+    pictures[0].save(tmp_path / "film.gif", save_all=True, append_images=pictures[1:])
+    assert [frame.shape for frame in sequence.read(tmp_path / "film.gif")] == [(20, 30, 3)] * 3
+
+
+def test_values_at_the_end_of_float32_are_repaired_to_numbers():
+    E = np.full((9, 9, 3), 3e38, np.float32)
+    E[4, 4], E[2, 2, 0], E[6, 6] = np.nan, -3e38, np.inf
+    assert np.isfinite(gamut.sanitize(E).E).all() and gamut.sanitize(E).E.min() >= 0
+
+
+def test_a_list_of_times_is_read_line_by_line_and_a_line_of_any_length_is_not(tmp_path):
+    file = tmp_path / "times.txt"
+    file.write_text("".join(f"f{j}.jpg 1/{j + 1}\n" for j in range(3000)))
+    assert len(times.read_times(file).seconds) == 3000
+    file.write_text("a.jpg," + "1" * 200_000)
+    with pytest.raises(ValueError, match=r"times\.txt: expected lines .* 200006 letters"):
+        times.read_times(file)
+
+
+def test_damage_at_the_end_of_rgbe_names_the_file(tmp_path):
+    file = tmp_path / "end.hdr"
+    rgbe.write(file, np.random.default_rng(0).random((20, 30, 3)))
+    file.write_bytes(file.read_bytes() + bytes(50))
+    with pytest.raises(ValueError, match=r"end\.hdr: expected 20 scanlines"):
+        rgbe.read(file)
+
+
+def test_what_a_terminal_would_obey_is_written_out(tmp_path, capsys):
+    (tmp_path / "a.hdr").write_bytes(b"#?RADIANCE\nFORMAT=\x1b]0;owned\x07red\n\n-Y 1 +X 1\n")
+    for command in (
+        ["info", tmp_path / "a.hdr"],
+        ["assemble", tmp_path, "-o", "\x1b[31m.hdr", "--mask", "z" * 9000],
+    ):
+        with pytest.raises(SystemExit):
+            cli.run([str(one) for one in command])
+        said = capsys.readouterr().err
+        assert "\x1b" not in said and "\x07" not in said and len(said) < 2100
+
+
+@pytest.mark.parametrize("suffix", [".pfm", ".exr"])
+def test_a_black_map_is_converted_and_called_black(tmp_path, capsys, suffix):
+    radiance.write_radiance(tmp_path / "black.pfm", np.zeros((20, 30, 3)))
+    with pytest.raises(SystemExit) as stop:
+        cli.run(["convert", str(tmp_path / "black.pfm"), str(tmp_path / f"out{suffix}")])
+    assert not stop.value.code and "30 x 20, all black" in capsys.readouterr().out
+
+
+def test_a_full_disk_names_the_file_whatever_was_to_be_written(tmp_path, monkeypatch):
+    def full(*_, **__):
+        raise OSError(28, "No space left on device")
+
+    with pytest.raises(OSError) as stop, files.replacing(tmp_path / "room.pfm"):
+        full()
+    assert stop.value.filename == str(tmp_path / "room.pfm")
+    monkeypatch.setattr(OpenEXR.File, "write", lambda *_: (_ for _ in ()).throw(RuntimeError("disk")))
+    with pytest.raises(OSError, match=r"is the disk full.*room\.exr"):
+        exr.write(tmp_path / "room.exr", np.ones((4, 5, 3)))
+    assert not list(tmp_path.iterdir())
+
+
+def test_pictures_in_notebooks_are_read_as_pictures_alone():
+    shown = io.BytesIO()
+    Image.new("RGB", (4, 3), (9, 8, 7)).save(shown, "TIFF")
+    with pytest.raises(OSError, match="cannot identify"):
+        web.decode_picture(shown.getvalue())
+    assert web.decode_picture(web.encode_webp(np.zeros((4, 5, 3), np.uint8))).shape == (4, 5, 3)
+
+
+def test_a_photograph_too_large_for_the_memory_says_so(tmp_path, monkeypatch):
+    photos.write_picture(tmp_path / "a.png", np.zeros((4, 5, 3), np.uint8))
+    monkeypatch.setitem(decode.DECODERS, "PNG", lambda *_: (_ for _ in ()).throw(MemoryError()))
+    with pytest.raises(ValueError, match=r"a\.png: it is cut short or damaged \(MemoryError\)"):
+        photos.read_photo(tmp_path / "a.png")
+
+
+@pytest.mark.parametrize(
+    "g",
+    [
+        np.linspace(-5, 2, 100),
+        np.linspace(2, -5, 256),
+        np.linspace(-5, 2, 256) + 1j,
+        np.linspace(-5, 95, 256),
+        np.ma.masked_array(np.linspace(-5, 2, 256), LEVELS > 200),
+        np.linspace(-5, 2, 256).astype(object),
+    ],
+    ids=["a hundred levels", "falling", "complex", "beyond float32", "masked", "objects"],
+)
+def test_a_response_that_means_nothing_makes_no_map(g):
+    with pytest.raises(ValueError, match="expected"):
+        merge(np.zeros((2, 4, 5), np.uint8), [0.1, 1], g)
+
+
+def test_an_archive_of_curves_that_claims_too_much_is_refused_before_it_is_unpacked(tmp_path):
+    from hdrlab.io.emor import read_curves
+
+    with zipfile.ZipFile(tmp_path / "curves.npz", "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in ("irradiance", "brightness"):
+            archive.writestr(f"{name}.npy", bytes(40 << 20))
+    with pytest.raises(ValueError, match=r"curves\.npz: .* claims"):
+        read_curves(tmp_path / "curves.npz")
