@@ -20,7 +20,7 @@ from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 from hdrlab.course.reports.results import Outcome, Result
-from hdrlab.show.pages.templates import templates
+from hdrlab.show.pages.templates import render_page
 
 PAGE = "class_page.html"
 BINS = 10  # of the scores, each a tenth of the points
@@ -85,8 +85,9 @@ def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Se
     scores = counted.points.values()
     whole = max(homework.points, 1e-9)
     bins = Counter(min(BINS - 1, int(BINS * score / whole)) for score in scores)
-    template = templates(Path(__file__).parent).get_template(PAGE)
-    return template.render(
+    return render_page(
+        Path(__file__).parent,
+        PAGE,
         homework=homework,
         count=len(scores),
         median=statistics.median(scores) if scores else 0,

@@ -20,7 +20,7 @@ from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import replacing
 from hdrlab.show import plots
 from hdrlab.show.pages import sections
-from hdrlab.show.pages.templates import templates
+from hdrlab.show.pages.templates import render_page
 from hdrlab.show.plots import figures
 
 AFTER = {"bracket": "description", "curves": "algorithm", "map": "results"}  # figure -> section
@@ -65,11 +65,8 @@ def write_report(project: Project) -> Written:
     parts = tuple(_parts(said, {name: found[name] for name in AFTER if name in found}))
     notes += [f"the words have no section about: {name}" for name in said.missing()]
     title = said.title or project.about.title or project.folder.resolve().name
-    text = (
-        templates(Path(__file__).parent)
-        .get_template(TEMPLATE)
-        .render(title=title, about=project.about, hero=found.get("artifact"), parts=parts)
-    )
+    shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
+    text = render_page(Path(__file__).parent, TEMPLATE, **shown)
     page = project.folder / PAGE
     with replacing(page) as temporary:
         temporary.write_text(text, encoding="utf8")

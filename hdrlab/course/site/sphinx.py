@@ -1,6 +1,7 @@
 """What Sphinx is told: how docstrings, formulas and names in backticks become pages."""
 
 import re
+import tomllib
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -11,38 +12,9 @@ from hdrlab.course.site import formulas, reference
 HERE = Path(__file__).parent
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
-SETTINGS: dict[str, Any] = {
-    "project": "hdrlab",
-    "version": __version__,
-    "release": __version__,
-    "language": "en",
-    "extensions": ["sphinx.ext.autodoc", "sphinx.ext.viewcode", "numpydoc", "myst_nb", __name__],
-    "autosummary_generate": False,  # numpydoc loads it, and it would look for its lists in every page
-    "default_role": "py:obj",
-    "autodoc_typehints": "none",  # shapes and units stand in the text
-    "autodoc_preserve_defaults": True,
-    "numpydoc_show_class_members": False,
-    "numpydoc_xref_param_type": False,
-    "add_module_names": False,
-    "toc_object_entries": False,
-    "python_maximum_signature_line_length": 90,
-    "myst_enable_extensions": ["dollarmath", "amsmath", "deflist", "attrs_inline"],
-    "myst_heading_anchors": 3,
-    "nb_execution_mode": "off",  # they have been run
-    "nb_merge_streams": True,  # what a cell prints is one piece, however often it came
-    "nb_ipywidgets_js": {},  # a page of ours opens its widgets itself
-    "html_math_renderer": "drawn",
-    "html_theme": "theme",
-    "html_theme_path": [str(HERE)],
-    "html_title": "hdrlab",
-    "html_permalinks": False,
-    "html_copy_source": False,
-    "html_use_index": False,
-    "html_domain_indices": False,
-    "html_show_search_summary": False,  # it would fetch the pages it has found, which a folder does not allow
-    "pygments_style": "bw",  # the theme has the colours
-    "viewcode_line_numbers": True,
-}
+SETTINGS: dict[str, Any] = tomllib.loads((HERE / "settings.toml").read_text("utf-8"))
+SETTINGS |= {"version": __version__, "release": __version__, "html_theme_path": [str(HERE)]}
+SETTINGS["extensions"].append(__name__)
 
 
 def setup(app: Any) -> dict[str, Any]:

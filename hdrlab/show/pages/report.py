@@ -16,7 +16,7 @@ from hdrlab.core.metrics import Truth
 from hdrlab.io.files import replacing
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.show.pages import sections
-from hdrlab.show.pages.templates import templates
+from hdrlab.show.pages.templates import render_page
 from hdrlab.show.plots import figures
 
 PAGE = "report.html"
@@ -76,27 +76,21 @@ def _page(
         raise ValueError(f"expected a finished assembly, got one after the stage {stage!r}")
     if picture.dtype != np.uint8 or picture.shape[:2] != quality.shape or picture.shape[2:] not in ((), (3,)):
         raise ValueError(f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}")
-    return (
-        templates(Path(__file__).parent)
-        .get_template(PAGE)
-        .render(
-            notes=notes,
-            doubts=doubts,
-            picture=figures.photograph(
-                picture,
-                1600,
-                "The picture: the photographs, fused without a map"
-                if assembly.fallback
-                else "The picture: the radiance map, tone-mapped for a display",
-            ),
-            facts=sections.facts(E, quality, medians),
-            bracket=sections.bracket(bracket, offsets),
-            response=sections.response(g, truth),
-            radiance=sections.radiance(E),
-            known=sections.known(quality, picture),
-            moving=sections.moving(assembly.moving, picture),
-            agreement=sections.agreement(bracket, medians),
-            errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
-            recipe=sections.recipe(bracket, recipe),
-        )
+    seen = "fused without a map" if assembly.fallback else "tone-mapped for a display"
+    seen = f"The picture: the {'photographs' if assembly.fallback else 'radiance map'}, {seen}"
+    return render_page(
+        Path(__file__).parent,
+        PAGE,
+        notes=notes,
+        doubts=doubts,
+        picture=figures.photograph(picture, 1600, seen),
+        facts=sections.facts(E, quality, medians),
+        bracket=sections.bracket(bracket, offsets),
+        response=sections.response(g, truth),
+        radiance=sections.radiance(E),
+        known=sections.known(quality, picture),
+        moving=sections.moving(assembly.moving, picture),
+        agreement=sections.agreement(bracket, medians),
+        errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
+        recipe=sections.recipe(bracket, recipe),
     )

@@ -4,6 +4,7 @@ A page that stands by itself, with all it needs, extends `page.html`: it fetches
 """
 
 from pathlib import Path
+from typing import Any
 
 import jinja2
 
@@ -19,3 +20,8 @@ def templates(folder: Path) -> jinja2.Environment:
         trim_blocks=True,
         lstrip_blocks=True,
     )
+
+
+def render_page(folder: Path, name: str, **words: Any) -> str:
+    """Return the page that a template of a folder makes of some words."""
+    return templates(folder).get_template(name).render(words)
