@@ -22,13 +22,7 @@ from hdrlab.course.material import handouts, materials, stubs
 from hdrlab.course.plan import Homework, Plan, Task
 
 SCHEMA = 3  # of nbgrader's metadata, which 0.6 to 0.9 write
-CONFIG = '''"""nbgrader's configuration, made by hdrlab course export."""
-
-c = get_config()  # noqa: F821, nbgrader gives it
-c.CourseDirectory.course_id = "hdrlab"
-c.ExecutePreprocessor.timeout = 600  # seconds for a cell: the last one checks the whole sheet
-c.ClearSolutions.code_stub = {"python": "# YOUR CODE HERE\\nraise NotImplementedError()"}
-'''
+CONFIG = Path(__file__).parent / "nbgrader_config.txt"  # in nbgrader's own language
 
 
 def export(plan: Plan, folder: Path) -> Iterator[Path]:
@@ -45,7 +39,7 @@ def export(plan: Plan, folder: Path) -> Iterator[Path]:
             raise ValueError(f"expected the handout {handout}; make it by: hdrlab course build")
         notebook = source(json.loads(handout.read_text(encoding="utf8")), homework)
         yield handouts.write_text(folder / "source" / name / f"{name}.ipynb", notebook)
-    yield handouts.write_text(folder / "nbgrader_config.py", CONFIG)
+    yield handouts.write_text(folder / "nbgrader_config.py", CONFIG.read_text(encoding="utf8"))
 
 
 def source(handout: dict[str, Any], homework: Homework) -> str:

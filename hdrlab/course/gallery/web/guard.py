@@ -11,6 +11,7 @@ from typing import NamedTuple
 from urllib.parse import parse_qsl
 
 from starlette.requests import Request
+from starlette.responses import PlainTextResponse
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 BODY = 16_384  # bytes of a form: a ballot has a few hundred
@@ -89,12 +90,7 @@ class Guard:
 
         hosts = [value.decode("latin-1").lower() for name, value in scope["headers"] if name == b"host"]
         if hosts != [self._host]:
-            await answer(
-                {"type": "http.response.start", "status": 421, "headers": [(b"content-type", b"text/plain")]}
-            )
-            return await answer(
-                {"type": "http.response.body", "body": b"This gallery has another address.\n"}
-            )
+            return await PlainTextResponse("This gallery has another address.\n", 421)(scope, receive, answer)
         await self._app(scope, receive, answer)
 
 
