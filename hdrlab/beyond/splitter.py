@@ -9,7 +9,8 @@ u      share of the pixels around that are full in B, 0 to 1, in a window of 5 x
 P      what a full pixel of B would have shown: D sum B / sum D over those around that are not full
 
 All sensors see one picture at one time, so nothing can leave a ghost. And they see it through splitters that
-throw nearly no light away: the second takes what the first reflects, and its own reflection is not lost.
+throw nearly no light away: the second takes what the first reflects, and what it reflects in turn goes back
+through the first, which lets most of it pass to the third sensor.
 
 Merging does not average all sensors. Where the brightest is not full it is the cleanest, and is taken alone;
 the others come in where it fills, gently, for their noise is greater: [Tocci11 sec. 5] has four cases.
@@ -30,7 +31,7 @@ from hdrlab.core.steps import last
 from hdrlab.core.types import F64, Array, Mask
 
 # shares of the light, by the first pellicle, and by the second of what the first reflected
-REFLECTANCES = (0.08, 0.055)
+REFLECTANCES = (0.08, 0.06)
 # of the top level: from here on a pixel counts as full
 CLIPPING_LEVEL = 0.9
 # pixels
@@ -53,15 +54,15 @@ class State(NamedTuple):
 
 
 def shares(reflected: ArrayLike = REFLECTANCES) -> F64:
-    """Return e (3,): 1 - r1, r1 (1 - r2), r1 r2; the third is what the second reflects  [Tocci11 sec. 3].
+    """Return e (3,): 1 - r1, r1 (1 - r2), r1 r2 (1 - r1), back through the first  [Tocci11 sec. 3].
 
     Examples
     --------
     >>> shares().round(4)
-    array([0.92  , 0.0756, 0.0044])
+    array([0.92  , 0.0752, 0.0044])
     """
     first, second = np.asarray(reflected, np.float64)
-    return np.array([1 - first, first * (1 - second), first * second])
+    return np.array([1 - first, first * (1 - second), first * second * (1 - first)])
 
 
 def shoot(

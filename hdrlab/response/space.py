@@ -1,10 +1,10 @@
-"""The space of camera responses as a prior (Grossberg and Nayar, CVPR 2003).
+"""The space of camera responses as a prior (Grossberg and Nayar, CVPR 2003: [Grossberg03b]).
 
 curves  (C, n)   many responses at the same n places: g over the pixel levels, or brightness over exposure
 mean    (n,)     of the curves
 H       (K, n)   principal components, orthonormal rows
 sd      (K,)     how far the curves spread along each
-c       (K,)     coefficients: curve = mean + c H  [Grossberg03 eq. 6]
+c       (K,)     coefficients: curve = mean + c H  [Grossberg03b eq. 6]
 
 Responses are alike. A handful of numbers distinguishes them, and a few samples of a curve, or a poor bracket,
 are enough with the prior c ~ Normal(0, sd): the answer is the maximum a posteriori (MAP) estimate.
@@ -73,7 +73,7 @@ def project(curve: ArrayLike, space: Space) -> F64:
 
 
 def reconstruct(c: ArrayLike, space: Space) -> F64:
-    """Return mean + c H [Grossberg03 eq. 6]."""
+    """Return mean + c H [Grossberg03b eq. 6]."""
     return space.mean + np.asarray(c, np.float64) @ space.H
 
 

@@ -15,8 +15,10 @@ WELL = {"full_well": 20000, "read_noise": 5}
 
 
 def test_the_splitters_lose_nothing_but_what_goes_back_to_the_lens():
-    e = splitter.shares((0.08, 0.055))
-    assert e.sum() == pytest.approx(1) and np.log2(e[0] / e[1]) == pytest.approx(3.6, abs=0.05)
+    e = splitter.shares((0.08, 0.06))
+    assert 1 - e.sum() == pytest.approx(0.08 * 0.06 * 0.08) and np.log2(e[0] / e[1]) == pytest.approx(
+        3.6, abs=0.05
+    )
     assert np.log2(e[1] / e[2]) == pytest.approx(4.1, abs=0.05)
 
 

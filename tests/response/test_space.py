@@ -4,10 +4,12 @@ import numpy as np
 import pytest
 from laws import photographs as shots
 
+from hdrlab import scenes
 from hdrlab.capture import camera, responses
+from hdrlab.core import sampling
 from hdrlab.core.metrics import response_rmse
 from hdrlab.io.emor import read_curves
-from hdrlab.response import families, space
+from hdrlab.response import debevec, families, space
 
 X = np.linspace(0, 1, 256)
 POWERS = np.stack([X**gamma for gamma in np.arange(0.3, 1.01, 0.05)])
@@ -161,3 +163,26 @@ def test_the_response_of_measured_cameras_is_recovered_with_the_formulas_as_prio
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)
         errors.append(response_rmse(space.recover(taken.images, taken.times), g)[0])
     assert np.median(errors) < 0.6 and np.percentile(errors, 95) < 2 and max(errors) < 3
+
+
+def test_notebook_09_says_which_is_better_on_two_noisy_photographs():
+    f, s = responses.RESPONSES["film"].f, responses.RESPONSES["srgb"].f
+    wave = lambda X: X ** (1 / 2.2) + 0.03 * np.sin(6 * np.pi * X ** (1 / 2.2))  # noqa: E731
+    cameras = {"film": "film", "srgb": "srgb", "mix": lambda X: (f(X) + s(X)) / 2, "wig": wave}
+    sensor = {"sensitivity": 1 / 16, "full_well": 20_000, "read_noise": 5, "gray_noise": 2}
+    workshop = scenes.workshop((128, 192))[..., 1]
+    times = camera.times_around(workshop, 2, stops=2, sensitivity=1 / 16)
+    gsolve, ours = {}, {}
+    for name, each in cameras.items():
+        taken = camera.shoot(workshop, times, camera.Camera(response=each, **sensor), rng=4)
+        Z, true = taken.images, responses.true_g(each)
+        for count in (100, 4000):
+            knobs = {"samples": count, "choose": sampling.by_grid}
+            found = debevec.recover(Z, times, **knobs), space.recover(Z, times, noise=0.05, **knobs)
+            gsolve[name, count], ours[name, count] = (response_rmse(g, true)[0] for g in found)
+    for name in ("film", "srgb"):  # better, with half to two thirds of the error
+        assert 0.45 < ours[name, 100] / gsolve[name, 100] < 0.7
+    assert ours["mix", 100] > gsolve["mix", 100] and ours["mix", 4000] < gsolve["mix", 4000]
+    assert min(ours["wig", n] / gsolve["wig", n] for n in (100, 4000)) > 5
+    assert gsolve["film", 4000] > gsolve["film", 100]
+    assert all(gsolve[name, 4000] < gsolve[name, 100] for name in ("srgb", "wig"))
