@@ -8,8 +8,9 @@ from hdrlab import scenes
 from hdrlab.capture import camera, responses
 from hdrlab.core import sampling
 from hdrlab.core.metrics import response_rmse
+from hdrlab.fast import debevec
 from hdrlab.io.emor import read_curves
-from hdrlab.response import debevec, families, space
+from hdrlab.response import families, space
 
 X = np.linspace(0, 1, 256)
 POWERS = np.stack([X**gamma for gamma in np.arange(0.3, 1.01, 0.05)])
