@@ -4,6 +4,8 @@ Laws that hold for all stand in ALWAYS; the others are for modules that name the
 hdrlab.tonemap).
 """
 
+from functools import cache
+
 import numpy as np
 import pytest
 
@@ -77,6 +79,15 @@ def photographs(response, *, shape=(60, 80), frames=7, bits=8, rng=11):
     )
 
 
+@cache
+def recovered(recover, response):
+    """Return what a method finds in the usual photographs: several laws compare with it, and it is dear."""
+    taken = photographs(response)
+    g = recover(taken.images, taken.times)
+    g.setflags(write=False)
+    return g
+
+
 def finds_the_true_curve_of_a_simulated_camera(recover, response):
     for bits in (8, 16):
         taken = photographs(response, bits=bits)
@@ -96,21 +107,20 @@ def does_not_ask_for_an_order_of_the_frames(recover, response):
     taken = photographs(response)
     order = np.random.default_rng(0).permutation(len(taken.times))
     shuffled = recover(taken.images[order], taken.times[order])
-    assert np.allclose(shuffled, recover(taken.images, taken.times), atol=1e-8)
+    assert np.allclose(shuffled, recovered(recover, response), atol=1e-8)
 
 
 def does_not_depend_on_the_unit_of_time(recover, response):
     taken = photographs(response)
     for factor in (2, 1 / 3000):
-        assert np.allclose(
-            recover(taken.images, factor * taken.times), recover(taken.images, taken.times), atol=1e-8
-        )
+        g = recover(taken.images, factor * taken.times)
+        assert np.allclose(g, recovered(recover, response), atol=1e-8)
 
 
 def reads_16_bits_like_the_8_they_hold(recover, response):
     taken = photographs(response)
     g = recover(taken.images.astype(np.uint16) * 257, taken.times)
-    eight = recover(taken.images, taken.times)
+    eight = recovered(recover, response)
     if len(g) == 256:
         assert np.allclose(g, eight, atol=1e-12)
     else:
@@ -120,7 +130,7 @@ def reads_16_bits_like_the_8_they_hold(recover, response):
 
 def recovers_gray_like_each_of_three_equal_channels(recover, response):
     taken = photographs(response)
-    gray = recover(taken.images, taken.times)
+    gray = recovered(recover, response)
     rgb = recover(np.stack([taken.images] * 3, axis=-1), taken.times)
     assert np.allclose(rgb.reshape(len(gray), -1), gray[:, None], atol=1e-10)
 
@@ -144,7 +154,8 @@ def leaves_the_photographs_alone(recover, response):
     images, times = taken.images.copy(), taken.times.copy()
     images.setflags(write=False)
     times.setflags(write=False)
-    assert np.array_equal(recover(images, times), recover(taken.images, taken.times))
+    assert np.array_equal(recover(images, times), recovered(recover, response))
+    assert np.array_equal(images, taken.images) and np.array_equal(times, taken.times)
 
 
 def refuses_what_is_no_bracket(recover, response):
