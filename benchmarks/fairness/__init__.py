@@ -56,7 +56,8 @@ def mistakes() -> dict[str, dict[str, str]]:
     for homework in plan.read().homeworks.values():
         for one in misconceptions.known():
             if one.task in [task.id for task in homework.tasks]:
-                cells = imitation.texts(homework, [one.name])
+                own = tuple(task for task in homework.tasks if task.id == one.task)
+                cells = imitation.texts(homework._replace(tasks=own), [one.name])
                 found.setdefault(one.task, {})[one.name] = cells[one.task]
     return found
 
