@@ -124,7 +124,7 @@ def test_an_instructors_plan_has_their_points_tasks_and_dates(tmp_path):
         (('title = "Curves"', ""), r"expected title, due and tasks in \[hw9\], KeyError\('title'\)"),
         (("2026-10-01T12:00:00Z", '"soon"'), "as a date with time and zone, got soon"),
         (("T12:00:00Z", ""), "as a date with time and zone"),
-        (("7.5", "-1"), "at least 0 points"),
+        (("7.5", "-1"), "of 0 points or more each"),
         (("7.5", '"many"'), "expected title, due and tasks"),
         (("[hw9]", "[hw9"), "expected a plan in TOML"),
         (("points = 7.5 }", "points = 7.5 }, { id = 'gsolve', function = 'a.b', points = 1 }"), "each once"),
