@@ -135,7 +135,7 @@ def test_what_keeps_the_whole_task_from_running_is_told_once(graded, line):
 
 
 def test_a_reply_that_is_lost_fails_its_check_and_no_other(graded):
-    dies_at_large = RIGHT.replace("    z = ", "    if n > 60000: import os; os._exit(0)\n    z = ")
+    dies_at_large = RIGHT.replace("    z = ", "    if n > 4000: import os; os._exit(0)\n    z = ")
     found = graded(dies_at_large)
     assert [one.outcome for one in found.checks].count("no answer") == 1 and 5 < found.score < 10
 
