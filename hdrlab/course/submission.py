@@ -29,6 +29,7 @@ MOST_SOURCE = 900_000  # bytes of a task with all that it needs, on its way to t
 UNPACKED = Limits(total=1 << 28)  # of an archive: a notebook, and the photographs that it reads
 SECONDS, MEMORY = 2, 500 << 20  # of a processor, and bytes, to read a file in; a worked homework takes 0.1 s
 UNPACKING = 3  # seconds more for an archive
+TRIES = 3  # of a process that somebody else ends
 PATIENCE = 25.0  # seconds by the clock: it is read twice, and costs 300 s at most with its checks
 TOLD = 12  # problems that are told
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
@@ -49,18 +50,23 @@ def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] 
     Raises
     ------
     ValueError
-        Where that process was ended from outside, of which nothing can be said.
+        Where that process was ended from outside, again and again, of which nothing can be said.
     """
     limits = {"CPU": SECONDS + UNPACKING * (path.suffix.lower() in PACKED), "AS": MEMORY}
-    try:
-        with tempfile.TemporaryDirectory(prefix="hdrlab-read-", ignore_cleanup_errors=True) as scratch:
-            order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
-            said = json.loads(alone.run(_read, order, patience=PATIENCE, limits=limits))
-    except alone.Failed as error:
-        if not error.own:
-            raise ValueError(f"it could not be read: {error}") from None
-        what = f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, which no homework does"
-        return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
+    for tried in range(1, TRIES + 1):
+        try:
+            with tempfile.TemporaryDirectory(prefix="hdrlab-read-", ignore_cleanup_errors=True) as scratch:
+                order = (path, Path(scratch), homework, tuple(tasks), tuple(given))
+                said = json.loads(alone.run(_read, order, patience=PATIENCE, limits=limits))
+            break
+        except alone.Failed as error:
+            if error.own:
+                what = (
+                    f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, which no homework does"
+                )
+                return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
+            if tried == TRIES or not error.killed:
+                raise ValueError(f"it could not be read: {error}") from None
     return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]))
 
 

@@ -106,6 +106,24 @@ def _killed(order):
     os.kill(os.getpid(), 9)
 
 
+def test_a_reader_that_is_killed_from_outside_is_started_again(tmp_path, monkeypatch):
+    (tmp_path / "hw2.py").write_text(GOOD)
+    monkeypatch.setattr(submission, "_read", _killed_twice)
+    assert set(submission.read(tmp_path / "hw2.py", "hw2", ["hat"]).sources) == {"hat"}
+    assert len(list(tmp_path.glob("killed*"))) == 2
+
+
+READ = submission._read
+
+
+def _killed_twice(order):
+    before = len(list(order[0].parent.glob("killed*")))
+    if before < 2:
+        (order[0].parent / f"killed{before}").touch()
+        os.kill(os.getpid(), 9)
+    return READ(order)
+
+
 ROSTER = Roster((Student("b1", "Ada", "b1"), Student("b2", "Bo", "b2")))
 
 

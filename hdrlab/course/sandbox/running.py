@@ -131,14 +131,15 @@ class Running:
 
     def check(self) -> socket.socket:
         """Return the link to a new process, for one check; what the one before has left is cleared away."""
-        self.wait()
-        try:
-            return self._begin()
-        except (OSError, EOFError, ValueError):  # it was ended from outside, or cannot end what it began
-            self.close()
-            self._start()
+        for _ in range(2):
             self.wait()
-            return self._begin()
+            with contextlib.suppress(OSError, EOFError, ValueError):
+                return self._begin()
+            self.close()  # it was ended from outside, or cannot end what it began
+            self._start()
+        raise Unavailable(
+            f"the {self.sandbox.tier} sandbox was ended from outside, and once more when it began anew"
+        )
 
     def _begin(self) -> socket.socket:
         """Clear the last check away, begin another, and return its link."""

@@ -26,9 +26,12 @@ LAST = 300  # characters of why it failed
 
 
 class Failed(RuntimeError):
-    """Why a piece of work has no result, in a line; `own` where it reached a limit, or crashed by itself."""
+    """Why a piece of work has no result, in a line.
 
-    own = False
+    `own` where it reached a limit, or crashed by itself; `killed` where somebody else has ended it.
+    """
+
+    own = killed = False
 
 
 def run(
@@ -72,7 +75,8 @@ def run(
     lines = (answer[1:] or said).decode(errors="replace").strip().splitlines()
     failed = Failed((lines[-1] if lines else f"its process was ended ({process.returncode})")[:LAST])
     code = process.returncode
-    failed.own = answer[:12] == b"-MemoryError" or (code < 0 and -code not in (signal.SIGTERM, KILLED))
+    failed.killed = -code in (signal.SIGTERM, KILLED)
+    failed.own = answer[:12] == b"-MemoryError" or (code < 0 and not failed.killed)
     raise failed
 
 
