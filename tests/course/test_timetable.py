@@ -1,0 +1,119 @@
+"""The planned course names the notebooks and the tasks that there are, in an order that can be taught."""
+
+import json
+import re
+from datetime import datetime, timedelta
+
+import pytest
+import timetable
+
+pytestmark = pytest.mark.skipif(
+    not timetable.COPY.exists(), reason="reads a clone, and this is an installed package"
+)
+FIRST_WEEK = datetime(2026, 9, 21)
+
+
+@pytest.fixture(scope="module")
+def page():
+    return timetable.PAGE.read_text(encoding="utf8")
+
+
+def rows(pattern, page):
+    return re.findall(pattern, page, re.M)
+
+
+def numbers(text):
+    """Return the notebooks of a cell: "14 to 17", "04, 22"."""
+    spans = re.findall(r"(\d\d) to (\d\d)", text)
+    between = {f"{k:02}" for first, last in spans for k in range(int(first), int(last) + 1)}
+    return between | set(re.findall(r"\b\d\d\b", text))
+
+
+def before(page):
+    return {title[:2]: numbers(needs) for title, _, needs, _ in rows(timetable.NOTEBOOK, page)}
+
+
+def section(page, heading):
+    return page.split(f"\n## {heading}\n", 1)[1].split("\n## ", 1)[0]
+
+
+def test_every_notebook_stands_in_the_table_under_its_title(page):
+    listed = {name: title for title, name, _, _ in rows(timetable.NOTEBOOK, page)}
+    assert listed == {name: title for name, (title, _) in timetable.notebooks().items()}
+
+
+def test_every_task_of_the_plan_stands_in_the_table_with_its_points(page):
+    listed = [(sheet, name, int(points)) for sheet, name, _, points, _ in rows(timetable.TASK, page)]
+    assert listed == [(sheet, name, points) for name, (sheet, points, _) in timetable.tasks().items()]
+
+
+def test_the_minutes_are_those_of_the_rule_within_ten(page):
+    said, counted = (
+        list(map(int, re.findall(r"\d+", text))) for text in (page, timetable.with_minutes(page))
+    )
+    far = [pair for pair in zip(said, counted, strict=True) if abs(pair[0] - pair[1]) > 10]
+    assert not far, "run python tests/timetable.py"
+
+
+def test_the_copy_at_the_top_says_the_same(page):
+    assert timetable.COPY.read_text(encoding="utf8") == timetable.copy_of(page), (
+        "run python tests/timetable.py"
+    )
+
+
+def test_the_links_of_the_copy_lead_somewhere():
+    links = re.findall(r"\]\(([^)#]+)\)", timetable.COPY.read_text(encoding="utf8"))
+    assert len(links) > 23 and not [link for link in links if not (timetable.ROOT / link).exists()]
+
+
+def test_the_semester_has_every_notebook_once_after_those_it_builds_on(page):
+    weeks = [sorted(numbers(row[1])) for row in rows(timetable.WEEK, page)]
+    taught = [number for week in weeks for number in week]
+    needs = before(page)
+    assert sorted(taught) == sorted(needs)
+    for number, earlier in needs.items():
+        late = [one for one in earlier if taught.index(one) > taught.index(number)]
+        assert not late, f"{number} builds on {late}"
+
+
+def test_no_week_of_the_semester_takes_more_than_its_two_hours(page):
+    assert all(int(minutes) <= 120 for _, _, minutes, _, _ in rows(timetable.WEEK, page))
+
+
+def test_a_homework_is_due_in_its_week_and_after_the_notebooks_that_explain_it(page):
+    weeks = rows(timetable.WEEK, page)
+    explained = rows(timetable.TASK, page)
+    for name, homework in timetable.plan_of_the_course().items():
+        if name != "late":
+            week = 1 + (homework["due"].replace(tzinfo=None) - FIRST_WEEK) // timedelta(weeks=1)
+            assert weeks[week - 1][3].startswith(f"{name}, due"), name
+            taught = {number for row in weeks[:week] for number in numbers(row[1])}
+            assert {notebook.strip() for sheet, _, notebook, _, _ in explained if sheet == name} <= taught
+
+
+def test_the_lab_and_the_project_skip_nothing_they_build_on(page):
+    needs = before(page)
+    lab = [number for number, _, _ in rows(timetable.PART, page)]
+    project = [
+        one
+        for row in rows(r"^\| \d \| ([\d, ]+) \| [^|]+ \|$", section(page, "Three weeks"))
+        for one in row.split(", ")
+    ]
+    assert lab == ["00", "04", "10", "16"] and project == ["00", "03", "04", "10", "14", "16"]
+    for path in (lab, project):
+        for number in path:
+            assert needs[number] - {"22"} <= set(path[: path.index(number)])
+
+
+def test_the_lab_fits_two_hours_and_says_what_is_left(page):
+    taken = sum(int(minutes) for _, _, minutes in rows(timetable.PART, page))
+    assert f"That leaves {120 - taken} minutes" in page and taken <= 110
+
+
+def test_a_minute_is_150_words_a_prediction_or_a_picture(tmp_path):
+    words = {"cell_type": "markdown", "source": ["## One\n", "word " * 298]}
+    asked = {"cell_type": "markdown", "source": ["**Predict.** " + "word " * 149]}
+    drawn = {"cell_type": "code", "source": ["pictures.picture(x)"]}
+    path = tmp_path / "x.ipynb"
+    path.write_text(json.dumps({"cells": [words, asked, drawn]}), encoding="utf8")
+    assert timetable.sections(path) == {"": 0, "One": 2 + 2 + 1}
