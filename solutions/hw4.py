@@ -82,7 +82,7 @@ pictures.picture(
 # A pixel is even as long as $|V| < \varepsilon$ (`threshold`) at this width *and at all smaller ones*; its
 # adaptation is $V_1$ at the largest width that is still even, at the smallest where none is. $a$ is `key`.
 # From nine blurred pictures come eight states. Yield for each width: the width $s$, $V_1$, $V$, the mask of
-# what is still even, and the adaptation so far. (The slide's code uses the loop's index where $s$ belongs.
+# what is still even, and the adaptation so far. (Some programs use the loop's index where $s$ belongs.
 # Do not.)
 
 # %% task="scale_steps"
@@ -93,7 +93,7 @@ pictures.picture(
 #
 # Light varies over decades and slowly; what things are painted with varies little and fast. A bilateral
 # filter of $\log_{10} L$ keeps the edges of the light: `base`. What is left is `detail` $= \log_{10} L - $
-# `base`; the overview has this sign reversed.
+# `base`; Battiato and others (2008) print this sign reversed.
 #
 # $$\text{base}(p) = \frac{\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)\; l(q)}
 #   {\sum_q G_{\sigma_s}(p - q)\; G_{\sigma_r}\bigl(l(p) - l(q)\bigr)}, \qquad l = \log_{10} L.$$
@@ -144,9 +144,9 @@ pictures.picture(
 # ## 7 · Chiu: a scale that varies slowly ({points})
 #
 # The eye does not mind a scale that varies slowly: $s = 1 / (k\, \mathrm{blur}(L))$ with a Gaussian blur,
-# so that a pixel $k$ times as bright as its neighbourhood becomes white ($k$ is `headroom`). The overview
-# prints a further factor $L$, a misprint. `sigma` is in pixels; the checks always give it. What stands past
-# the edge is yours to choose.
+# so that a pixel $k$ times as bright as its neighbourhood becomes white ($k$ is `headroom`). Where a
+# further factor $L$ is printed, as in Battiato and others (2008), it is a misprint. `sigma` is in pixels; the
+# checks always give it. What stands past the edge is yours to choose.
 
 # %% task="scale"
 # Return s = 1 / (k blur(L)).

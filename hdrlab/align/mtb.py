@@ -45,7 +45,7 @@ class State(NamedTuple):
 
 
 def gray(image: Array, *, luma: bool = False) -> Array:
-    """Return Y = (54 R + 183 G + 19 B) / 256, or green alone, which is faster [the slide allows either]."""
+    """Return Y = (54 R + 183 G + 19 B) / 256, or green alone, which is faster [Ward03 allows either]."""
     Z = image if image.ndim == 2 or luma else image[..., 1]
     Y = Z >> 8 * (Z.itemsize - 1)  # of 16 bits the upper eight
     return (Y if Y.ndim == 2 else Y @ (54, 183, 19) // 256).astype(np.uint8)

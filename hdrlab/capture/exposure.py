@@ -1,4 +1,4 @@
-"""Exposure: what shutter, aperture, speed and filters do to the light (the slides; Battiato et al.).
+"""Exposure: what shutter, aperture, speed and filters do to the light (Battiato et al. 2008).
 
 T   shutter time     s
 F   f-number         focal length over aperture; the light that passes goes with 1 / F^2

@@ -75,7 +75,7 @@ def snr(X: ArrayLike, sensor: Sensor) -> F64:
 
 
 def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: float = 1.0) -> ExposedLevels:
-    """Return what an exposure holds of luminances L (K,): figures 1.10 to 1.12 of the overview, as data.
+    """Return what an exposure holds of luminances L (K,) [Battiato08 figures 1.10 to 1.12, as data].
 
     Levels are those without noise. Lost are luminances that are full, and those whose SNR is below 1.
 

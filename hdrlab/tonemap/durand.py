@@ -102,7 +102,8 @@ def tonemap(
     Parameters
     ----------
     L : (H, W) luminance, finite and not negative, any linear unit
-    contrast : ratio that the base keeps between its percentiles; c = log10(contrast)
+    contrast : ratio that the base keeps between its percentiles, c = log10(contrast): 5 in the paper, 50 in
+        Battiato et al. 2008, which is the default
     sigma_s : how wide the base is smoothed, pixels; None takes 2 % of the longer side
     sigma_r : what difference is an edge, decades
     cut : fraction of the base beyond its range at either end, and of the picture that may be white

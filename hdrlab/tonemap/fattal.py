@@ -1,6 +1,6 @@
 """Gradient domain compression (Fattal, Lischinski, Werman, SIGGRAPH 2002).
 
-lL      ln luminance, 0 at white           (H, W); H in the paper, l in the slides
+lL      ln luminance, 0 at white           (H, W); H in the paper
 lL_k    level k of its Gaussian pyramid    (ceil(H / 2^k), ceil(W / 2^k)), k = 0 ... d, none of them below 32
 slope   |grad lL_k|                        same, nats per pixel of the picture
 phi_k   attenuation by the slope there     same, 1 where the slope is alpha times its mean

@@ -4,7 +4,7 @@ L          luminance                (H, W) >= 0, any linear unit
 Lf         foveal image             one value per degree of view: what an eye adapts to when it looks there
 b          brightness, ln Lf        `bins` of them between Lmin and Lmax, db wide
 h          histogram                (bins,) foveal pixels of each brightness; f in the paper
-T          their sum                trims end when they take less than 2.5 % of it
+T          their sum                trims end below 2.5 % of it, as in pcond; in the paper of the first T
 P          cumulative distribution  at the edges of the bins, (bins + 1,), 1 at the last
 Ldmin ...  the display's black and white, cd/m^2;   D = ln Ldmax - ln Ldmin, its range
 Ld         display luminance        cd/m^2, Ldmin to Ldmax

@@ -117,3 +117,27 @@ def test_a_minute_is_150_words_a_prediction_or_a_picture(tmp_path):
     path = tmp_path / "x.ipynb"
     path.write_text(json.dumps({"cells": [words, asked, drawn]}), encoding="utf8")
     assert timetable.sections(path) == {"": 0, "One": 2 + 2 + 1}
+
+
+def test_the_first_notebook_links_to_the_others_by_their_titles():
+    cells = json.loads((timetable.ROOT / "notebooks/00_welcome.ipynb").read_text(encoding="utf8"))["cells"]
+    text = "\n".join("".join(cell["source"]) for cell in cells)
+    named = {name: title for title, name in re.findall(r"\| \[(\d\d · [^\]]+)\]\((\w+)\.ipynb\) \|", text)}
+    titles = {name: title for name, (title, _) in timetable.notebooks().items()}
+    assert named == {name: title for name, title in titles.items() if name != "00_welcome"}
+
+
+def test_no_page_points_to_a_slide_that_its_reader_does_not_have():
+    """A sentence of a lesson stands alone: it names the paper instead of a slide or an overview."""
+    pointed = re.compile(
+        r"\b(?:the|on the|a) slides?(?:'s|')?\b(?! the edge)|\bthe overview\b|[Ll]ecture 21", re.I
+    )
+    found = []
+    for path in sorted((timetable.ROOT / "notebooks").glob("*.ipynb")):
+        for cell in json.loads(path.read_text(encoding="utf8"))["cells"]:
+            if cell["cell_type"] == "markdown":
+                found += [
+                    f"{path.stem}: {one[0]}"
+                    for one in pointed.finditer(" ".join("".join(cell["source"]).split()))
+                ]
+    assert not found

@@ -84,7 +84,7 @@ def rows() -> list[tuple[str, str]]:
     for line in lines[ruler + 1 :]:
         if not line:
             break
-        if line.startswith("---"):  # below it stands what is not on the slides
+        if line.startswith("---"):  # below it stands what goes beyond the course
             continue
         table.append((line[:column].strip(), line[column:].strip()))
     return table

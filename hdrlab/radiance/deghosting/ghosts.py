@@ -6,7 +6,7 @@ labels      regions           (H, W) int32, 1 ... R, 0 elsewhere
 references  best exposures    (R,), the reference frame of each region
 used        (P, H, W) bool    which frames make a pixel's radiance
 
-The slide's way: weighted variance, threshold, dilation, regions, and in each region the best exposure. Two
+The plain way: weighted variance, threshold, dilation, regions, and in each region the best exposure. Two
 things are added. Edges of high contrast have variance as well; what they explain does not count. And in a
 region the best exposure is the reference, but other frames join it where they are consistent with it: see
 `reference`. So its clipped and its dark pixels are not lost, nor is its noise all there is.
@@ -57,7 +57,7 @@ class Settings:
     margin : pixels by which regions are dilated, and over which seams are blended; by default 1 in 150 of
         the width, at least 4
     reference : number of the reference frame of every region; by default each has its own best exposure
-    alone : nothing but the reference frame counts in a region, as on the slide
+    alone : nothing but the reference frame counts in a region, the plain way
     """
 
     tau: float = 0.1

@@ -103,7 +103,7 @@ def seconds(time: float) -> str:
 def response(
     g: ArrayLike, *, label: str = "", span: tuple[float, float] | None = None, ax: Axes | None = None
 ) -> Axes:
-    """Draw response curves as the slides do: ln exposure across, pixel level up; one line per channel."""
+    """Draw response curves, ln exposure across, pixel level up; one line per channel."""
     curves = np.asarray(g, dtype=np.float64)
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curves)}")

@@ -1,5 +1,5 @@
-"""You multiplied by L already: s = 1 / (k blur(L)) is the scale alone. The overview's further factor L is
-a misprint, and makes L^2 of the picture."""
+"""You multiplied by L already: s = 1 / (k blur(L)) is the scale alone. A further factor L, where it is
+printed, is a misprint, and makes L^2 of the picture."""
 
 from hdrlab.tonemap import chiu
 

@@ -26,7 +26,7 @@ def asked(subject, lL, **knobs):
 def test_the_layers_add_up_to_the_picture(subject, rng):
     """Base and detail together are the picture.
 
-    The overview prints the difference the other way round.
+    Battiato and others (2008) print the difference the other way round.
 
     detail = lL - base.
     """
