@@ -7,6 +7,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Iterator, Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -91,6 +92,9 @@ def plain(figures: Any) -> Any:
 
 def main(arguments: list[str] | None = None) -> int:
     """Return the exit code: 0 where every hold that could be judged is met."""
+    arguments = sys.argv[1:] if arguments is None else arguments
+    if arguments[:1] == ["fuzz"]:  # it has options of its own
+        return int(import_module("benchmarks.fuzz").main(arguments[1:]))
     options = parse(arguments)
     start = time.perf_counter()
     outcomes: list[Outcome] = []

@@ -10,6 +10,7 @@ import os
 import secrets
 import tomllib
 from collections.abc import Callable
+from contextlib import suppress
 from datetime import datetime
 from importlib import import_module
 from pathlib import Path
@@ -102,33 +103,32 @@ def read(path: str | Path | None = None) -> Plan:
     ids = [task.id for homework in plan.homeworks.values() for task in homework.tasks]
     twice = sorted({id for id in ids if ids.count(id) > 1})
     if not ids or twice:
-        raise ValueError(f"{path}: expected tasks, each once, got {', '.join(twice) or 'none'}")
+        raise ValueError(f"{path}: expected tasks, each once, got {', '.join(twice) or 'none':.200}")
     return plan
 
 
 def _late(table: dict[str, Any], path: Path) -> Late:
-    try:
+    with suppress(TypeError):
         late = Late(**table)
         if late.free_days >= 0 and late.points_a_day >= 0:
             return late
-    except TypeError:
-        pass
-    raise ValueError(f"{path}: expected free_days and points_a_day of at least 0 in [late], got {table}")
+    raise ValueError(f"{path}: expected free_days and points_a_day from 0 on in [late], got {table!s:.80}")
 
 
 def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
+    here = f"[{name:.80}]"
     try:
         tasks = tuple(Task(one["id"], one["function"], float(one["points"])) for one in sheet["tasks"])
         by_hand = tuple(ByHand(one["title"], float(one["points"])) for one in sheet.get("by_hand", ()))
-        homework = Homework(name, sheet["title"], sheet["due"], tasks, by_hand)
+        made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
-        raise ValueError(f"{path}: expected title, due and tasks in [{name}], {error!r}") from None
-    if not isinstance(homework.due, datetime) or homework.due.tzinfo is None:
-        raise ValueError(f"{path}: expected due of [{name}] as a date with time and zone, got {homework.due}")
+        raise ValueError(f"{path}: expected title, due and tasks in {here}, {error!r:.200}") from None
+    if not isinstance(made.due, datetime) or made.due.tzinfo is None:
+        raise ValueError(f"{path}: expected due of {here} as a date with time and zone, got {made.due!s:.80}")
     points = [one.points for one in tasks] + [one.points for one in by_hand]
     if not (points and min(points) >= 0 and sum(points) < np.inf):
-        raise ValueError(f"{path}: expected tasks or work by hand, of 0 points or more each, in [{name}]")
-    return homework
+        raise ValueError(f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}")
+    return made
 
 
 def function(task: Task) -> Callable[..., Any]:

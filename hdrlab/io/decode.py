@@ -116,8 +116,8 @@ def _tiff(data: bytes, out: Array | None) -> Array:
     with tifffile.TiffFile(io.BytesIO(data)) as file:
         page = file.pages.first
         ends = map(sum, zip(page.dataoffsets, page.databytecounts, strict=True))
-        if max(ends, default=0) > len(data):
-            raise ValueError("its pixels go past the end of the file")
+        if max(ends, default=0) > len(data) or np.prod(page.chunks) > max(4 * np.prod(page.shape), 1 << 24):
+            raise ValueError("its pixels go past the end of the file, or its tiles far beyond its picture")
         pixels = page.asarray()
     if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
         pixels = np.moveaxis(pixels, 0, -1)

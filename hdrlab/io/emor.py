@@ -23,7 +23,7 @@ def read_npz(path: str | Path, *names: str) -> list[Array]:
     except FileNotFoundError:
         raise
     except Exception as error:  # a damaged zip, a missing name, objects instead of numbers
-        raise ValueError(f"expected an NPZ archive with {' and '.join(names)}, {error}") from error
+        raise ValueError(f"expected an NPZ archive with {' and '.join(names)}, {error!s:.200}") from error
 
 
 def read_curves(path: str | Path) -> tuple[F64, F64]:

@@ -139,7 +139,7 @@ def read_times(path: str | Path) -> TimeList:
     for where, cells in rows[bool(heading) :]:
         cell = _named_cells(where, heading, cells)
         if cell["file"] in read:
-            raise ValueError(f"{where}: expected each file once, got {cell['file']} again")
+            raise ValueError(f"{where}: expected each file once, got {cell['file']:.80} again")
         number = {what: _number(where, cell[what]) for what in list(HEADINGS)[:-1] if cell.get(what)}
         certain |= "rate" not in number or not cell["rate"][-1:].isdigit() or "/" in cell["rate"]
         seconds = number.get("seconds") or number.get("rate") or 1 / _number(where, cell.get("inverse", ""))
@@ -191,10 +191,10 @@ def _named_cells(where: str, heading: list[str] | None, cells: list[str]) -> dic
     columns = heading or COLUMNS.get(len(cells), ["file", "rate", "f_number"])
     if len(columns) != len(cells):
         what = f"{len(heading)} columns" if heading else "a file name and its time, such as 1/60"
-        raise ValueError(f"{where}: expected {what}, got {' '.join(cells)}")
+        raise ValueError(f"{where}: expected {what}, got {' '.join(cells):.80}")
     cell = dict(zip(columns, cells, strict=True))
     if cell.get("gain", "0").strip("0.") or cell.get("filters", "0").strip("0."):
-        raise ValueError(f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells)}")
+        raise ValueError(f"{where}: expected neither gain nor ND filters (0 0), got {' '.join(cells):.80}")
     if not heading and len(cells) == 3:
         t, other = (_number(where, one) for one in cells[1:])
         if abs(t * other - 1) < 0.05:  # the beginning of Debevec's list: a time and its inverse
@@ -206,9 +206,9 @@ def _named_cells(where: str, heading: list[str] | None, cells: list[str]) -> dic
 def _number(where: str, text: str) -> float:
     """Return the positive number that a cell holds: 0.5, 0,5, 1/60 or one of them with its unit."""
     found = VALUE.fullmatch(text)
-    value, below = (
-        (positive(one.replace(",", ".")) for one in (found[1], found[2] or "1")) if found else (None, 1)
-    )
+    parts = (found[1], found[2] or "1") if found else ("", "1")
+    value, below = (positive(one.replace(",", ".")) for one in parts)
     if value is None or below is None:
-        raise ValueError(f"{where}: expected a positive number such as 0.5 or 1/60, got {text or 'nothing'}")
+        got = text[:80] or "nothing"
+        raise ValueError(f"{where}: expected a positive number such as 0.5 or 1/60, got {got}")
     return value / below

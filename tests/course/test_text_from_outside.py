@@ -8,6 +8,7 @@ import pytest
 
 from hdrlab.course import plan
 from hdrlab.course.archives import unpack
+from hdrlab.course.classroom import roster
 from hdrlab.course.projects import exif, privacy, project, report, words
 from hdrlab.course.reports import results
 
@@ -78,3 +79,55 @@ def test_values_of_exif_that_lie_over_each_other_are_read_no_more_than_once(tmp_
     block = b"II*\0" + struct.pack("<LH", 8, count) + entries + struct.pack("<L", 0)
     found, _ = exif.directory(block.ljust(size + 8, b"\0"), 8, "<")
     assert sum(len(one.value) for one in found) <= size + 8
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        '[late]\n"{long}" = 1\n',
+        "[late]\nfree_days = {digits}\nx = 1\n",
+        "[{long}]\n",
+        "[x]\ndue = '{long}'\n",
+    ],
+)
+def test_what_a_plan_has_in_too_many_letters_is_told_in_few(line, tmp_path):
+    (tmp_path / "plan.toml").write_text(
+        line.format(long="x" * 5000, digits="7" * 4000) + SHEET.format(points=1)
+    )
+    with pytest.raises(ValueError, match=r"plan\.toml: expected") as said:
+        plan.read(tmp_path / "plan.toml")
+    assert len(str(said.value)) < 1000
+
+
+def test_a_cell_of_many_letters_names_the_table(tmp_path):
+    (tmp_path / "roster.csv").write_text("student\n" + "x" * 140_000)
+    with pytest.raises(ValueError, match=r"roster\.csv: expected a table"):
+        roster.read(tmp_path / "roster.csv")
+
+
+@pytest.mark.parametrize(
+    "change", [(b'"1/3"', b'"1/0"'), (b'"exact": {', b'"exact": [{'), (b'"b01"', b'"\xa0"')]
+)
+def test_a_result_that_is_damaged_is_said_to_be_no_result(change, tmp_path):
+    course_seeds = pytest.importorskip("benchmarks.fuzz.course_seeds", reason="it makes the result")
+    course_seeds.result(tmp_path)
+    data = (tmp_path / "a.json").read_bytes()
+    assert change[0] in data
+    with pytest.raises(ValueError, match="expected a result") as said:
+        results.from_json(data.replace(*change))
+    assert len(str(said.value)) < 1000
+
+
+def test_a_zip_whose_list_begins_before_the_file_is_refused_as_damaged(tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as archive:
+        archive.writestr("x", b"y")
+    data = (tmp_path / "a.zip").read_bytes()
+    end = data.index(b"PK\5\6")
+    (tmp_path / "a.zip").write_bytes(data[: end + 16] + struct.pack("<L", 1 << 20) + data[end + 20 :])
+    with pytest.raises(unpack.Refused):
+        unpack.unpack(tmp_path / "a.zip", tmp_path / "files")
+
+
+def test_exif_of_five_bytes_is_no_exif():
+    with pytest.raises(ValueError, match="expected EXIF"):
+        exif.cleaned(b"II*\0\0")

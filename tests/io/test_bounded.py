@@ -10,6 +10,7 @@ import zipfile
 import numpy as np
 import OpenEXR
 import pytest
+import tifffile
 from PIL import Image
 
 from hdrlab import cli
@@ -191,3 +192,34 @@ def test_an_archive_of_curves_that_claims_too_much_is_refused_before_it_is_unpac
             archive.writestr(f"{name}.npy", bytes(40 << 20))
     with pytest.raises(ValueError, match=r"curves\.npz: .* claims"):
         read_curves(tmp_path / "curves.npz")
+
+
+def test_a_tile_far_beyond_its_picture_is_refused_before_it_is_made(tmp_path):
+    path = tmp_path / "tile.tif"
+    tifffile.imwrite(
+        path, np.zeros((24, 34, 3), np.uint8), photometric="rgb", tile=(16, 16), compression="zlib"
+    )
+    with tifffile.TiffFile(path, mode="r+b") as file:
+        file.pages.first.tags["TileWidth"].overwrite(1 << 24)
+    tracemalloc.start()
+    with pytest.raises(ValueError, match=r"tile\.tif: .* damaged"):
+        photos.read_photo(path)
+    assert tracemalloc.get_traced_memory()[1] < 50e6
+    tracemalloc.stop()
+
+
+@pytest.mark.parametrize("exposure", ["1e-320", "1e300"])
+def test_an_exposure_beyond_float32_is_refused_and_divides_nothing(tmp_path, exposure):
+    path = tmp_path / "a.hdr"
+    path.write_bytes(f"#?RADIANCE\nEXPOSURE={exposure}\n\n-Y 1 +X 1\n".encode() + bytes([9, 9, 9, 128]))
+    with pytest.raises(ValueError, match=r"a\.hdr: expected positive exposures"):
+        rgbe.read(path)
+
+
+def test_what_stands_in_a_list_of_times_is_told_in_few_letters(tmp_path):
+    path = tmp_path / "times.txt"
+    for line in ("a.jpg " + "9" * 5000, "a.jpg 1 " + "8" * 3000 + " 9 9", "a.jpg 3[" + "[" * 3000):
+        path.write_text(line)
+        with pytest.raises(ValueError, match=r"times\.txt, line 1: expected") as said:
+            times.read_times(path)
+        assert len(str(said.value)) < 500

@@ -6,6 +6,7 @@ sizes (claimed and real ones), counts, depths, ratios of compression, entries th
 An archive is taken whole or refused whole, with one line that says why. An archive inside it is a file.
 """
 
+import errno
 import lzma
 import os
 import struct
@@ -52,10 +53,9 @@ def unpack(archive: str | Path, target: str | Path, limits: Limits = LIMITS) -> 
         fresh.mkdir()
         try:
             found = (_zip if _is_zip(archive) else tarball.unpack)(archive, fresh, limits)
-        except Refused:
-            raise
         except FAULTS as error:
-            if isinstance(error, OSError) and error.errno:  # a full disk is not the archive's fault
+            # a full disk is not the archive's fault; a place before its beginning is
+            if isinstance(error, Refused) or getattr(error, "errno", None) not in (None, errno.EINVAL):
                 raise
             why = plain(str(error) or type(error).__name__, 80)
             raise Refused(f"it is damaged, or no .zip or .tar archive ({why})") from None

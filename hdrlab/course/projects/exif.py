@@ -36,7 +36,7 @@ class Entry(NamedTuple):
 def order(block: bytes) -> str:
     """Return "<" or ">" as the file says, or raise a ValueError."""
     found = {b"II*\0": "<", b"MM\0*": ">"}.get(bytes(block[:4]))
-    if found is None:
+    if found is None or len(block) < 8:
         raise ValueError("expected EXIF or TIFF, its first bytes are others")
     return found
 

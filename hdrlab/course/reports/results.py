@@ -185,7 +185,7 @@ def from_json(data: bytes) -> Result:
     """
     try:
         read = json.loads(data)
-    except RecursionError:
+    except (RecursionError, ValueError):
         read = None
     if not isinstance(read, dict) or read.get("version") != VERSION:
         raise ValueError(f"expected a result of version {VERSION}, written by hdrlab grade")
@@ -193,8 +193,8 @@ def from_json(data: bytes) -> Result:
         checks = tuple(_check_from_json(one) for one in read["checks"])
         rest = {name: read[name] for name in Result._fields if name not in ("checks", "problems")}
         return Result(checks=checks, problems=tuple(read["problems"]), **rest)
-    except (KeyError, TypeError) as error:
-        raise ValueError(f"expected a result written by hdrlab grade, {error!r} is wrong") from None
+    except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
+        raise ValueError(f"expected a result written by hdrlab grade, {error!r:.200} is wrong") from None
 
 
 def _check_from_json(read: dict[str, Any]) -> Check:

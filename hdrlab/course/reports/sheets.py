@@ -68,9 +68,9 @@ def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]
         raise ValueError(f"{path}: expected a table of at most {most} bytes, got {path.stat().st_size}")
     try:
         text = path.read_text(encoding="utf-8-sig")
-    except UnicodeDecodeError:
-        raise ValueError(f"{path}: expected a table in UTF-8") from None
-    lines = [line for line in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in line)]
+        lines = [line for line in csv.reader(io.StringIO(text)) if any(cell.strip() for cell in line)]
+    except (UnicodeDecodeError, csv.Error) as error:
+        raise ValueError(f"{path}: expected a table in UTF-8 ({error})") from None
     if not lines:
         raise ValueError(f"{path}: expected a header and rows, it is empty")
     header = [name.strip().lower() for name in lines[0]]

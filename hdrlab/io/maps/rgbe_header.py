@@ -75,6 +75,6 @@ def _exposure(path: str | Path, lines: list[str]) -> F64:
                 product = product * np.array(value.split(), dtype=np.float64)
             except ValueError:
                 raise ValueError(f"{path}: expected numbers in its header, got {line[:60]!r}") from None
-    if not np.all(np.isfinite(product) & (product > 0)):
+    if not np.all((product > 1e-30) & (product < 1e30)):
         raise ValueError(f"{path}: expected positive exposures in its header, got {product.tolist()}")
     return product

@@ -1,0 +1,189 @@
+"""Every reader of files from outside: small good files to begin with, and how one is read."""
+
+import importlib.util
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from benchmarks.fuzz import course_seeds, seeds
+from benchmarks.measure import ROOT
+from hdrlab.cli.describe import describe_file
+from hdrlab.course import plan, submission
+from hdrlab.course.archives import unpack
+from hdrlab.course.classroom import handins, marks, roster
+from hdrlab.course.gallery import collect, pictures, tokens
+from hdrlab.course.projects import exif, privacy, project, words
+from hdrlab.course.reports import results
+from hdrlab.io import emor, photos, radiance, response_files, sequence, times, web
+from hdrlab.io.maps import exr, layers
+
+# damaged files that are there already
+DAMAGED = ROOT.parent / "shared" / "data" / "damaged"
+# bytes of one of them: larger ones slow the others down
+LARGEST = 40_000
+
+
+# of Pillow, whose own words stand
+REFUSED = (ValueError, OSError, SyntaxError)
+
+
+class Missing(Exception):
+    """Raised where a reader needs what is not installed; its text says what."""
+
+
+class Reader(NamedTuple):
+    """How files of a suffix are made and read.
+
+    Attributes
+    ----------
+    make : writes good ones into a folder
+    read : reads one, given its path
+    named : whether an error is to name the file; not so where the reader gets bytes, or its caller names it
+    errors : what it may raise
+    needs : the module without which it reads nothing
+    damaged : how the names of damaged files of it begin
+    """
+
+    name: str
+    suffix: str
+    make: Callable[[Path], object]
+    read: Callable[[Path], object]
+    named: bool = True
+    errors: tuple[type[Exception], ...] = (ValueError,)
+    needs: str = "numpy"
+    damaged: str = "-"
+
+    def seeds(self, folder: Path) -> list[bytes]:
+        """Return the files to begin with, made in a folder, or raise Missing."""
+        if importlib.util.find_spec(self.needs) is None:
+            raise Missing(f"{self.needs} is not installed")
+        self.make(folder)
+        known = sorted(DAMAGED.glob(f"{self.damaged}*{self.suffix}")) if DAMAGED.is_dir() else []
+        files = [*sorted(folder.glob(f"*{self.suffix}")), *known]
+        return [file.read_bytes() for file in files if file.stat().st_size <= LARGEST]
+
+
+def read_map(path: Path) -> None:
+    """Read a radiance map as it is, and cleaned, and what its header says."""
+    _each(lambda: describe_file(path), lambda: radiance.read_radiance(path))
+    E = radiance.read_radiance(path, clean=True)
+    if not (np.isfinite(E).all() and E.min() >= 0):
+        raise ArithmeticError("cleaned, and no radiance")
+
+
+def read_exr(path: Path) -> None:
+    """Read an OpenEXR file as a map, and all its layers."""
+    _each(lambda: layers.read_layers(path), lambda: exr.read_dtypes(path))
+    read_map(path)
+
+
+def read_photo(path: Path) -> None:
+    """Read a photograph: what its header says, its pixels, and what is left of it for the class."""
+    _each(lambda: describe_file(path), lambda: privacy.clean(path.name, path.read_bytes()))
+    photos.read_photo(path)
+
+
+def read_exif(path: Path) -> None:
+    """Read EXIF, and what it tells."""
+    _each(lambda: exif.list_personal_data(path.read_bytes()))
+    exif.cleaned(path.read_bytes())
+
+
+def read_result(path: Path) -> None:
+    """Read a result as those who write reports and gradebooks do."""
+    result = results.from_json(path.read_bytes())
+    results.for_team(results.to_json(result))
+
+
+def read_submission(path: Path) -> None:
+    """Read what was handed in, whose problems are told and not raised."""
+    found = submission.tasks_of(path, ("hat", "gsolve"))
+    if sum(map(len, found.problems)) > 8000:
+        raise ArithmeticError("problems without end")
+
+
+def read_archive(path: Path) -> None:
+    """Unpack an archive, and leave nothing."""
+    target = path.parent / "unpacked"
+    with seeds.removed(target):
+        unpack.unpack(path, target)
+
+
+def read_manifest(path: Path) -> None:
+    """Read what an archive of `hdrlab submit` says of itself."""
+    with seeds.removed(path.parent / "hung") as folder, course_seeds.packed(path, folder) as archive:
+        students = roster.Roster((roster.Student("fuzzed", "Ada", "fuzzed"),))
+        with collect.entry(archive, students):
+            pass
+
+
+def read_project(path: Path) -> None:
+    """Read what a project says of itself."""
+    with seeds.removed(path.parent / "work") as folder:
+        folder.mkdir()
+        (folder / project.ABOUT).write_bytes(path.read_bytes())
+        project.look(folder)
+
+
+def read_words(path: Path) -> None:
+    """Read a report's words, which are to be text that UTF-8 can hold."""
+    found = words.read(path)
+    for text in (found.title, *found.notes, *(one.html for one in found.sections)):
+        text.encode()
+
+
+def _each(*reads: Callable[[], object]) -> None:
+    """Read it in several ways, of which each may refuse it; what else is raised passes."""
+    refused: list[ValueError] = []
+    for read in reads:
+        try:
+            read()
+        except UnicodeError:
+            raise
+        except ValueError as error:
+            refused.append(error)
+    if refused:
+        raise refused[0]
+
+
+def _frames(path: Path) -> Iterator[Any]:
+    yield from sequence.read(path)
+
+
+ALL: Sequence[Reader] = (
+    Reader("rgbe", ".hdr", seeds.maps, read_map, damaged="rgbe"),
+    Reader("exr", ".exr", seeds.maps, read_exr, damaged="exr", needs="OpenEXR"),
+    Reader("pfm", ".pfm", seeds.maps, read_map, damaged="pfm"),
+    Reader("jpeg", ".jpg", seeds.photographs, read_photo),
+    Reader("png", ".png", seeds.photographs, read_photo),
+    Reader("tiff", ".tif", seeds.photographs, read_photo, damaged="tiff"),
+    Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng"),
+    Reader("gif", ".gif", seeds.films, lambda path: [*_frames(path)], damaged="gif"),
+    Reader("film", ".mp4", seeds.films, lambda path: [*_frames(path)], needs="av"),
+    Reader("webp", ".webp", seeds.pages, lambda path: web.decode_picture(path.read_bytes()), False, REFUSED),
+    Reader("exif", ".exif", seeds.settings, read_exif, named=False),
+    Reader("times", ".txt", seeds.times, times.read_times),
+    Reader("curve-csv", ".csv", seeds.curves, response_files.read_curve),
+    Reader("curve-npz", ".npz", seeds.curves, response_files.read_curve),
+    Reader("curve-pfs", ".m", seeds.curves, response_files.read_curve),
+    Reader("emor", ".npz", seeds.emor, emor.read_curves),
+    Reader("plan", ".toml", course_seeds.plan, plan.read, damaged="plan"),
+    Reader("roster", ".csv", course_seeds.roster, roster.read),
+    Reader("received", ".csv", course_seeds.received, handins.read_times),
+    Reader("gradebook", ".csv", course_seeds.gradebook, lambda path: marks.read([path])),
+    Reader("project", ".toml", course_seeds.project, read_project, named=False),
+    Reader("result", ".json", course_seeds.result, read_result, named=False, damaged="results"),
+    Reader("notebook", ".ipynb", course_seeds.notebook, read_submission, damaged="words"),
+    Reader("python", ".py", course_seeds.notebook, read_submission),
+    Reader("zip", ".zip", course_seeds.archives, read_archive, named=False, damaged="zip"),
+    Reader("tar", ".tar", course_seeds.archives, read_archive, named=False, damaged="tar"),
+    Reader("tar.gz", ".tgz", course_seeds.archives, read_archive, named=False),
+    Reader("manifest", ".json", course_seeds.manifest, read_manifest, named=False),
+    Reader("artifact", ".jpg", seeds.photographs, pictures.prepare),
+    Reader("words", ".md", course_seeds.words, read_words),
+    Reader("words-ipynb", ".ipynb", course_seeds.words, read_words, damaged="report"),
+    Reader("token", ".txt", course_seeds.token, lambda path: tokens.read(path.read_text("utf8", "replace"))),
+)
+READERS = {one.name: one for one in ALL}

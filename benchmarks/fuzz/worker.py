@@ -1,0 +1,134 @@
+"""Reads files in a process of its own, within limits, and says of each what came of it.
+
+A path a line comes in; a line of JSON goes out: a kind and words. What is printed on the way goes to a file,
+and is a finding.
+"""
+
+import gc
+import json
+import logging
+import os
+import resource
+import signal
+import sys
+import threading
+import traceback
+import warnings
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from benchmarks.fuzz.readers import READERS, Reader
+
+READ, CLEAN = "result", "clean error"
+# bytes of address space, and seconds of a processor a file
+MEMORY, SECONDS = 2 << 30, 5.0
+# characters of a message
+LONGEST = 2000
+
+
+class State(NamedTuple):
+    """What belongs to everybody, and is to be after reading what it was before."""
+
+    streams: tuple[int, ...]
+    filters: tuple[Any, ...]
+    numbers: tuple[Any, ...]
+    folder: str
+    threads: int
+    depth: int
+    loggers: int
+    descriptors: int
+    files: tuple[str, ...]
+
+
+def state(folder: Path) -> State:
+    """Return the State of now; `folder` is where files might be left."""
+    return State(
+        tuple(map(id, (sys.stdin, sys.stdout, sys.stderr, warnings.showwarning))),
+        tuple(warnings.filters),
+        tuple(np.geterr().values()),
+        os.getcwd(),
+        threading.active_count(),
+        sys.getrecursionlimit(),
+        len(logging.getLogger().handlers),
+        len(os.listdir("/proc/self/fd")) if os.path.isdir("/proc/self/fd") else 0,
+        tuple(sorted(os.listdir(folder))),
+    )
+
+
+def judged(reader: Reader, path: Path, printed: Callable[[], str]) -> tuple[str, str]:
+    """Return the kind of what reading a file comes to, and words."""
+    before = state(path.parent)
+    kind, said = outcome(reader, path)
+    gc.collect()  # what an error still held
+    words, after = printed(), state(path.parent)
+    if kind not in (READ, CLEAN):
+        return kind, said
+    if words:
+        return f"printed {words[:40]}", words
+    changed = [name for name in State._fields if getattr(before, name) != getattr(after, name)]
+    return (f"changed {', '.join(changed)}", said) if changed else (kind, said)
+
+
+def outcome(reader: Reader, path: Path) -> tuple[str, str]:
+    """Return what reading it ends in."""
+    try:
+        reader.read(path)
+    except reader.errors as error:
+        said = str(error)
+        if isinstance(error, UnicodeError):
+            return f"{type(error).__name__} at {where(error)}", said[:LONGEST]
+        if len(said) >= LONGEST:
+            return f"a message too long at {where(error)}", f"{len(said)} characters: {said[:200]}"
+        if "MemoryError" in said:
+            return f"memory at {where(error)}", said
+        if reader.named and path.stem not in said:
+            return f"no file named at {where(error)}", said
+        return CLEAN, said
+    except BaseException as error:  # whatever it is, it is a finding
+        return f"{type(error).__name__} at {where(error)}", str(error)[:LONGEST]
+    return READ, ""
+
+
+def where(error: BaseException) -> str:
+    """Return the last line of hdrlab that an error went through."""
+    lines = [
+        one for one in traceback.extract_tb(error.__traceback__) if f"{os.sep}hdrlab{os.sep}" in one.filename
+    ]
+    return f"{Path(lines[-1].filename).name}:{lines[-1].lineno}" if lines else "the reader"
+
+
+def redirected(folder: Path) -> tuple[int, Callable[[], str]]:
+    """Turn both streams, those of C libraries too, to a file; return the old one, and what reads the file."""
+    answers = os.dup(1)
+    said = os.open(folder / "said", os.O_RDWR | os.O_CREAT | os.O_APPEND)
+    for stream in (1, 2):
+        os.dup2(said, stream)
+
+    def printed() -> str:
+        for stream in (sys.stdout, sys.stderr):
+            stream.flush()
+        if not (size := os.fstat(said).st_size):
+            return ""
+        words = os.pread(said, min(size, LONGEST), 0).decode("utf8", "replace")
+        os.ftruncate(said, 0)
+        return words
+
+    return answers, printed
+
+
+def main(name: str, folder: str) -> None:
+    """Answer for each path until there are no more."""
+    reader = READERS[name]
+    answers, printed = redirected(Path(folder))
+    warnings.simplefilter("always")
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
+    os.write(answers, b"ready\n")
+    for line in sys.stdin:
+        signal.setitimer(signal.ITIMER_PROF, SECONDS)
+        found = judged(reader, Path(line.rstrip("\n")), printed)
+        signal.setitimer(signal.ITIMER_PROF, 0)
+        os.write(answers, json.dumps(found).encode() + b"\n")
