@@ -164,7 +164,7 @@ def shoot(
     (array([1., 2.]), array([[ 26, 128, 255],
            [ 51, 255, 255]], dtype=uint8))
     """
-    E, times = as_radiance(E), np.atleast_1d(np.asarray(times, np.float64))
+    E, times = as_radiance(E), np.atleast_1d(np.asanyarray(times))
     times = as_times(times, max(times.size, 1))
     moves = np.zeros((len(times), 2), int) if offsets is None else np.asarray(offsets)
     if moves.shape[:1] != times.shape:

@@ -8,7 +8,7 @@ valid   (P, H, W) bool, False where a photograph holds no picture
 n       256 or 65536, the number of levels a pixel value can take
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -20,26 +20,27 @@ LARGEST_LN_EXPOSURE = 80
 
 
 def describe(array: ArrayLike) -> str:
-    """Return what came, for an error message: shape, dtype and range."""
-    array = np.asarray(array)
-    if array.size == 0 or array.dtype.kind not in "biuf":
-        return f"shape {array.shape}, dtype {array.dtype}"
+    """Return what came, for an error message: shape, dtype and range, or that some of it is masked."""
+    array, masked = np.asarray(array), np.ma.is_masked(array)
+    if array.size == 0 or array.dtype.kind not in "biuf" or masked:
+        return f"shape {array.shape}, dtype {array.dtype}" + ", some of it masked" * masked
     return f"shape {array.shape}, dtype {array.dtype}, values {array.min():.6g} to {array.max():.6g}"
 
 
 def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     """Return `images` as one array (P, H, W[, 3]) of uint8 or uint16, or raise a ValueError."""
     if not isinstance(images, np.ndarray):
-        frames = [np.asarray(image) for image in images]  # type: ignore[union-attr]
+        frames = list(map(np.asanyarray, images if isinstance(images, Iterable) else [images]))
         kinds = sorted({f"{frame.shape} {frame.dtype}" for frame in frames})
-        if len(kinds) > 1:  # np.stack would take 8 and 16 bits together, and make the former nearly black
-            raise ValueError(f"expected frames of one size and type, got {', '.join(kinds)}")
+        # np.stack would take 8 and 16 bits together, and make the former nearly black; and it forgets masks
+        if len(kinds) > 1 or any(map(np.ma.is_masked, frames)):
+            raise ValueError(f"expected frames of one size and type, none masked, got {', '.join(kinds)}")
         images = np.stack(frames) if frames else np.empty(0)
     if images.ndim not in (3, 4) or (images.ndim == 4 and images.shape[-1] != 3) or 0 in images.shape:
         raise ValueError(f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}")
-    if images.dtype not in (np.uint8, np.uint16):
+    if images.dtype not in (np.uint8, np.uint16) or np.ma.is_masked(images):
         raise ValueError(f"expected images of uint8 or uint16, got {describe(images)}")
-    return images
+    return np.asarray(images)
 
 
 def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.float64]:
@@ -50,9 +51,9 @@ def as_times(times: ArrayLike, count: int, *, distinct: int = 1) -> NDArray[np.f
     >>> as_times([0.5, 1], 2).tolist()
     [0.5, 1.0]
     """
+    if np.shape(times) != (count,) or np.asarray(times).dtype.kind not in "biufO" or np.ma.is_masked(times):
+        raise ValueError(f"expected {count} exposure times, one per image, got {describe(times)}")
     checked = np.asarray(times, dtype=np.float64)
-    if checked.shape != (count,):
-        raise ValueError(f"expected {count} exposure times, one per image, got {describe(checked)}")
     if not np.all(np.isfinite(checked) & (checked > 0)):
         raise ValueError(f"expected positive exposure times in seconds, got {checked.tolist()}")
     if len(np.unique(checked)) < distinct:
@@ -65,14 +66,14 @@ def as_mask(valid: ArrayLike | None, images: Array) -> NDArray[np.bool_] | None:
     if valid is None:
         return None
     checked = np.asarray(valid, dtype=bool)
-    if checked.shape != images.shape[:3]:
-        raise ValueError(f"expected a mask of shape {images.shape[:3]}, got {describe(checked)}")
+    if checked.shape != images.shape[:3] or np.ma.is_masked(valid):
+        raise ValueError(f"expected a mask of shape {images.shape[:3]}, got {describe(valid)}")
     return checked
 
 
 def as_radiance(E: ArrayLike) -> NDArray[np.float32]:
     """Return `E` as float32 (H, W) or (H, W, 3), finite and not negative, or raise a ValueError."""
-    array = np.asarray(E)
+    array = np.asanyarray(E)
     if array.ndim not in (2, 3) or (array.ndim == 3 and array.shape[-1] != 3) or 0 in array.shape:
         raise ValueError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
     return _finite(array, "radiance")
@@ -80,7 +81,7 @@ def as_radiance(E: ArrayLike) -> NDArray[np.float32]:
 
 def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
     """Return `L` as float32 (H, W), finite and not negative, or raise a ValueError."""
-    array = np.asarray(L)
+    array = np.asanyarray(L)
     if array.ndim != 2 or 0 in array.shape:
         raise ValueError(f"expected luminance (H, W), got {describe(array)}")
     return _finite(array, "luminance")
@@ -88,18 +89,18 @@ def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
 
 def as_picture(picture: ArrayLike) -> Array:
     """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
-    array = np.asarray(picture)
+    array = np.asarray(picture) if not np.ma.is_masked(picture) else np.empty(0)
     if array.dtype != np.uint8 or array.ndim < 2 or array.shape[2:] not in ((), (3,)) or not array.size:
-        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(array)}")
+        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(picture)}")
     return array
 
 
 def _finite(array: Array, what: str) -> NDArray[np.float32]:
     """Return `array` as float32, or raise a ValueError that counts what is not finite or negative."""
-    if array.dtype.kind not in "iuf":
+    if array.dtype.kind not in "iuf" or np.ma.is_masked(array):
         raise ValueError(f"expected {what} as numbers, got {describe(array)}")
     with np.errstate(over="ignore"):  # a float64 beyond float32 becomes inf, and is counted as such
-        array = array.astype(np.float32, copy=False)
+        array = np.asarray(array).astype(np.float32, copy=False)
     if not (array.min() >= 0 and array.max() < np.inf):  # a NaN makes both comparisons false
         wrong = map(np.count_nonzero, (np.isnan(array), np.isinf(array), array < 0))
         counts = "{} NaN, {} infinite and {} negative values".format(*wrong)

@@ -77,12 +77,12 @@ def sanitize(E: ArrayLike, *, weights: ArrayLike = LUMINANCE) -> Sanitized:
     >>> found[1:]
     (1, 1, 1, 0)
     """
-    array = np.asarray(E)
+    array = np.asanyarray(E)
     fits = array.ndim == 2 or (array.ndim == 3 and array.shape[2] == 3)
-    if not fits or 0 in array.shape or array.dtype.kind not in "iuf":
+    if not fits or 0 in array.shape or array.dtype.kind not in "iuf" or np.ma.is_masked(array):
         raise ValueError(f"expected radiance (H, W) or (H, W, 3), got {describe(array)}")
     with np.errstate(over="ignore"):
-        values = array.astype(np.float32)
+        values = np.asarray(array).astype(np.float32)
     planes = values.reshape(*values.shape[:2], -1)
     infinite = planes == np.inf
     planes[infinite] = max(0.0, planes[np.isfinite(planes)].max(initial=0))

@@ -126,9 +126,9 @@ def lens(
     """
     if not (1 <= magnification <= size):
         raise ValueError(f"expected 1 <= magnification <= size, got {magnification=} and {size=}")
-    L = np.asarray(L)
+    L = as_luminance(L)
     rows, columns = place_window(L.shape[:2], centre, -(-size // magnification))
-    Ld = equalise(as_luminance(L[rows, columns]), bins=bins, limit=limit)
+    Ld = equalise(L[rows, columns], bins=bins, limit=limit)
     return Ld.repeat(magnification, axis=0).repeat(magnification, axis=1)[:size, :size]
 
 

@@ -169,7 +169,7 @@ def tonemap(
 
 def as_light(L: ArrayLike) -> Array:
     """Return L as float64 (H, W), finite and not negative, or raise a ValueError."""
-    L = np.asarray(L)
+    L = np.ma.filled(L, np.nan)
     if L.ndim != 2 or L.dtype.kind not in "iuf" or not (L.size and L.min() >= 0 and L.max() < np.inf):
         raise ValueError(f"expected luminance (H, W), finite and not negative, got {L.dtype} {L.shape}")
     return L.astype(np.float64)

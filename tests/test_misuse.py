@@ -1,0 +1,212 @@
+"""Whatever is given to a public verb: a clear ValueError, or the right answer; and it is left as it was.
+
+A public verb is a function whose docstring says what it `Raises`, and which takes photographs or light first:
+it is found by itself. A new one that takes what VALUES does not have is named by a test.
+"""
+
+import inspect
+import pkgutil
+from concurrent.futures import ThreadPoolExecutor
+from importlib import import_module
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab.capture import camera
+from hdrlab.capture.sensor import Sensor
+
+ROOMS = ("align", "beyond", "capture", "core", "diagnostics", "enhance", "fast", "radiance", "response")
+ROOMS += ("tonemap",)
+# other letters: F is an f-number in `exposure`; figures and the parts of a verb have tests of their own
+ELSEWHERE = ("capture.exposure.ev", "capture.movers.shoot")
+FIRST = {"images", "L", "E", "F", "picture"}
+LIGHT = (10.0 ** np.random.default_rng(3).uniform(-1.5, 1.5, (24, 32))).astype(np.float32)
+TAKEN = camera.shoot(LIGHT, camera.times_around(LIGHT, 5, stops=1.5), camera.Camera(), rng=1)
+VALUES = {
+    "images": TAKEN.images,
+    "times": TAKEN.times,
+    "g": np.log(np.maximum(np.arange(256), 0.5) / 128),
+    **dict.fromkeys(("L", "E", "F", "truth"), LIGHT),
+    "Ld": LIGHT / LIGHT.max(),
+    "picture": TAKEN.images[2],
+    "w": np.ones(256),
+    "well": np.ones(LIGHT.shape, bool),
+    "time": 0.1,
+    "sensor": Sensor(),
+    "centre": (12, 16),
+    "offsets": np.zeros((5, 2), int),
+    "homographies": np.stack([np.eye(3)] * 5),
+}
+SHARES = {
+    "beyond.assorted.shoot": np.tile([[1, 0.25], [0.5, 0.125]], (12, 16)),
+    "beyond.splitter.shoot": np.array([0.9, 0.07, 0.01]),
+}
+
+
+def verbs():
+    """Return the public verbs by name, and the names of what each must be given."""
+    found = {}
+    for room in ROOMS:
+        package = import_module(f"hdrlab.{room}")
+        for module in pkgutil.walk_packages(package.__path__, f"{package.__name__}."):
+            for name, verb in list(vars(import_module(module.name)).items()):
+                if not inspect.isfunction(verb) or verb.__module__ != module.name or name.startswith("_"):
+                    continue
+                place, known = f"{module.name[7:]}.{name}", inspect.signature(verb).parameters.values()
+                needed = [
+                    one.name for one in known if one.default is one.empty and one.kind < one.VAR_KEYWORD
+                ]
+                raises = "\nRaises" in inspect.cleandoc(verb.__doc__ or "") or place == "radiance.merge.merge"
+                if raises and {*needed[:1]} <= FIRST and needed and place not in ELSEWHERE:
+                    found[place] = verb, needed
+    return found
+
+
+VERBS = verbs()
+
+
+def arguments(verb):
+    """Return what a verb is given, of its own: name to value."""
+    own = {**VALUES, "e": SHARES.get(verb)}
+    return {
+        name: np.copy(own[name]) if isinstance(own[name], np.ndarray) else own[name]
+        for name in VERBS[verb][1]
+    }
+
+
+def call(verb, given):
+    return VERBS[verb][0](*given.values())
+
+
+def leaves(answer):
+    """Return the arrays and numbers of an answer, in order."""
+    if isinstance(answer, tuple | list):
+        return [leaf for part in answer for leaf in leaves(part)]
+    if isinstance(answer, dict):
+        return leaves(list(answer.values()))
+    return leaves(list(vars(answer).values())) if hasattr(answer, "__dict__") else [np.asarray(answer)]
+
+
+def same(a, b):
+    a, b = leaves(a), leaves(b)
+    return len(a) == len(b) and all(
+        np.asarray(x).tobytes() == np.asarray(y).tobytes() for x, y in zip(a, b, strict=True)
+    )
+
+
+def some(array, value):
+    changed = np.array(array, np.float64)
+    changed.flat[1] = value
+    return changed
+
+
+def masked(array):
+    hidden = np.zeros(np.shape(array), bool)
+    hidden.flat[1] = True
+    return np.ma.array(array, mask=hidden)
+
+
+ANY = {
+    "None": lambda a: None,
+    "a word": lambda a: "bright",
+    "words": lambda a: np.full(a.shape, "bright"),
+    "objects": lambda a: np.full(a.shape, None),
+    "complex": lambda a: a + 0.5j,
+    "masked": masked,
+    "nothing": lambda a: np.empty(0),
+    "ragged": lambda a: [[1, 2], [3]],
+    "one axis more": lambda a: a[None],
+}
+NOT_FINITE = {"NaN": lambda a: some(a, np.nan), "infinite": lambda a: some(a, np.inf)}
+NO_LIGHT = {**NOT_FINITE, "negative": lambda a: some(a, -1), "beyond float32": lambda a: some(a, 1e300)}
+MISTAKES = {
+    "images": {
+        **ANY,
+        "NaN": lambda a: some(a, np.nan),
+        "shares": lambda a: a / 255,
+        "signed": lambda a: a.astype(np.int16),
+        "masked frames": lambda a: [masked(frame) for frame in a],
+        "a frame of another size": lambda a: [a[0], a[1][:-1], *a[2:]],
+        "a frame that is None": lambda a: [*a[:-1], None],
+        "four channels": lambda a: np.stack([a] * 4, axis=-1),
+        "no columns": lambda a: a[:, :, :0],
+        "one photograph of Pillow in CMYK": lambda a: Image.fromarray(a[0]).convert("CMYK"),
+    },
+    "times": {
+        **ANY,
+        **NOT_FINITE,
+        "negative": lambda a: -a,
+        "0": lambda a: 0 * a,
+        "one too few": lambda a: a[1:],
+    },
+    "g": {
+        **ANY,
+        **NOT_FINITE,
+        "falling": lambda a: a[::-1],
+        "short": lambda a: a[:17],
+        "huge": lambda a: 1e3 * a,
+    },
+    **dict.fromkeys(
+        ("L", "E", "F"), {**ANY, **NO_LIGHT, "four channels": lambda a: np.stack([a] * 4, axis=-1)}
+    ),
+    "picture": {**ANY, "shares": lambda a: a / 255, "16 bits": lambda a: a.astype(np.uint16)},
+}
+# what answers instead: `sanitize` mends light; in float64 1e300 is light; a camera takes any number of times
+ANSWERED = {
+    ("core.gamut.sanitize", "E"): {*NO_LIGHT, "objects"},
+    ("tonemap.reinhard.tonemap", "L"): {"beyond float32"},
+    ("capture.camera.shoot", "times"): {"one too few"},
+}
+# lessons of 60 lines check less; what the commands run is `fast`, or comes through `core.bracket`
+SHORT = ("align.", "response.mitsunaga.", "radiance.merge.merge", "capture.ranges.", "fast.merge.merge")
+GATED = [
+    (verb, name)
+    for verb, (_, needed) in VERBS.items()
+    for name in needed
+    if name in MISTAKES
+    and (verb, name) != ("response.robertson.recover", "times")  # read in 60 lines, too
+    and (not verb.startswith(SHORT) or verb.endswith(("resample.photographs", "with_quality")))
+]
+
+
+SLOW = ("beyond.patches.synthesise", "response.debevec.recover", "response.marginal.recover")
+
+
+def test_every_public_verb_is_given_what_it_needs():
+    known = {*VALUES, "e"}
+    assert len(VERBS) > 45 and not {name: needed for name, (_, needed) in VERBS.items() if {*needed} - known}
+
+
+@pytest.mark.parametrize(("verb", "name"), GATED)
+@pytest.mark.filterwarnings("ignore")
+def test_what_means_nothing_is_refused_in_words(verb, name):
+    for mistake, make in MISTAKES[name].items():
+        if mistake in ANSWERED.get((verb, name), ()):
+            continue
+        given = arguments(verb)
+        given[name] = make(given[name])
+        try:
+            call(verb, given)
+        except ValueError as error:
+            assert str(error).startswith(("expected", "could not convert", "setting an array")), mistake
+        else:
+            pytest.fail(f"{verb} answered to {name} that are {mistake}")
+
+
+@pytest.mark.parametrize("verb", [verb for verb in VERBS if verb not in SLOW])
+def test_inputs_are_left_alone_and_their_layout_order_and_threads_change_nothing(verb):
+    given = arguments(verb)
+    first = call(verb, given)
+    locked = {}
+    for name, value in given.items():
+        if isinstance(value, np.ndarray):
+            wide = np.repeat(value, 2, axis=-1)
+            locked[name] = wide[..., ::2]  # every second element of a row: not contiguous
+            locked[name].flags.writeable = False
+            assert np.array_equal(value, arguments(verb)[name]), name
+        else:
+            locked[name] = value
+    with ThreadPoolExecutor(2) as pool:
+        others = list(pool.map(lambda one: call(verb, one), (locked, given)))
+    assert all(same(first, other) for other in others)
