@@ -22,7 +22,6 @@ own processing: half a stop there leaves the map sound.
 """
 
 from collections.abc import Sequence
-from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -57,7 +56,7 @@ CORNERS = 0.5
 # stops of the map's spread: below, the map explains its photographs, and what is slight needs no word
 SOUND = 0.1
 # stops of the map's spread: below, no time can be wrong that matters
-EXPLAINED = 0.03
+EXPLAINED = 0.015
 
 
 class Contradictions(NamedTuple):
@@ -130,7 +129,7 @@ def find_contradictions(
         return Contradictions(stops, *places)
     here = B[frames]
     best = response_steps.fit_steps(H[pairs], here, response_steps.free_directions(here), sd=LOOSE)
-    stops[frames] = remove_trend(best.x, here) / np.log(2)
+    stops[frames] = response_steps.remove_trend(best.x, here) / np.log(2)
     places[:, pairs] = measure_disagreement(found.of(frames), here, best)
     return Contradictions(stops, *places)._replace(cost=measure_cost(stack, stops))
 
@@ -151,16 +150,6 @@ def find_longest_run(informative: Mask) -> tuple[int, int]:
     runs = edges.reshape(-1, 2).tolist()
     start, stop = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
     return start, stop
-
-
-def remove_trend(x: F64, B: F64) -> F64:
-    """Return x less a straight line in B: that of two frames, which leaves the least sum of sqrt |x|."""
-    left = [
-        x - x[i] - (x[k] - x[i]) / (B[k] - B[i]) * (B - B[i])
-        for i, k in combinations(range(len(B)), 2)
-        if B[k] != B[i]
-    ]
-    return min(left, key=lambda r: float(np.round(np.sqrt(np.abs(r)).sum(), 6)))
 
 
 def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response_steps.Fit) -> F64:

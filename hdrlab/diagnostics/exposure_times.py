@@ -21,6 +21,8 @@ from hdrlab.diagnostics import flat_patches, response_steps
 
 # stops: a time that was this far off is more than rough
 FAR = 0.5
+# stops, of a correction of three times: more is no rounding of a camera's
+ROUNDED = 0.08
 # stops of bias: times that agree so well are left alone
 EXACT = 0.005
 
@@ -66,7 +68,8 @@ def estimate_times(
         Aligned photographs, from short to long.
     times : (P,) float
         Stated times in seconds. Their geometric mean stays, and so does their span where g is not known: the
-        corrections are orthogonal to 1, and to ln times.
+        corrections are orthogonal to 1, and to ln times. But where one of four or more is wrong alone, the
+        others stay.
     spread : function, optional
         times -> stops, how far the frames contradict each other in the map that these times make; the
         estimate must not raise it. It is asked only where the held-out pixels agree better.
@@ -115,12 +118,31 @@ def estimate_times(
     if before <= EXACT:
         return kept._replace(reason=f"the stated times agree with the pixels to {before:.3f} stops")
     x = response_steps.fit_steps(H, B, Q, g=g, sd=sd).x
+    x = x if g is not None else single_out(x, B)
     after = cross_validate(found, B, Q, g=g, sd=sd)
     kept = kept._replace(stops=x / np.log(2), bias_after=after)
     change = f"from {before:.3f} to {after:.3f} stops"
     if not after <= (1 - gain) * before:
         return kept._replace(reason=f"held-out pixels would agree no better ({change})")
     return _check_spread(kept, np.exp(B + x), change, spread)
+
+
+def single_out(x: F64, B: F64) -> F64:
+    """Return corrections of the same pixels that leave all times but one, where there are such; else x.
+
+    The pixels leave a straight line in B open. Where one time is wrong, x spreads its error over all.
+
+    Examples
+    --------
+    >>> B = np.arange(5.0)
+    >>> x = np.array([0, 0, 0, 0, 1]) - 0.2 * B  # the last time is wrong
+    >>> single_out(x, B).round(3).tolist()
+    [0.0, 0.0, 0.0, 0.0, 1.0]
+    """
+    r = response_steps.remove_trend(x, B)
+    *_, second, largest = np.sort(np.abs(r))
+    alone = len(B) > 3 and second < largest / 8 and largest > ROUNDED * np.log(2)
+    return r if alone else x
 
 
 def _check_spread(kept: Estimate, times: F64, change: str, spread: Callable[[F64], float] | None) -> Estimate:
@@ -156,8 +178,13 @@ def note(found: Estimate, names: Sequence[str]) -> str:
 def doubts(found: Estimate) -> tuple[str, ...]:
     """Return why not to trust estimated times: a sentence, or none."""
     far = float(np.abs(found.stops).max())
-    if not found.accepted or far <= FAR:
+    if not found.accepted or far <= (ROUNDED if len(found.stops) == 3 else FAR):
         return ()
+    if far <= FAR:
+        return (
+            f"of three photographs, one time is wrong: the middle one's by {1.5 * far:.2f} stops, or that of "
+            f"the first or last by {3 * far:.2f}, and with it the contrast of the map; a fourth would tell",
+        )
     return (
         f"the estimated times depart from those stated by up to {far:.2f} stops: the frames now agree, but "
         "the span of the times, and with it the contrast of the map, is only as true as the stated ones are",

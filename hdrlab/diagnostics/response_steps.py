@@ -18,6 +18,7 @@ The gauge: pixels do not determine the unit of light, nor, where the response is
 is not known: the geometric mean of the times stays, and so does their span.
 """
 
+from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
@@ -71,6 +72,16 @@ def free_directions(B: F64, *, known: bool = False) -> F64:
     """
     gauge = np.ones((1, len(B))) if known else np.stack([np.ones(len(B)), B - B.mean()])
     return np.asarray(null_space(gauge, rcond=1e-9), np.float64)
+
+
+def remove_trend(x: F64, B: F64) -> F64:
+    """Return x less a straight line in B: that of two frames, which leaves the least sum of sqrt |x|."""
+    left = [
+        x - x[i] - (x[k] - x[i]) / (B[k] - B[i]) * (B - B[i])
+        for i, k in combinations(range(len(B)), 2)
+        if B[k] != B[i]
+    ]
+    return min(left, key=lambda r: float(np.round(np.sqrt(np.abs(r)).sum(), 6)))
 
 
 def weight_pairs(H: F64) -> F64:

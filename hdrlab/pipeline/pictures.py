@@ -55,12 +55,7 @@ def develop(E: ArrayLike, tonemap: Method = AUTO, **options: Any) -> NDArray[np.
 
 
 def develop_and_describe(
-    E: ArrayLike,
-    tonemap: Method = AUTO,
-    *,
-    saturation: float | None = None,
-    way: str = "hue",
-    **knobs: Any,
+    E: ArrayLike, tonemap: Method = AUTO, *, saturation: float | None = None, way: str = "hue", **knobs: Any
 ) -> Developed:
     """Return the picture of `develop`, and its settings in words, for a report; the parameters are the same.
 

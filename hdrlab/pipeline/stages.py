@@ -106,16 +106,10 @@ def assemble_steps(
     flare: str = "none",
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
-    for what, given, known in (
-        ("a weight", weight, WEIGHTS),
-        ("a method", method, METHODS),
-        ("times", times, TIMES),
-    ):
+    asked = {"a weight": weight, "a method": method, "times": times, "ghosts": ghosts, "flare": flare}
+    for (what, given), known in zip(asked.items(), (WEIGHTS, METHODS, TIMES, GHOSTS, FLARE), strict=True):
         if given not in known:
             raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
-    if ghosts not in GHOSTS or flare not in FLARE:
-        ways = f"ghosts out of {', '.join(GHOSTS)} and flare out of {', '.join(FLARE)}"
-        raise ValueError(f"expected {ways}, got {ghosts!r} and {flare!r}")
     bracket, said = timing.complete_times(bracket, times)
     state = aligned(bracket, align, response)
     yield (state := state._replace(notes=(*said, *state.notes)))
@@ -147,7 +141,10 @@ def assemble_steps(
 
 
 def leave_out_contrary(state: Assembly) -> Assembly:
-    """Return the Assembly without the frames that contradict all others, and a note on them."""
+    """Return the Assembly without the frames that contradict all others, and a note on them.
+
+    It is a doubt where three are left: without another one of the four, the others might agree, too.
+    """
     images, times, names, valid, _ = state.bracket
     found = find_outlying_frames(images, times, valid=valid)
     if not found:
@@ -156,7 +153,12 @@ def leave_out_contrary(state: Assembly) -> Assembly:
         f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
         "whether its time is right, and whether it shows this scene, in this light"
     )
-    state = state._replace(notes=(*state.notes, said))
+    if len(times) - len(found) == 3:
+        state = state._replace(
+            doubts=(*state.doubts, f"{said}; where three are left, it may also be another")
+        )
+    else:
+        state = state._replace(notes=(*state.notes, said))
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
 
@@ -198,10 +200,8 @@ def assess(state: Assembly, medians: NDArray[np.float64], moved: float) -> Assem
         state = state._replace(fallback=why)
     images, times, names, valid, _ = state.bracket
     if np.isnan(state.spread):
-        alone = (
-            "no level stands in two frames, so nothing supports times and map: take photographs in between"
-        )
-        return state._replace(doubts=(*state.doubts, alone), fallback=alone)
+        why = "no level stands in two frames, so nothing supports times and map: take photographs in between"
+        return state._replace(doubts=(*state.doubts, why), fallback=why)
     found = find_contradictions(images, times, valid=valid)
     said = warn_of_contradictions(found, names, state.spread)
     if not said and moved > motion.MOVED:

@@ -329,6 +329,7 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
     [
         "the photographs contradict their exposure times",
         "the estimated times depart from those stated",
+        "of three photographs, one time is wrong",
         "the stated times contradict the pixels",
         "the photographs contradict each other by",
         "the corners change against the middle",

@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 from hdrlab import cli, pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.weights import gaussian
-from hdrlab.diagnostics import consistency, flat_patches, plausibility, response_steps
+from hdrlab.diagnostics import consistency, exposure_times, flat_patches, plausibility, response_steps
 from hdrlab.diagnostics.contradictions import (
     Contradictions,
     find_contradictions,
@@ -139,6 +139,30 @@ def test_times_off_by_up_to_a_tenth_are_recovered(taken, count, seed):
     assert found.accepted and np.abs(off_by(factors, found, true * factors)).max() < 0.02
     assert found.bias_after < 0.2 * found.bias_before and found.spread_after < 0.2 * found.spread_before
     assert np.allclose(found.times, true * factors * 2**found.stops, rtol=1e-12)
+
+
+@pytest.mark.parametrize("frame", [0, 4])
+def test_where_one_end_alone_is_wrong_the_other_times_and_their_span_stay(taken, frame):
+    images, true = taken(5)[:2]
+    factors = np.where(np.arange(5) == frame, 2.0 if frame else 0.5, 1.0)
+    found = estimate_times(images, true * factors, lambda times: spread(images, times))
+    assert found.accepted and np.abs(np.delete(found.stops, frame)).max() < 0.02
+    assert abs(found.stops[frame] + np.log2(factors[frame])) < 0.15
+
+
+def test_of_three_photographs_a_correction_is_doubted_for_it_may_be_another_time(taken):
+    three = taken(3)
+    found = pipeline.assemble(three._replace(times=three.times * [1, 1, 1.3]))
+    assert any("of three photographs, one time is wrong" in doubt for doubt in found.doubts)
+    assert pipeline.assemble(three).doubts == ()
+    rounded = exposure_times.Estimate(three.times, np.array([-0.03, 0.06, -0.03]), True, "")
+    assert exposure_times.doubts(rounded) == ()  # as cameras round 1/32 s to 1/30
+
+
+def test_a_wrong_time_is_told_also_where_the_frames_that_share_levels_agree_well(taken):
+    off = Contradictions(np.array([0, 0.33, 0.0]), np.full(2, np.nan), cost=0.06)
+    assert "b by +0.33" in warn_of_contradictions(off, "abc", 0.02)
+    assert warn_of_contradictions(off, "abc", 0.002) == ""
 
 
 def test_of_a_linear_camera_the_span_is_recovered_as_well(taken):
