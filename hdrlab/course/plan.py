@@ -112,7 +112,7 @@ def _late(table: dict[str, Any], path: Path) -> Late:
         late = Late(**table)
         if late.free_days >= 0 and late.points_a_day >= 0:
             return late
-    raise ValueError(f"{path}: expected free_days and points_a_day from 0 on in [late], got {table!s:.80}")
+    raise ValueError(f"{path}: expected free_days and points_a_day, at least 0, in [late], got {table!s:.80}")
 
 
 def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
