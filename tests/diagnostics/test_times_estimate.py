@@ -14,7 +14,6 @@ from hdrlab.diagnostics import consistency, exposure_times, flat_patches, plausi
 from hdrlab.diagnostics.contradictions import (
     Contradictions,
     find_contradictions,
-    remove_trend,
     warn_of_contradictions,
 )
 from hdrlab.diagnostics.exposure_times import estimate_times, note
@@ -343,7 +342,7 @@ def test_frames_that_no_patch_ties_to_others_are_left_open():
 
 def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
     B = np.arange(5.0)
-    assert np.allclose(remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5])
+    assert np.allclose(response_steps.remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5])
 
 
 # In the pipeline

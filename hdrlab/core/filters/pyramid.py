@@ -59,7 +59,7 @@ def interpolate(image: F32, shape: Sequence[int]) -> F32:
 def gaussian(image: F32, levels: int) -> list[F32]:
     """Return g_0, g_1, ...: `levels` of them, each the one before it reduced."""
     pyramid = [np.asarray(image, np.float32)]
-    while len(pyramid) < levels:
+    for _ in range(1, levels):
         pyramid.append(reduce(pyramid[-1]))
     return pyramid
 

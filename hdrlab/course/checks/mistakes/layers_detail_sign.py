@@ -1,4 +1,4 @@
-"""Your detail has the sign reversed, as it is sometimes printed: detail = lL - base, so that both add up
+"""Your detail has the sign reversed, as one lecture prints it: detail = lL - base, so that both add up
 to the picture."""
 
 from hdrlab.tonemap import durand

@@ -1,5 +1,5 @@
 """A mantissa is a fraction of 256, and you did not divide: your radiance is 256 times too large, like a
-triple that is often printed."""
+triple that one lecture prints."""
 
 import numpy as np
 

@@ -27,7 +27,7 @@ def test_every_pixel_is_three_radiances(subject, rng):
 
 @pytest.mark.points(5)
 def test_a_mantissa_is_a_fraction_of_256(subject):
-    """The pixel (145, 215, 87, 103) is often printed as 4.32e-06 and more: which factor is missing?
+    """The pixel (145, 215, 87, 103) can be read as 4.32e-06 and more: which factor is missing?
 
     A mantissa is a fraction of 256.
 
