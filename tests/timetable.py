@@ -10,6 +10,7 @@ import json
 import math
 import re
 import tomllib
+from functools import cache
 
 import distance
 
@@ -57,6 +58,7 @@ def plan_of_the_course():
     return tomllib.loads((ROOT / "hdrlab/course/plan.toml").read_text(encoding="utf8"))
 
 
+@cache
 def tasks():
     """Return homework, points and minutes of each task by id."""
     library, plan = distance.read(), plan_of_the_course()
