@@ -343,6 +343,18 @@ def test_frames_that_no_patch_ties_to_others_are_left_open():
 def test_one_frame_that_is_off_is_told_from_a_line_through_the_others():
     B = np.arange(5.0)
     assert np.allclose(response_steps.remove_trend(3 - 2 * B + [0, 0, 0, 0, 0.5], B), [0, 0, 0, 0, 0.5])
+    both = np.array([0, 0, 0, 0, 1.0, 1.0])  # a line from end to end would leave less in sum, and four wrong
+    assert np.allclose(response_steps.remove_trend(both - np.arange(6.0), np.arange(6.0)), both)
+
+
+def test_an_estimate_must_better_the_held_out_pixels_by_the_share_that_is_asked_for(taken):
+    images, true = taken(4)[:2]
+    rough = true * [1, 1.1, 0.95, 1]
+    found = estimate_times(images, rough)
+    left = found.bias_after / found.bias_before
+    assert found.accepted and 0 < left < 1
+    strict = estimate_times(images, rough, gain=1 - left / 2)
+    assert not strict.accepted and np.array_equal(strict.times, rough)
 
 
 # In the pipeline

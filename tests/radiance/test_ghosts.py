@@ -268,3 +268,14 @@ def test_a_note_doubts_motion_that_is_everywhere(moving):
     noise = np.repeat(np.repeat(noise[:, ::9, ::9], 9, axis=1), 9, axis=2)[:, : SHAPE[0], : SHAPE[1]]
     found = ghosts.remove_ghosts(noise, b.times, FILM, W)
     assert "times or of alignment" in ghosts.note(found, [f"img{j}" for j in range(5)])
+
+
+def test_the_mask_grows_over_a_textured_part_of_what_moved_whose_edges_would_excuse_it_alone():
+    v, r = np.zeros((40, 60), np.float32), np.zeros((40, 60), np.float32)
+    v[15:25, 10:20] = 1.0  # a head, which contradicts clearly
+    v[15:25, 20:30], r[15:25, 20:30] = 0.15**2, 0.5  # a striped coat
+    found = deviation.Deviation(v, np.zeros_like(v), r)
+    score, mask = ghosts.detect_motion(found, tau=0.1, edge=0.35, margin=3)
+    assert (score[15:25, 20:30] < 1).all() and mask[15:25, 10:30].all()
+    beside = deviation.Deviation(np.where(r > 0, v, 0), found.s2, r)
+    assert not ghosts.detect_motion(beside, tau=0.1, edge=0.35, margin=3)[1].any()

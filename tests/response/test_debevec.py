@@ -95,3 +95,12 @@ def test_the_slides_solution_finds_the_camera_s_curve(seven_frames):
     _, taken = seven_frames("film")
     g = debevec.recover(taken.images, taken.times, samples=60)
     assert laws.curve_error(g, responses.true_g("film")) < 0.01 and np.all(np.diff(g) >= 0)
+
+
+def test_below_the_first_level_that_counts_each_level_is_a_step_of_light_and_level_0_half_a_step():
+    w = weights.cut(weights.hat(), below=0.05)
+    first = int(np.argmax(w > 0))
+    exposures = np.exp(debevec.straighten_toe(responses.true_g("film")[:, None], w)[: first + 1, 0])
+    steps = np.diff(exposures)
+    assert first > 3 and np.allclose(steps, steps[0], rtol=1e-9)
+    assert np.isclose(exposures[0], steps[0] / 2, rtol=1e-9)
