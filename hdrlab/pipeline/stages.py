@@ -141,10 +141,7 @@ def assemble_steps(
 
 
 def leave_out_contrary(state: Assembly) -> Assembly:
-    """Return the Assembly without the frames that contradict all others, and a note on them.
-
-    It is a doubt where three are left: without another one of the four, the others might agree, too.
-    """
+    """Return the Assembly without the frames that contradict all others, and a note on them."""
     images, times, names, valid, _ = state.bracket
     found = find_outlying_frames(images, times, valid=valid)
     if not found:
@@ -153,12 +150,7 @@ def leave_out_contrary(state: Assembly) -> Assembly:
         f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
         "whether its time is right, and whether it shows this scene, in this light"
     )
-    if len(times) - len(found) == 3:
-        state = state._replace(
-            doubts=(*state.doubts, f"{said}; where three are left, it may also be another")
-        )
-    else:
-        state = state._replace(notes=(*state.notes, said))
+    state = state._replace(notes=(*state.notes, said))
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
 

@@ -294,12 +294,3 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
     assert found.bracket.names == tuple("abdef") and found.offsets.shape == (5, 2)
     assert any("left out" in note and " c;" in note for note in found.notes)
     assert found.spread < 0.02 and assemble(taken).bracket.images.shape[0] == 6
-
-
-def test_of_four_photographs_one_that_is_left_out_is_a_doubt_for_it_may_be_another(room):
-    taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
-    images = taken.images.copy()
-    images[2] = images[2, ::-1, ::-1]
-    found = assemble(taken._replace(images=images, names=tuple("abcd")), align="none", times="stated")
-    assert found.bracket.names == tuple("abd")
-    assert any("left out" in doubt and "it may also be another" in doubt for doubt in found.doubts)
