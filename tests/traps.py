@@ -77,9 +77,9 @@ def lying(path):
     return path
 
 
-def long_header(path, size=10_000_000):
+def long_header(path, size=10_000_000, kind=tarfile.XHDTYPE):
     """Write a tar with an extended header of many bytes, which a reader takes into memory."""
-    header = info("x", tarfile.XHDTYPE, size=size).tobuf(tarfile.USTAR_FORMAT)
+    header = info("x", kind, size=size).tobuf(tarfile.USTAR_FORMAT)
     path.write_bytes(header + bytes(1024))
     return path
 
@@ -87,6 +87,16 @@ def long_header(path, size=10_000_000):
 def resizing(path):
     """Write a tar whose extended header gives a member another size than its own header."""
     return tarred(path, [(info("a.txt", pax_headers={"size": "7"}), b"0" * 600)], format=tarfile.PAX_FORMAT)
+
+
+def resizing_as_solaris(path):
+    """Write the same with the header's older type."""
+    data = bytearray(resizing(path).read_bytes())
+    data[156:157] = tarfile.SOLARIS_XHDTYPE
+    total = sum(data[:148]) + 8 * ord(" ") + sum(data[156:512])
+    data[148:156] = b"%06o\0 " % total
+    path.write_bytes(data)
+    return path
 
 
 LINK, DEVICE, FIFO = stat.S_IFLNK | 0o777, stat.S_IFCHR | 0o666, stat.S_IFIFO | 0o666
@@ -121,6 +131,8 @@ TRAPS = {
     ),
     "an extended header too large": long_header,
     "an extended header that changes a size": resizing,
+    "Solaris' extended header, too large": lambda p: long_header(p, kind=tarfile.SOLARIS_XHDTYPE),
+    "Solaris' extended header that changes a size": resizing_as_solaris,
     "a name twice in a zip": lambda p: zipped(p, [("a.txt", b"1"), ("./a.txt", b"2")]),
     "a name twice in a tar": lambda p: tarred(p, [(info("a"), b"1"), (info("a"), b"2")]),
     "names that differ by case": lambda p: zipped(p, {"Report.html": b"1", "report.HTML": b"2"}),

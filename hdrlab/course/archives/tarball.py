@@ -16,6 +16,7 @@ from hdrlab.course.archives.members import PIECE, Limits, Member, Refused, quote
 
 OPENERS: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
 HEADER = 1 << 16  # bytes of a header of tar: a long name, and not a bomb
+PAX = b"xgX"  # types of headers that change what follows: of a member, of all, and Solaris' of a member
 
 
 def unpack(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
@@ -60,9 +61,9 @@ def _check_headers(file: IO[bytes], limits: Limits) -> None:
     """Raise Refused for too many headers, and for one too large for the reader to take into memory."""
     count = 0
     for kind, size in _headers(file):
-        if kind in b"xgLK" and size > HEADER:
+        if kind in PAX + b"LK" and size > HEADER:
             raise Refused(f"a header of it claims {size} bytes, expected at most {HEADER}")
-        count += kind not in b"xgLK"
+        count += kind not in PAX + b"LK"
     if not count:
         raise Refused("it holds no files, or is no .zip or .tar archive")
     members.check_count(count, limits)
@@ -83,7 +84,7 @@ def _headers(file: IO[bytes]) -> Iterator[tuple[bytes, int]]:
         size = tarfile.nti(block[124:136])  # type: ignore[attr-defined]
         if size < 0:
             raise Refused("a header of it claims a size below zero")
-        if block[156:157] in b"xg" and b" size=" in file.read(min(size, HEADER)):
+        if block[156:157] in PAX and b" size=" in file.read(min(size, HEADER)):
             raise Refused("a header of it changes the size of a member")  # what follows could hide in it
         yield block[156:157], size
         at += tarfile.BLOCKSIZE * (1 + -(-size // tarfile.BLOCKSIZE))
