@@ -57,14 +57,13 @@ def measure_level_exposures(
     if E.shape != stack.shape[1:]:
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
-    few = slice(None, None, step)
     channels = 1 if E.ndim == 2 else E.shape[-1]
-    Z = to_256(stack[:, few, few]).reshape(len(stack), -1, channels)
+    Z = to_256(stack[:, ::step, ::step]).reshape(len(stack), -1, channels)
     with np.errstate(divide="ignore"):
-        lE = np.log2(E[few, few].reshape(-1, channels))
+        lE = np.log2(E[::step, ::step].reshape(-1, channels))
     whole = np.all(Z <= TOP, axis=-1)
     if mask is not None:
-        whole &= mask[:, few, few].reshape(len(stack), -1)
+        whole &= mask[:, ::step, ::step].reshape(len(stack), -1)
     medians = np.empty((len(Z), Z.shape[-1], 256))
     for c in range(channels):
         rising = np.argsort(lE[:, c])[np.isinf(lE[:, c]).sum() :]  # once for all frames

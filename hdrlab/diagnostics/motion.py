@@ -69,7 +69,7 @@ def measure_motion(
     """
     stack, t, w, curves, top = as_tables(images, times, g, w, "log", TOP)
     mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
-    few = (slice(None), slice(None, None, every), slice(None, None, every))
+    few = np.s_[:, ::every, ::every]
     Z = stack[few].reshape(*stack[few].shape[:3], -1)
     trust = weigh_levels(Z, w, top, None if mask is None else mask[few])
     x = curves[Z, np.arange(Z.shape[-1])] - np.log(t)[:, None, None, None]

@@ -5,6 +5,7 @@ import os
 import secrets
 from collections.abc import Collection, Iterable, Iterator
 from contextlib import contextmanager
+from itertools import product
 from pathlib import Path
 from typing import BinaryIO
 
@@ -66,15 +67,10 @@ def require_other(written: Iterable[Path], read: Iterable[Path]) -> None:
 
     Links lead to the same file, and so does another name where capitals do not count.
     """
-    inputs = {_identity(path): path for path in read if os.path.exists(path)}
-    for path in written:
-        if os.path.exists(path) and (source := inputs.get(_identity(path))):
+    inputs = [path for path in read if os.path.exists(path)]
+    for path, source in product(filter(os.path.exists, written), inputs):
+        if os.path.samefile(path, source):
             raise ValueError(f"{path}: expected another name to write to, {source} is read and would be lost")
-
-
-def _identity(path: Path) -> tuple[int, int]:
-    found = path.stat()
-    return found.st_dev, found.st_ino
 
 
 def reserve(file: BinaryIO, size: int) -> None:

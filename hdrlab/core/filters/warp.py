@@ -148,11 +148,9 @@ def sample(image: ArrayLike, H: ArrayLike, shape: tuple[int, ...]) -> Array:
     if image.ndim == 3:
         return np.stack([sample(image[..., c], H, shape) for c in range(image.shape[2])], axis=-1)
     low, high = image, image
-    for axis in (0, 1):
-        after = np.concatenate([low.take(range(1, low.shape[axis]), axis), low.take([-1], axis)], axis)
-        low = np.minimum(low, after)
-        after = np.concatenate([high.take(range(1, high.shape[axis]), axis), high.take([-1], axis)], axis)
-        high = np.maximum(high, after)
+    for axis in (0, 1):  # of each pixel with the next one, below and right
+        after = np.arange(1, image.shape[axis] + 1).clip(max=image.shape[axis] - 1)
+        low, high = np.minimum(low, low.take(after, axis)), np.maximum(high, high.take(after, axis))
     found = read(image, H, shape, order=3)
     return np.clip(found, before(low, H, shape), before(high, H, shape))
 

@@ -86,15 +86,14 @@ def calibrate_frames(
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     s, x = level_noise(curves.T), curves.T - np.log(seconds)[:, None, None]
     step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
-    few = (slice(None, None, step),) * 2
     with np.errstate(divide="ignore"):
-        lE = np.log(E[few]).reshape(-1, Z.shape[-1])
+        lE = np.log(E[::step, ::step]).reshape(-1, Z.shape[-1])
     s2 = np.empty_like(x)
     for j, frame in enumerate(Z):
-        levels_of = frame[few].reshape(-1, Z.shape[-1])
+        levels_of = frame[::step, ::step].reshape(-1, Z.shape[-1])
         counts = np.all(levels_of < first_clipped, axis=1) & np.isfinite(lE).all(axis=1)
         if mask is not None:
-            counts &= mask[j][few].ravel()
+            counts &= mask[j, ::step, ::step].ravel()
         for c, z in enumerate(levels_of[counts].T):
             delta, kappa = fit_bias(z, x[j, c, z] - lE[counts, c], s[c])
             x[j, c] -= delta
