@@ -21,7 +21,8 @@ from hdrlab.io import raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import check_size
 
-logging.getLogger("tifffile").addHandler(logging.NullHandler())  # our errors report what is wrong
+for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong
+    logging.getLogger(codec).addHandler(logging.NullHandler())
 
 Exif = tuple[int, Exposure]  # the orientation and the exposure
 Looks = tuple[str, tuple[int, ...], np.dtype[Any], Exif]  # kind, shape as it is stored, dtype
