@@ -25,6 +25,8 @@ DAMAGED = ROOT.parent / "shared" / "data" / "damaged"
 LARGEST = 40_000
 
 
+# LibRaw names the file; to turn stderr off meanwhile, in all threads, would stop the progress bar
+LIBRAW = r"(\S+\.dng: (Unexpected end of file|data corrupted at \d+)\n)*"
 # of Pillow, whose own words stand
 REFUSED = (ValueError, OSError, SyntaxError)
 
@@ -44,6 +46,7 @@ class Reader(NamedTuple):
     errors : what it may raise
     needs : the module without which it reads nothing
     damaged : how the names of damaged files of it begin
+    printed : what its C library may say past Python of a damaged file: a pattern of all of it
     """
 
     name: str
@@ -54,6 +57,7 @@ class Reader(NamedTuple):
     errors: tuple[type[Exception], ...] = (ValueError,)
     needs: str = "numpy"
     damaged: str = "-"
+    printed: str = ""
 
     def seeds(self, folder: Path) -> list[bytes]:
         """Return the files to begin with, made in a folder, or raise Missing."""
@@ -159,7 +163,7 @@ ALL: Sequence[Reader] = (
     Reader("jpeg", ".jpg", seeds.photographs, read_photo),
     Reader("png", ".png", seeds.photographs, read_photo),
     Reader("tiff", ".tif", seeds.photographs, read_photo, damaged="tiff"),
-    Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng"),
+    Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng", printed=LIBRAW),
     Reader("gif", ".gif", seeds.films, lambda path: [*_frames(path)], damaged="gif"),
     Reader("film", ".mp4", seeds.films, lambda path: [*_frames(path)], needs="av"),
     Reader("webp", ".webp", seeds.pages, lambda path: web.decode_picture(path.read_bytes()), False, REFUSED),

@@ -8,6 +8,7 @@ import gc
 import json
 import logging
 import os
+import re
 import resource
 import signal
 import sys
@@ -25,6 +26,8 @@ from benchmarks.fuzz.readers import READERS, Reader
 READ, CLEAN = "result", "clean error"
 # bytes of address space, and seconds of a processor a file
 MEMORY, SECONDS = 2 << 30, 5.0
+# files, after which a reader has imported what it needs
+FIRST = 20
 # characters of a message
 LONGEST = 2000
 
@@ -66,7 +69,7 @@ def judged(reader: Reader, path: Path, printed: Callable[[], str]) -> tuple[str,
     words, after = printed(), state(path.parent)
     if kind not in (READ, CLEAN):
         return kind, said
-    if words:
+    if not re.fullmatch(reader.printed, words):
         return f"printed {words[:40]}", words
     changed = [name for name in State._fields if getattr(before, name) != getattr(after, name)]
     return (f"changed {', '.join(changed)}", said) if changed else (kind, said)
@@ -127,7 +130,10 @@ def main(name: str, folder: str) -> None:
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     os.write(answers, b"ready\n")
-    for line in sys.stdin:
+    for count, line in enumerate(sys.stdin):
+        if count == FIRST:
+            gc.collect()
+            gc.freeze()  # what was imported by now stays: to look through it after each file takes 60 ms
         signal.setitimer(signal.ITIMER_PROF, SECONDS)
         found = judged(reader, Path(line.rstrip("\n")), printed)
         signal.setitimer(signal.ITIMER_PROF, 0)
