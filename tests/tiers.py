@@ -23,6 +23,8 @@ TIERS = {
     ),
     "notebooks": (
         "tests/test_notebooks_run.py",
+        "tests/cli/test_faults.py::test_a_disk_that_refuses_is_told_in_a_line[site",
+        "tests/cli/test_faults.py::test_a_site",
         "tests/course/test_handouts.py::test_building_writes_both",
         "tests/course/test_site.py",
     ),
@@ -87,6 +89,7 @@ TIERS = {
         "tests/cli/test_cli.py::test_a_doubtful_map",
         "tests/cli/test_demo.py::test_the_demo_announces",
         "tests/cli/test_demo.py::test_the_same_seed",
+        "tests/cli/test_faults.py",
         "tests/cli/test_long_commands.py",
         "tests/diagnostics/test_motion.py::test_a_still_scene_through_sharpening",
         "tests/diagnostics/test_motion.py::test_leaves_and_water",

@@ -6,6 +6,7 @@ at all.
 """
 
 import os
+import signal
 import sys
 from collections.abc import Sequence
 from io import TextIOWrapper
@@ -29,7 +30,9 @@ from hdrlab.cli.terminal import visible
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
-    """Run the command and exit: 0 where all went well, 2 for bad input, 130 after Ctrl-C."""
+    """Run the command and exit: 0 where all went well, 2 for bad input, 130 after Ctrl-C or SIGTERM."""
+    if arguments is None:  # not from Python, whose own signals stay
+        signal.signal(signal.SIGTERM, signal.default_int_handler)
     # the products here are small: threads only wait on them
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     for stream in (sys.stdout, sys.stderr):

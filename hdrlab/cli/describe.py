@@ -73,10 +73,9 @@ def _pfm(path: str | Path) -> dict[str, Any]:
 
 def _exr(path: str | Path) -> dict[str, Any]:
     header = exr.read_header(path)
-    kinds = exr.read_dtypes(path)  # stand with the pixels only
     return {
         "format": "OpenEXR",
-        **_size(*header.display[2:], ", ".join(header.channels), ", ".join(sorted(set(kinds)))),
+        **_size(*header.display[2:], ", ".join(header.channels), ", ".join(sorted({*exr.read_dtypes(path)}))),
         "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
         **({"data window": tuple(header.data)} if header.data != header.display else {}),
         **({"comments": header.attributes["comments"]} if "comments" in header.attributes else {}),

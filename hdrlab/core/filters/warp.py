@@ -168,7 +168,5 @@ def before(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
 
 def read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
     """Return the picture (h, w) whose pixel p is `image` (H, W) at H p, interpolated to this order."""
-    H, size = np.asarray(H, float), shape[:2]
     knobs = {"order": order, "mode": "edge", "clip": False, "preserve_range": True}
-    found = transform.warp(image, H, output_shape=size, **knobs)
-    return np.asarray(found)
+    return np.asarray(transform.warp(image, np.asarray(H, float), output_shape=shape[:2], **knobs))

@@ -64,7 +64,7 @@ def write_report(
     text = _page(assembly, np.asarray(picture), recipe, truth)
     page.parent.mkdir(parents=True, exist_ok=True)
     with replacing(page) as temporary:
-        temporary.write_text(text, encoding="utf8")
+        temporary.write_text(text, encoding="utf8", errors="replace")
     return page
 
 

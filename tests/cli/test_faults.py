@@ -1,0 +1,277 @@
+"""A full disk, Ctrl-C, no HOME: a command ends in one line or with its result, and nothing is lost.
+
+The commands are those that write most. Each runs as a process, in a folder of its own.
+"""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab import scenes
+from hdrlab.capture import camera
+from hdrlab.io import radiance
+from hdrlab.io.photos import write_picture
+
+resource = pytest.importorskip("resource", reason="a system without limits cannot play a full disk")
+
+PATIENCE = 300  # seconds
+# bytes of the largest file that a full disk has room for
+ROOM = 3000
+# what assemble and tonemap write, and a file that stood there before
+MAIN = {"assemble": "out/room.hdr", "tonemap": "out/map.png"}
+OLD = b"precious"
+# of Linux: what lets root write where nobody may
+DROP, OVERRIDE, READ_SEARCH = 24, 1, 2
+COMMANDS = {
+    "assemble": "assemble photos --stops 2 -o out/room.hdr --picture out/room.png --report out/report",
+    "tonemap": "tonemap map.hdr -o out/map.png",
+    "grade": "grade hw2.py --tier practice -o out/results",
+    "site": "site --notebooks small.ipynb --out out/site",
+}
+HAT = '''def hat(n=256):
+    """Return weights."""
+    import numpy as np
+    return np.minimum(np.arange(n), np.arange(n)[::-1]).astype(float)
+'''
+
+
+class Ended(NamedTuple):
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def clear(self):
+        """Whether an error is told in a line or two, and none by a traceback."""
+        last = self.err.strip().splitlines()[-1:]
+        return "Traceback" not in self.err and bool(last) and last[0].startswith("hdrlab: ")
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """A folder with what the commands read."""
+    here = tmp_path_factory.mktemp("made")
+    (here / "photos").mkdir()
+    room = scenes.room((120, 180))
+    shot = camera.shoot(room, camera.times_around(room, 3, stops=2), camera.Camera(), rng=1)
+    for name, image in zip("abc", shot.images, strict=True):
+        write_picture(here / f"photos/{name}.png", image)
+    E = np.geomspace(1e-2, 1e3, 120 * 180).reshape(120, 180, 1) * np.random.default_rng(1).uniform(0.5, 1, 3)
+    radiance.write_radiance(here / "map.hdr", E)
+    (here / "hw2.py").write_text(HAT)
+    cells = [{"cell_type": "markdown", "id": "a", "metadata": {}, "source": ["# A small page\n"]}]
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    book = {"cells": cells, "metadata": kernel, "nbformat": 4, "nbformat_minor": 5}
+    (here / "small.ipynb").write_text(json.dumps(book))
+    return here
+
+
+@pytest.fixture
+def here(made, tmp_path):
+    """A copy of it, with an empty folder `out`."""
+    shutil.copytree(made, tmp_path / "here")
+    (tmp_path / "here/out").mkdir()
+    return tmp_path / "here"
+
+
+def start(command, here, prepare=None, *, cwd=None, **environment):
+    """Start a command as a process."""
+    env = {**os.environ, **environment}
+    words = COMMANDS.get(command, command).split() if isinstance(command, str) else command
+    return subprocess.Popen(
+        [sys.executable, "-m", "hdrlab", *words],
+        cwd=cwd or here,
+        env={name: value for name, value in env.items() if value is not None},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        stdin=subprocess.DEVNULL,
+        preexec_fn=prepare,
+    )
+
+
+def end(process):
+    """Return how it ended."""
+    try:
+        out, err = process.communicate(timeout=PATIENCE)
+    finally:
+        process.kill()
+    return Ended(process.returncode, (out or b"").decode(errors="replace"), err.decode(errors="replace"))
+
+
+def files(folder):
+    return {str(path.relative_to(folder)) for path in folder.rglob("*") if path.is_file()}
+
+
+def assert_nothing_is_lost(here, made):
+    """Assert that what was read is there, and nothing unfinished."""
+    for name in files(made):
+        assert (here / name).read_bytes() == (made / name).read_bytes(), name
+    half = [name for name in files(here) if Path(name).name.startswith((".hdrlab-", "tmp"))]
+    assert not half
+
+
+def fill_disk():
+    """Let no file grow: what is written beyond is an error, as on a full disk."""
+    signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (ROOM, ROOM))
+
+
+def obey_rights():
+    """Take root's right to write where it may not."""
+    if os.geteuid() == 0:
+        import ctypes
+
+        for right in (OVERRIDE, READ_SEARCH):
+            ctypes.CDLL(None).prctl(DROP, right, 0, 0, 0)
+
+
+def stand_nowhere(folder):
+    """Return what removes the folder in which a command is about to begin."""
+    folder.mkdir()
+    return lambda: folder.rmdir()
+
+
+def absolute(command, here):
+    """Return the words of a command with whole paths."""
+    words = COMMANDS[command].split()
+    return [str(here / word) if (here / word).exists() or word.startswith("out/") else word for word in words]
+
+
+def turn_clock_back(here):
+    """Return where Python finds a clock that loses a minute at each look, and files from the future."""
+    (here.parent / "clock").mkdir()
+    (here.parent / "clock/sitecustomize.py").write_text(CLOCK)
+    for path in here.rglob("*"):
+        os.utime(path, (4e9, 4e9))
+    return os.pathsep.join([str(here.parent / "clock"), *filter(None, [os.environ.get("PYTHONPATH")])])
+
+
+CLOCK = """import itertools, time
+true = time.time
+late = itertools.count()
+time.time = lambda: true() - 60 * next(late)
+"""
+NOWHERE = "/proc/nowhere"
+POOR = {
+    "no HOME": {"HOME": None, "XDG_CACHE_HOME": None},
+    "no caches": {"HOME": NOWHERE, "XDG_CACHE_HOME": NOWHERE, "MPLCONFIGDIR": NOWHERE},
+    "LANG=C": {"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
+}
+
+
+@pytest.mark.parametrize("lacks", [*POOR, "a clock", "a working folder"])
+@pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
+def test_a_machine_that_lacks_something_gives_the_result(command, lacks, here, made):
+    words, options = command, POOR.get(lacks, {})
+    if lacks == "a clock":
+        options = {"PYTHONPATH": turn_clock_back(here)}
+    if lacks == "a working folder":
+        gone = here.parent / "gone"
+        words, options = absolute(command, here), {"prepare": stand_nowhere(gone), "cwd": gone}
+    ended = end(start(words, here, **options))
+    assert ended.code == 0 and "Traceback" not in ended.err, ended.err
+    assert len(files(here / "out")) == {"assemble": 3, "tonemap": 1, "grade": 5}[command]
+    assert_nothing_is_lost(here, made)
+
+
+def test_a_site_is_made_where_caches_signs_and_a_clock_are_lacking(here, made):
+    poor = POOR["no caches"] | POOR["LANG=C"] | {"PYTHONPATH": turn_clock_back(here)}
+    ended = end(start("site", here, **poor))
+    assert ended.code == 0 and "Traceback" not in ended.err, ended.err
+    assert list((here / "out/site").rglob("small.html"))
+    assert_nothing_is_lost(here, made)
+
+
+def test_a_site_in_a_folder_that_is_gone_ends_in_a_line(here, made):
+    gone = here.parent / "gone"
+    ended = end(start(absolute("site", here), here, stand_nowhere(gone), cwd=gone))
+    assert ended.code == 2 and ended.clear, ended.err
+    assert_nothing_is_lost(here, made)
+
+
+@pytest.mark.parametrize("refusal", ["a full disk", "no right to write"])
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_disk_that_refuses_is_told_in_a_line(command, refusal, here, made):
+    full = refusal == "a full disk"
+    if command in MAIN:
+        (here / MAIN[command]).write_bytes(OLD)
+    (here / "out").chmod(0o755 if full else 0o555)
+    ended = end(start(command, here, fill_disk if full else obey_rights))
+    (here / "out").chmod(0o755)
+    assert ended.code == 2 and ended.clear, ended.err
+    assert ("File too large" if full else "Permission denied") in ended.err.strip().splitlines()[-1]
+    if command in MAIN:
+        assert (here / MAIN[command]).read_bytes() == OLD
+    assert_nothing_is_lost(here, made)
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
+def test_a_command_can_be_stopped_at_any_moment(command, sent, made, here):
+    for moment in (0.2, 0.5, 0.8, 1.1, 1.4, 1.8, 2.3):
+        if command in MAIN:
+            (here / MAIN[command]).write_bytes(OLD)
+        process = start(command, here, lambda: signal.signal(signal.SIGINT, signal.default_int_handler))
+        try:
+            process.wait(moment)
+        except subprocess.TimeoutExpired:
+            process.send_signal(sent)
+        ended = end(process)
+        # before Python can hear it, or after its last line, the signal alone ends it
+        assert ended.code in (0, 130, -signal.SIGINT, -sent) and "Traceback" not in ended.err, ended.err
+        if command in MAIN:
+            found = (here / MAIN[command]).read_bytes()
+            assert found == OLD or found[:4] in (b"#?RA", b"\x89PNG")
+            assert found == OLD or len(found) > ROOM
+        assert_nothing_is_lost(here, made)
+
+
+@pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
+def test_two_runs_into_one_folder_leave_a_whole_result(command, here, made):
+    assert [end(one).code for one in [start(command, here), start(command, here)]] == [0, 0]
+    assert len(files(here / "out")) == {"assemble": 3, "tonemap": 1, "grade": 5}[command]
+    assert_nothing_is_lost(here, made)
+
+
+@pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
+def test_nobody_need_read_what_is_printed(command, here, made):
+    process = start(command, here)
+    process.stdout.close()
+    process.stdout = None
+    ended = end(process)
+    assert ended.code in (0, 1) and "Traceback" not in ended.err, ended.err
+    assert_nothing_is_lost(here, made)
+
+
+@pytest.mark.parametrize("suffix", [b".hdr", b".exr", b".pfm"])
+def test_file_names_need_not_be_utf_8(suffix, here, made):
+    """One time is wrong, so that the names stand in a doubt, in the map's header and in the report."""
+    names = [b"photos/caf\xe9-%c.png" % letter for letter in b"abc"]
+    for name, letter, seconds in zip(names, "abc", (0.01, 0.08, 0.16), strict=True):
+        tags = Image.Exif()
+        tags[274] = 1  # upright
+        tags.get_ifd(0x8769)[33434] = seconds
+        with (
+            Image.open(here / f"photos/{letter}.png") as image,
+            open(os.fsencode(here) + b"/" + name, "wb") as file,
+        ):
+            image.save(file, "PNG", exif=tags)
+    out = b"out/\xe9" + suffix
+    ended = end(start([b"assemble", *names, b"-o", out, b"--report", b"out/report"], here))
+    assert ended.code == 0 and out[4:] in os.listdir(os.fsencode(here / "out")), ended.err
+    assert "warning: " in ended.err
+    again = end(start([b"tonemap", out, b"-o", b"out/\xe9.png"], here))
+    # OpenEXR's module knows names of text alone, and the file is there under another one
+    assert again.code == 0 if suffix != b".exr" else again.clear, again.err
+    assert_nothing_is_lost(here, made)
