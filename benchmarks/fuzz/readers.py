@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from PIL.Image import DecompressionBombError
 
 from benchmarks.fuzz import course_seeds, seeds
 from benchmarks.measure import ROOT
@@ -28,7 +29,8 @@ LARGEST = 40_000
 # LibRaw names the file; to turn stderr off meanwhile, in all threads, would stop the progress bar
 LIBRAW = r"(\S+\.dng: (Unexpected end of file|data corrupted at \d+)\n)*"
 # of Pillow, whose own words stand
-REFUSED = (ValueError, OSError, SyntaxError)
+REFUSED = (ValueError, OSError, SyntaxError, DecompressionBombError)
+LARGE = r"(.*: DecompressionBombWarning: .*\n.*\n)*"
 
 
 class Missing(Exception):
@@ -166,7 +168,15 @@ ALL: Sequence[Reader] = (
     Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng", printed=LIBRAW),
     Reader("gif", ".gif", seeds.films, lambda path: [*_frames(path)], damaged="gif"),
     Reader("film", ".mp4", seeds.films, lambda path: [*_frames(path)], needs="av"),
-    Reader("webp", ".webp", seeds.pages, lambda path: web.decode_picture(path.read_bytes()), False, REFUSED),
+    Reader(
+        "webp",
+        ".webp",
+        seeds.pages,
+        lambda path: web.decode_picture(path.read_bytes()),
+        False,
+        REFUSED,
+        printed=LARGE,
+    ),
     Reader("exif", ".exif", seeds.settings, read_exif, named=False),
     Reader("times", ".txt", seeds.times, times.read_times),
     Reader("curve-csv", ".csv", seeds.curves, response_files.read_curve),

@@ -69,7 +69,7 @@ def _alike(names: Sequence[str], values: Sequence[float | None], what: str) -> l
     known = [value for value in values if value is not None]
     if known and len(known) < len(values):
         missing = names[values.index(None)]
-        raise ValueError(f"{missing}: expected the {what}, which other photographs state; {HINT}")
+        raise ValueError(f"{missing[:200]}: expected the {what}, which other photographs state; {HINT}")
     return known or [1.0] * len(values)
 
 

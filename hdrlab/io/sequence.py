@@ -65,8 +65,6 @@ def read(path: str | Path) -> Iterator[Array]:
         raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(SUFFIXES))})")
     if not path.is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
-    if path.suffix.lower() in FILMS:
-        require_films(path)
     frames = require_alike(decode_frames(path), path)
     first = next(frames)  # an unreadable file is found before anything is done with it
     return chain([first], frames)
@@ -88,8 +86,7 @@ def require_films(path: Path) -> None:
 def decode_frames(path: Path) -> Iterator[Array]:
     """Yield the frames of a film or an animation, (H, W, 3) uint8."""
     film = path.suffix.lower() in FILMS
-    if not film:
-        check_frames(path)
+    (require_films if film else check_frames)(path)
     try:
         with iio.imopen(path, "r", plugin="pyav" if film else "pillow") as file:
             source: Any = file  # what its plug-in takes beyond the common type
@@ -105,9 +102,11 @@ def decode_frames(path: Path) -> Iterator[Array]:
 
 
 def check_frames(path: Path) -> None:
-    """Raise a ValueError where a frame of a GIF claims more pixels than it could hold [GIF89a sec. 20]."""
+    """Raise a ValueError where a GIF or a frame of it claims more pixels than it could hold [GIF89a]."""
     data = path.read_bytes().ljust(14, b"\0")
-    at = 13 + _colour_table(data[10])
+    width, height, flags = struct.unpack_from("<2HB", data, 6)
+    check_size(path, height, width, height * width // BEST_GIF_RATIO, available=len(data))
+    at = 13 + _colour_table(flags)
     while at + 10 < len(data) and data[at] != 0x3B:  # ;
         if data[at] == 0x2C:  # , begins a frame
             left, top, width, height, flags = struct.unpack_from("<4HB", data, at + 1)

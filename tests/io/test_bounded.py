@@ -74,10 +74,10 @@ def test_files_read_at_once_leave_the_streams_as_they_were(tmp_path):
     assert sys.stdout is stream and threading.active_count() == before
 
 
-def gif(*frames):
-    """Return a GIF of a canvas of 8 x 8 with frames (width, height) and no colours behind them."""
+def gif(*frames, canvas=(8, 8)):
+    """Return a GIF of a canvas with frames (width, height) and no colours behind them."""
     blocks = b"".join(b"," + struct.pack("<4HB", 0, 0, *size, 0) + b"\2\2\x4c\1\0" for size in frames)
-    return b"GIF89a" + struct.pack("<2H3B", 8, 8, 0x80, 0, 0) + bytes(6) + blocks + b";"
+    return b"GIF89a" + struct.pack("<2H3B", *canvas, 0x80, 0, 0) + bytes(6) + blocks + b";"
 
 
 @pytest.mark.parametrize("frames", [[(12041, 12079)], [(8, 8), (2048, 35328)]])
@@ -88,6 +88,13 @@ def test_an_animation_takes_no_more_memory_than_its_bytes_may_stand_for(tmp_path
         list(sequence.read(tmp_path / "film.gif"))
     assert tracemalloc.get_traced_memory()[1] < 20e6
     tracemalloc.stop()
+
+
+def test_the_canvas_of_an_animation_is_bounded_too(tmp_path, recwarn):
+    (tmp_path / "film.gif").write_bytes(gif((8, 8), canvas=(11917, 12203)))
+    with pytest.raises(ValueError, match=r"film\.gif: its header claims 11917 x 12203"):
+        list(sequence.read(tmp_path / "film.gif"))
+    assert not recwarn.list
 
 
 def test_an_animation_in_pieces_is_read_as_before(tmp_path):
