@@ -28,8 +28,9 @@ LARGEST = 40_000
 
 # LibRaw names the file; to turn stderr off meanwhile, in all threads, would stop the progress bar
 LIBRAW = r"(\S+\.dng: (Unexpected end of file|data corrupted at \d+)\n)*"
-# of Pillow, whose own words stand
+# of Pillow and NumPy, whose own words stand
 REFUSED = (ValueError, OSError, SyntaxError, DecompressionBombError)
+OLD = r"(.*UserWarning: Reading `.npy` or `.npz` file required additional header parsing.*\n.*\n)*"
 LARGE = r"(.*: DecompressionBombWarning: .*\n.*\n)*"
 
 
@@ -180,9 +181,9 @@ ALL: Sequence[Reader] = (
     Reader("exif", ".exif", seeds.settings, read_exif, named=False),
     Reader("times", ".txt", seeds.times, times.read_times),
     Reader("curve-csv", ".csv", seeds.curves, response_files.read_curve),
-    Reader("curve-npz", ".npz", seeds.curves, response_files.read_curve),
+    Reader("curve-npz", ".npz", seeds.curves, response_files.read_curve, printed=OLD),
     Reader("curve-pfs", ".m", seeds.curves, response_files.read_curve),
-    Reader("emor", ".npz", seeds.emor, emor.read_curves),
+    Reader("emor", ".npz", seeds.emor, emor.read_curves, printed=OLD),
     Reader("plan", ".toml", course_seeds.plan, plan.read, damaged="plan"),
     Reader("roster", ".csv", course_seeds.roster, roster.read),
     Reader("received", ".csv", course_seeds.received, handins.read_times),

@@ -43,6 +43,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
     handouts = [] if notebooks else sorted(materials.folder("assignments").glob("*.ipynb"))
     if len({one.stem for one in chosen} | {pages.FRONT.stem}) <= len(chosen):
         raise ValueError(f"expected notebooks of different names, and none called {pages.FRONT.name}")
+    os.getcwd()  # Jupyter needs one: where it is gone, nothing is begun
     cache = pages.claim(out)
     running = execute.run_steps([pages.FRONT, *chosen], cache, jobs=jobs)
     try:
