@@ -103,7 +103,7 @@ def decode_frames(path: Path) -> Iterator[Array]:
 
 def check_frames(path: Path) -> None:
     """Raise a ValueError where a GIF or a frame of it claims more pixels than it could hold [GIF89a]."""
-    data = path.read_bytes().ljust(14, b"\0")
+    data = path.read_bytes().ljust(14, b"\0") + bytes(2)  # a frame's sizes count without its last byte, too
     width, height, flags = struct.unpack_from("<2HB", data, 6)
     check_size(path, height, width, height * width // BEST_GIF_RATIO, available=len(data))
     at = 13 + _colour_table(flags)

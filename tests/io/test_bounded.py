@@ -97,6 +97,13 @@ def test_the_canvas_of_an_animation_is_bounded_too(tmp_path, recwarn):
     assert not recwarn.list
 
 
+def test_a_frame_that_is_cut_short_behind_its_sizes_is_bounded_too(tmp_path, recwarn):
+    (tmp_path / "film.gif").write_bytes(gif((12041, 12079))[:28])
+    with pytest.raises(ValueError, match=r"film\.gif: its header claims 12041 x 12079"):
+        list(sequence.read(tmp_path / "film.gif"))
+    assert not recwarn.list
+
+
 def test_an_animation_in_pieces_is_read_as_before(tmp_path):
     pictures = [Image.fromarray(np.full((20, 30, 3), 60 * k, np.uint8)) for k in range(3)]
     pictures[0].save(tmp_path / "film.gif", save_all=True, append_images=pictures[1:])
