@@ -29,7 +29,7 @@ from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
 TESTS = ROOT / "tests"
-SHARES = {"right": 62, "equivalent": 30, "mistake": 96, "half": 15, "blank": 12, "attack": 42, "trap": 43}
+SHARES = {"right": 60, "equivalent": 30, "mistake": 96, "half": 15, "blank": 12, "attack": 42, "trap": 45}
 HOSTILE = ("attack", "trap")
 HOURS = (-30.0, -2.0, 5.0, 70.0, 276.0)  # after the end
 PORT = 9  # where nobody answers
