@@ -22,13 +22,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.colour import decode_srgb, encode_srgb
 from hdrlab.core.types import F64, Mask
 
 LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
 CHROMA = np.array([[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]])  # Cb, Cr of RGB [BT.601]
-LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
-BLOOD = np.array([0.0, 0.12, 0.08])  # how much more of it takes from R, G, B, in ln
 UPPER, LOWER = (-1.3767, 1.0743, 0.1452), (-0.776, 0.5601, 0.1766)  # parabolas in r [Soriano03]
 # squared radius of the white that is left out of the locus
 WHITE = 0.0004
@@ -43,7 +40,7 @@ class Skin(NamedTuple):
     S: F64
 
 
-# Of the computed training set, at the brightness of a visibility image: fit(synthetic()), as a test repeats.
+# Of the computed training set, at the brightness of a visibility image; a test computes it again.
 DEFAULT = Skin(np.array([-17.12975, 23.91754]), np.array([[20.25376, -25.10826], [-25.10826, 49.34927]]))
 
 
@@ -72,17 +69,6 @@ def fit(Z: ArrayLike) -> Skin:
     if not np.linalg.det(S) > 1e-9:
         raise ValueError(f"expected training pixels of different colours, got a covariance of {S.tolist()}")
     return Skin(x.mean(axis=0), S)
-
-
-def synthetic(count: int = 4000, *, rng: int | np.random.Generator = 0) -> F64:
-    """Return the levels (count, 3) of computed skin, light and dark in equal parts, in light and in shade."""
-    rng = np.random.default_rng(rng)
-    light, dark = (np.log(decode_srgb(np.array(levels) / 255)) for levels in (LIGHT, DARK))
-    melanin = rng.uniform(-0.25, 1.5, (count, 1))
-    ln = light + melanin * (dark - light) - rng.normal(0, 1, (count, 1)) * BLOOD
-    lamp = rng.normal(0, 0.1, (count, 1)) * np.array([1, 0, -1]) + rng.normal(0, 0.03, (count, 3))
-    ln = ln + lamp + rng.uniform(np.log(0.25), np.log(1.1), (count, 1))
-    return 255 * encode_srgb(np.minimum(np.exp(ln), 1))
 
 
 def distance(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:

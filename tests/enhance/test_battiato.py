@@ -13,12 +13,25 @@ from hdrlab.enhance import battiato, relight, skin
 from hdrlab.scenes.computed import subjects
 
 LEVELS = np.arange(256)
+LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
+BLOOD = np.array([0.0, 0.12, 0.08])  # how much more of it takes from R, G, B, in ln
 
 
 def photographed(EV, make=subjects.backlight):
     """Return a photograph of a subject at f/8, and the mask of the subject."""
     scene = make()
     return to_8bit(np.minimum(scene.E / exposure.saturating_luminance(64 / 2**EV), 1)), scene.mask
+
+
+def synthetic(count=4000, *, rng=0):
+    """Return the levels (count, 3) of computed skin, light and dark in equal parts, in light and in shade."""
+    rng = np.random.default_rng(rng)
+    light, dark = (np.log(decode_srgb(np.array(levels) / 255)) for levels in (LIGHT, DARK))
+    melanin = rng.uniform(-0.25, 1.5, (count, 1))
+    ln = light + melanin * (dark - light) - rng.normal(0, 1, (count, 1)) * BLOOD
+    lamp = rng.normal(0, 0.1, (count, 1)) * np.array([1, 0, -1]) + rng.normal(0, 0.03, (count, 3))
+    ln = ln + lamp + rng.uniform(np.log(0.25), np.log(1.1), (count, 1))
+    return 255 * encode_srgb(np.minimum(np.exp(ln), 1))
 
 
 def test_no_light_is_the_identity():
@@ -191,7 +204,7 @@ def portrait(dark):
     face = ((y - 122) / 42) ** 2 + ((x - 223) / 30) ** 2 < 1
     light = decode_srgb(Z / 255)
     if dark:
-        light[wide] *= decode_srgb(np.array(skin.DARK) / 255) / decode_srgb(np.array(skin.LIGHT) / 255)
+        light[wide] *= decode_srgb(np.array(DARK) / 255) / decode_srgb(np.array(LIGHT) / 255)
     Z = np.round(255 * encode_srgb(light)).astype(np.uint8)
     elsewhere = ~wide & (y < 140)
     return Z, face, elsewhere
@@ -215,7 +228,7 @@ def test_skin_is_found_in_light_and_dark_faces_alike(way, dark):
 
 def test_light_and_dark_skin_lie_at_the_same_distance():
     """Both skins of the ColorChecker are nearer than 1.5, and darker shades of them too."""
-    for tone in (skin.LIGHT, skin.DARK):
+    for tone in (LIGHT, DARK):
         for shade in (1.0, 0.5, 0.25):
             Z = 255 * encode_srgb(shade * decode_srgb(np.array(tone) / 255))
             assert skin.distance(Z) < 1.5
@@ -237,21 +250,21 @@ def test_a_training_set_of_ones_own_moves_the_skin():
     green = np.array([60, 160, 60]) + rng.normal(0, 4, (500, 3))
     martian = skin.fit(green)
     assert skin.find_by_chrominance(green, martian).mean() > 0.9
-    assert not skin.find_by_chrominance(np.array(skin.LIGHT), martian)
+    assert not skin.find_by_chrominance(np.array(LIGHT), martian)
 
 
 def test_the_default_skin_is_that_of_the_computed_training_set():
-    fitted = skin.fit(skin.synthetic())
+    fitted = skin.fit(synthetic())
     assert np.allclose(skin.DEFAULT.mu, fitted.mu, atol=1e-4)
     assert np.allclose(skin.DEFAULT.S, fitted.S, atol=1e-4)
 
 
 def test_the_density_is_the_gaussian_of_the_distance_and_integrates_to_one():
     mu, S = skin.DEFAULT
-    assert skin.likelihood(skin.synthetic(100)) == pytest.approx(
-        np.exp(-(skin.distance(skin.synthetic(100)) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
+    assert skin.likelihood(synthetic(100)) == pytest.approx(
+        np.exp(-(skin.distance(synthetic(100)) ** 2) / 2) / (2 * np.pi * np.sqrt(np.linalg.det(S)))
     )
-    inside = skin.find_by_chrominance(skin.synthetic(4000, rng=9))
+    inside = skin.find_by_chrominance(synthetic(4000, rng=9))
     assert 0.9 < inside.mean() < 0.99
 
 
