@@ -27,6 +27,8 @@ def wheel(tmp_path_factory):
 IN = (
     "hdrlab/py.typed",
     "hdrlab/scenes/chapel.exr",
+    "hdrlab/scenes/tripod/LICENSE",
+    "hdrlab/scenes/tripod/img-1.jpeg",
     "hdrlab/course/plan.toml",
     "hdrlab/course/checks/specification/test_gsolve.py",
     "hdrlab/course/checks/mistakes/gsolve_lambda_inverted.py",

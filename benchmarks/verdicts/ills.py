@@ -11,6 +11,7 @@ from hdrlab.capture import movers
 from hdrlab.capture.hand_motion import views
 from hdrlab.core.arrays import Array
 from hdrlab.core.filters import warp
+from hdrlab.scenes.places import Layers
 
 Draw = np.random.Generator
 
@@ -90,7 +91,7 @@ def walk(plan: Plan, j: int, rng: Draw, E: Array) -> Array:
 
 
 @cache
-def _layers(name: str) -> scenes.Layers:
+def _layers(name: str) -> Layers:
     return scenes.layers(name, SHAPE)
 
 

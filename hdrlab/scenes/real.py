@@ -1,0 +1,42 @@
+"""Photographs of a real place: a small tripod before a window, taken from the hand with a telephone.
+
+They are Fran Murcia's, under the MIT licence; `tripod/README.md` describes them and their times.
+"""
+
+import numpy as np
+
+from hdrlab.core.bracket import Bracket
+from hdrlab.io.photos import read_bracket
+from hdrlab.scenes.places import FOLDER, Shape, resample
+
+
+def photographs(shape: Shape | None = None) -> Bracket:
+    """Return a real bracket: six photographs of a small tripod before a window, taken from the hand.
+
+    The times are relative, the shortest is 1: they were estimated from the pixels, for the stated ones are
+    wrong. So is the contrast of a map made with them: as true as the response of a usual camera.
+
+    Parameters
+    ----------
+    shape : (H, W), pixels, at most 2000 x 1500, which is the default; a smaller one holds means of levels
+        over areas, see `hdrlab.scenes.layers`
+
+    Returns
+    -------
+    Bracket of (6, H, W, 3) uint8
+
+    Raises
+    ------
+    ValueError
+        For a shape that is not two numbers from 1 to the size of the photographs.
+
+    Examples
+    --------
+    >>> photographs((100, 75)).images.shape
+    (6, 100, 75, 3)
+    """
+    taken = read_bracket(FOLDER / "tripod", FOLDER / "tripod/times.csv")
+    if shape is None:
+        return taken
+    levels = [np.rint(resample(image, shape)).astype(np.uint8) for image in taken.images]
+    return taken._replace(images=np.stack(levels))
