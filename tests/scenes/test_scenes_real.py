@@ -4,11 +4,24 @@ import numpy as np
 import pytest
 
 from hdrlab import pipeline, scenes
+from hdrlab.align import mtb
+from hdrlab.align.shift import shift
+from hdrlab.core import sampling, weights
+from hdrlab.core.colour import luminance
+from hdrlab.fast.debevec import gsolve
 from hdrlab.io.photos import photographs
 from hdrlab.scenes import places
 
 FOLDER = places.FOLDER / "tripod"
 SHAPE = (320, 240)
+# at 500 x 375: the rubber of a foot, the device's front, the floor, a post before the windows, a window
+PLACES = (
+    np.s_[340:350, 283:293],
+    np.s_[118:150, 110:200],
+    np.s_[440:490, 200:340],
+    np.s_[40:90, 115:125],
+    np.s_[20:60, 225:250],
+)
 
 
 @pytest.fixture(scope="module")
@@ -53,3 +66,53 @@ def test_the_pipeline_finds_nothing_to_doubt_in_them(taken):
 def test_their_times_are_those_that_the_pixels_give_to_a_fifth_of_a_stop(taken):
     found = pipeline.assemble(taken._replace(times=np.ones(6)))
     assert np.allclose(np.diff(np.log2(found.bracket.times)), np.diff(np.log2(taken.times)), atol=0.2)
+
+
+# What the notebooks say of them
+
+
+@pytest.fixture(scope="module")
+def shown():
+    return scenes.photographs((500, 375))
+
+
+@pytest.fixture(scope="module")
+def assembled(shown):
+    return pipeline.assemble(shown)
+
+
+def test_the_hand_moved_by_up_to_eight_pixels_to_the_side_and_one_up_or_down(shown):
+    assert np.abs(mtb.align(shown.images)).max(axis=0).tolist() == [1, 8]
+
+
+def test_the_map_spans_six_stops_and_the_feet_are_darker_than_the_front_and_the_floor(assembled):
+    assert 5.5 < scenes.decades(assembled.E) / np.log10(2) < 6.5 and 0.015 < assembled.spread < 0.025
+    L = np.log2(luminance(assembled.E))
+    foot, front, floor, post, window = (np.median(L[at]) for at in PLACES)
+    assert 0.8 < min(front, floor) - foot < 1.5
+    assert post - front > 1.5 and window - post > 2  # a black post, in the haze of the window
+
+
+def test_one_small_region_at_the_left_edge_moved(shown):
+    found = pipeline.assemble(shown, ghosts="regions")
+    assert found.moving.max() == 1 and np.mean(found.moving > 0) < 0.005
+    assert np.nonzero(found.moving)[1].max() < 20
+
+
+def test_they_turned_by_a_fifth_of_a_degree_and_shifts_do_as_well(shown, assembled):
+    turned = pipeline.assemble(shown, align="cerman")
+    degrees = np.rad2deg(np.arctan2(turned.homographies[:, 1, 0], turned.homographies[:, 0, 0]))
+    assert 0.15 < np.abs(degrees).max() < 0.25
+    assert abs(turned.spread - assembled.spread) < 0.003
+    assert not assembled.homographies[:, 1, 0].any()
+
+
+def test_the_stated_times_put_the_points_ten_times_further_from_the_curve(shown):
+    images = shift(shown.images, mtb.align(shown.images))[..., 1]
+    Z, w = sampling.by_grid(images, 60), weights.hat()
+    off = []
+    for times in (1 / np.array([1000, 120, 60, 15, 8, 4]), shown.times):
+        g, lE = gsolve(Z, np.log(times), 30, w)
+        residuals = w[Z] * (g[Z] - lE[:, None] - np.log(times))
+        off.append(np.sqrt(np.sum(residuals**2) / np.sum(w[Z] ** 2)))
+    assert off[0] > 10 * off[1]
