@@ -13,15 +13,19 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import nbformat
+import numpy as np
 import pytest
 
+from hdrlab import pipeline, scenes
 from hdrlab.course.site import cases, live, reference
 from hdrlab.course.site import pages as build
+from hdrlab.io.photos import read_bracket, write_picture
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 pytestmark = pytest.mark.skipif(
     any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
 )
+REFUSED = ("without times", "one photograph", "times the other way round", "two sizes")
 PATIENCE = 300  # seconds: a limit for errors, not for speed
 
 PLAYED = """import numpy as np
@@ -304,23 +308,29 @@ def test_every_case_that_a_guide_names_is_pictured_with_alt_text():
     assert set(re.findall(r"<!-- case: (\w+) -->", text)) == set(cases.CASES)
 
 
+def quotes_of_the_page_on_warnings():
+    page = (Path(cases.__file__).parent / "pages" / "verdicts.md").read_text("utf-8")
+    quotes = re.findall(r"(?:^> .*\n)+", page, flags=re.MULTILINE)
+    return [" ".join(quote.replace("> ", "").split()) for quote in quotes]
+
+
 def test_the_page_on_warnings_quotes_them_as_they_are_printed():
     package = Path(cases.__file__).parents[2]
     printed = ""
     for file in (
-        file for room in ("diagnostics", "pipeline", "radiance") for file in (package / room).rglob("*.py")
+        file
+        for room in ("diagnostics", "pipeline", "radiance", "io")
+        for file in (package / room).rglob("*.py")
     ):
         nodes = list(ast.walk(ast.parse(file.read_text("utf-8"))))
         strings = [one.values for one in nodes if isinstance(one, ast.JoinedStr)]
         strings += [[one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
         for parts in strings:
             printed += "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts) + "\n"
-    page = (package / "course" / "site" / "pages" / "verdicts.md").read_text("utf-8")
-    quotes = re.findall(r"(?:^> .*\n)+", page, flags=re.MULTILINE)
-    assert len(quotes) >= 7
+    quotes = quotes_of_the_page_on_warnings()[: -len(REFUSED)]
+    assert len(quotes) >= 12
     for quote in quotes:
-        said = " ".join(quote.replace("> ", "").split()).removeprefix("note: ")
-        for part in re.split(r"frame\d\.jpg|[+-]?\d+(?:\.\d+)?", said):
+        for part in re.split(r"frame\d\.jpg|[+-]?\d+(?:\.\d+)?", quote.removeprefix("note: ")):
             assert part.strip(" ,:;") in printed, quote
 
 
@@ -348,3 +358,33 @@ def test_the_page_on_warnings_quotes_this_one(opening):
     page = Path(cases.__file__).parent / "pages" / "verdicts.md"
     quotes = [line for line in page.read_text("utf-8").splitlines() if line.startswith("> ")]
     assert any(opening in line for line in quotes)
+
+
+def refusal(read, *arguments):
+    with pytest.raises(ValueError) as refused:
+        read(*arguments)
+    return str(refused.value)
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_the_page_quotes_word_for_word_what_is_said_of_photographs(what, tmp_path):
+    taken, stated = scenes.photographs((160, 120)), [1 / 4, 1 / 8, 1 / 15, 1 / 60, 1 / 120, 1 / 1000]
+    for j, Z in enumerate(taken.images[::-1], 1):
+        halved = j == 2 and what == "two sizes"
+        write_picture(tmp_path / f"frame{j}.jpg", Z[::2, ::2] if halved else Z)
+    said = {
+        "without times": lambda: refusal(read_bracket, tmp_path),
+        "one photograph": lambda: refusal(read_bracket, tmp_path / "frame1.jpg"),
+        "times the other way round": lambda: refusal(pipeline.assemble, read_bracket(tmp_path, stated[::-1])),
+        "two sizes": lambda: refusal(read_bracket, tmp_path, stated),
+    }[what]()
+    assert said.replace(f"{tmp_path}/", "") in quotes_of_the_page_on_warnings()[-len(REFUSED) :]
+
+
+def test_the_page_quotes_what_is_said_of_the_stated_times_of_the_photographs_that_travel():
+    taken = scenes.photographs((320, 240))._replace(times=1 / np.array([1000, 120, 60, 15, 8, 4]))
+    said = pipeline.assemble(taken).doubts[0].partition(", but")[0]
+    (quote,) = (one for one in quotes_of_the_page_on_warnings() if one.startswith("the stated times"))
+    assert re.sub(r"[\d.]+", "", said) == re.sub(r"[\d.]+", "", quote)
+    off = [float(re.search(r"[\d.]+", one)[0]) for one in (said, quote)]
+    assert off[0] == pytest.approx(off[1], abs=0.02)  # that of all their pixels is 1.07
