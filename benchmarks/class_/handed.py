@@ -23,7 +23,7 @@ from typing import NamedTuple
 
 from benchmarks.measure import ROOT
 from hdrlab.course import plan
-from hdrlab.course.checks import MISTAKES
+from hdrlab.course.checks import misconceptions
 from hdrlab.course.classroom import imitation, toy
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
@@ -91,8 +91,7 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         ways = sorted((TESTS / "equivalent").glob("hw2_*.py"))
         return [(way.stem, ".py", way.read_bytes()) for way in islice(cycle(ways), count)]
     if kind == "mistake":
-        wrong = sorted(MISTAKES.rglob("*.py"))
-        names = [one.stem for one in wrong if imitation.mistake(one.stem).task in ids]
+        names = [one.name for one in misconceptions.known() if one.task in ids]
         return [(name, ".ipynb", _mistaken(name)) for name in islice(cycle(names), count)]
     if kind == "half":
         some = [homework._replace(tasks=homework.tasks[: 1 + k % (len(ids) - 1)]) for k in range(count)]

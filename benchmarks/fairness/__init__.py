@@ -3,7 +3,7 @@
 right/<task>/<way>.py  a right way that keeps to what the task's sheet says: another order of a scan, another
                        solver, gauge, fill, rounding, type or shape; none may lose a point
 wrong/<task>/<way>.py  a plausible answer without the method that is asked for; at most a third of the points
-mistakes               the named ones, `hdrlab/course/checks/mistakes`: each strictly between, and named
+mistakes               the named ones, of `hdrlab/course/checks/mistakes`: each strictly between, and named
 
 Every file is graded on SEEDS students' inputs in the practice tier, as `check` in a notebook does it. The
 k-th files of a homework's tasks are one submission. `SEEDS=3 python -m benchmarks fairness` is a shorter run.

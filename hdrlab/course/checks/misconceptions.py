@@ -1,17 +1,19 @@
-"""Which well-known mistake an answer comes from: it agrees with a wrong file, and not with the library.
+"""Which well-known mistake an answer comes from: it agrees with a wrong function, and not with the library.
 
-The folder `mistakes` holds a file for each mistake, whose name begins with the id of its task: a docstring
-that says to the student what is wrong, and the wrong function. All are asked what the student was asked.
-Wrong files are ours, and run here. Answers are compared in the gauge or scale that the checks leave free.
+A mistake's name begins with the id of its task. Many are one place of the solution written otherwise, in
+`mistakes/changes.toml`; where more is wrong, it is a file in `mistakes`: a docstring that says to the student
+what it is, and the wrong function. All are asked what the student was asked; wrong functions are ours, and run
+here. Answers are compared in the gauge or scale that the checks leave free.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
 """
 
 import runpy
+import tomllib
 import warnings
-from collections.abc import Callable, Sequence
-from functools import cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, partial
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -20,15 +22,17 @@ import numpy as np
 from hdrlab.course import plan
 from hdrlab.course.checks import MISTAKES
 from hdrlab.course.checks.compare import as_listed, plain
+from hdrlab.course.code import inline
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
 NEARER = 0.1  # the wrong answer explains all but this share of the student's difference to the library
 MOST = 1e3  # a difference beyond all measure, as of another shape
+CHANGES: dict[str, dict[str, Any]] = tomllib.loads((MISTAKES / "changes.toml").read_text("utf-8"))
 
 
 class Misconception(NamedTuple):
-    """A wrong file: its name, the task, the sentence for the student, and the wrong function.
+    """A mistake: its name, the task, the sentence for the student, and the wrong function.
 
     `once` is whether it costs half of the task at most: all but those that miss what the task is about.
     """
@@ -42,8 +46,12 @@ class Misconception(NamedTuple):
 
 @cache
 def known() -> tuple[Misconception, ...]:
-    """Return all wrong files there are."""
-    return tuple(_read(path) for path in sorted(MISTAKES.rglob("*.py")))
+    """Return all mistakes there are."""
+    changed = [
+        Misconception(name, task_of(name), one["says"], partial(_ask_changed, name), "misses" not in one)
+        for name, one in CHANGES.items()
+    ]
+    return tuple(sorted([*map(_read, MISTAKES.rglob("*.py")), *changed], key=lambda one: one.name))
 
 
 def _read(path: Path) -> Misconception:
@@ -53,7 +61,7 @@ def _read(path: Path) -> Misconception:
 
 
 def task_of(name: str) -> str:
-    """Return the id of the task that a wrong file is of: the longest that its name begins with.
+    """Return the id of the task that a mistake is of: the longest that its name begins with.
 
     Examples
     --------
@@ -62,6 +70,37 @@ def task_of(name: str) -> str:
     """
     ids = [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
     return max((id for id in ids if name.startswith(f"{id}_")), key=len)
+
+
+def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
+    """Return a homework's solutions, task by task, with one of CHANGES in its task's.
+
+    Raises
+    ------
+    ValueError
+        Where what is to be changed does not stand there once.
+    """
+    task = task_of(name)
+    text = cells[task]
+    for was, now in CHANGES[name]["changes"]:
+        if text.count(was) != 1:
+            raise ValueError(f"expected once in the solution of {task}, for {name}: {was}")
+        text = text.replace(was, now)
+    return {**cells, task: text}
+
+
+@cache
+def _changed(name: str) -> Callable[..., Any]:
+    task = task_of(name)
+    tasks = next(one.tasks for one in plan.read().homeworks.values() if task in [own.id for own in one.tasks])
+    blocks = inline.inlined({own.id: own.function for own in tasks})
+    scope: dict[str, Any] = {"__name__": name}
+    exec("\n\n\n".join(put_in({id: block.text for id, block in blocks.items()}, name).values()), scope)
+    return scope[task]
+
+
+def _ask_changed(name: str, *given: Any, **named: Any) -> Any:
+    return _changed(name)(*given, **named)
 
 
 def closest(task: str, calls: Sequence[Call]) -> Misconception | None:

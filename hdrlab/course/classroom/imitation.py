@@ -1,7 +1,8 @@
 """What students hand in, imitated: the handout filled in, rightly or with a well-known mistake.
 
-What is right is the library's own function. A mistake is a file of `checks/mistakes`; where it calls the
-library, which no submission can import, a copy of that function stands beside it, under a name of its own.
+What is right is the library's own function. A mistake changes it, or is a file of `checks/mistakes`; where
+that calls the library, which no submission can import, a copy of the function stands beside it, under a name
+of its own.
 """
 
 import ast
@@ -11,7 +12,7 @@ from collections.abc import Iterable, Mapping
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks import MISTAKES
-from hdrlab.course.checks.misconceptions import task_of
+from hdrlab.course.checks.misconceptions import CHANGES, put_in, task_of
 from hdrlab.course.code import inline, names, source
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework
@@ -33,7 +34,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     Parameters
     ----------
     homework : whose tasks
-    mistakes : files of `checks/mistakes` without .py, at most one for each task; the other tasks are right
+    mistakes : names of mistakes, at most one for each task; the other tasks are right
 
     Examples
     --------
@@ -42,7 +43,8 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "gsolve_of_debevec(Z, B, 1 / smoothness, w)" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (True, False)
     """
-    wrong = {one.task: one for one in map(mistake, mistakes)}
+    mistakes = list(mistakes)
+    wrong = {one.task: one for one in (mistake(name) for name in mistakes if name not in CHANGES)}
     called = {task.function: task.id for task in homework.tasks if task.id not in wrong}
     owners = dict(called)  # which cell a function stands in
     for one in wrong.values():
@@ -55,7 +57,10 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
         cells[owners[function]].append(blocks[name].text)
     for one in wrong.values():
         cells[one.task].append(_calling(one, called))
-    return {task: "\n\n\n".join(parts) for task, parts in cells.items()}
+    filled = {task: "\n\n\n".join(parts) for task, parts in cells.items()}
+    for name in (name for name in mistakes if name in CHANGES):
+        filled = put_in(filled, name)
+    return filled
 
 
 def mistake(name: str) -> Mistake:
