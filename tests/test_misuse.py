@@ -151,6 +151,24 @@ MISTAKES = {
         ("L", "E", "F"), {**ANY, **NO_LIGHT, "four channels": lambda a: np.stack([a] * 4, axis=-1)}
     ),
     "picture": {**ANY, "shares": lambda a: a / 255, "16 bits": lambda a: a.astype(np.uint16)},
+    "truth": {**ANY, **NO_LIGHT, "another size": lambda a: a[:-1]},
+    "Ld": {**ANY, **NOT_FINITE, "another size": lambda a: a[:-1]},
+    "well": {**ANY, "another size": lambda a: a[:-1]},
+    "w": {**ANY, **NOT_FINITE, "negative": lambda a: -a, "0": lambda a: 0 * a},
+    "e": {**ANY, **NOT_FINITE, "negative": lambda a: -a, "0": lambda a: 0 * a},
+    "offsets": {
+        **ANY,
+        "NaN": lambda a: some(a, np.nan),
+        "one too few": lambda a: a[1:],
+        "a half": lambda a: a + 0.5,
+    },
+    "homographies": {**ANY, **NOT_FINITE, "one too few": lambda a: a[1:], "singular": lambda a: 0 * a},
+    "centre": {
+        "None": lambda a: None,
+        "a number": lambda a: 3,
+        "three": lambda a: (*a, 1),
+        "NaN": lambda a: (np.nan, 1),
+    },
 }
 # what answers instead: `sanitize` mends light; in float64 1e300 is light; a camera takes any number of times
 ANSWERED = {
@@ -158,16 +176,27 @@ ANSWERED = {
     ("tonemap.reinhard.tonemap", "L"): {"beyond float32"},
     ("capture.camera.shoot", "times"): {"one too few"},
 }
-# lessons of 60 lines check less; what the commands run is `fast`, or comes through `core.bracket`
-SHORT = ("align.", "response.mitsunaga.", "radiance.merge.merge", "capture.ranges.", "fast.merge.merge")
-GATED = [
-    (verb, name)
-    for verb, (_, needed) in VERBS.items()
-    for name in needed
-    if name in MISTAKES
-    and (verb, name) != ("response.robertson.recover", "times")  # read in 60 lines, too
-    and (not verb.startswith(SHORT) or verb.endswith(("resample.photographs", "with_quality")))
-]
+# a lesson takes for numbers what NumPy does: the real part, and what a mask hides; the commands run `fast`,
+# or come through `core.bracket`, which do not
+LESSONS = ("align.cerman.align", "align.homography.align", "align.mtb.align", "radiance.merge.merge")
+LESSONS += ("response.mitsunaga.recover", "response.robertson.recover")
+ANSWERED |= {
+    (lesson, name): {"masked", "masked frames"} | ({"complex"} if name != "images" else set())
+    for lesson in LESSONS
+    for name in ("images", "times", "g")
+    if (lesson, name) != ("response.robertson.recover", "images")
+}
+# photographs of four pixels a row, and of no pixels: nothing moves
+ANSWERED["align.mtb.align", "images"] |= {"one photograph of Pillow in CMYK", "no columns"}
+# any arrays can be moved, and light be of any shape
+ANSWERED["align.shift.shift", "images"] = {*MISTAKES["images"]} - {"None", "a word", "nothing", "ragged"}
+ANSWERED["capture.ranges.expose_levels", "L"] = {"complex", "masked", "nothing", "one axis more"}
+ANSWERED["capture.ranges.expose_levels", "L"] |= {"beyond float32", "four channels"}
+ANSWERED["diagnostics.motion.measure_motion", "w"] = {"None"}
+ANSWERED |= {(f"beyond.{one}.shoot", "e"): {"complex", "masked"} for one in ("assorted", "splitter")}
+ANSWERED["core.metrics.radiance_errors", "well"] = {"masked"}
+ANSWERED["align.shift.shift", "offsets"] = ANSWERED["align.resample.photographs", "homographies"] = {"masked"}
+GATED = [(verb, name) for verb, (_, needed) in VERBS.items() for name in needed if name in MISTAKES]
 
 
 SLOW = ("beyond.patches.synthesise", "response.debevec.recover", "response.marginal.recover")

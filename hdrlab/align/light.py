@@ -48,15 +48,16 @@ NONE = 4.0
 
 def neighbours(images: ArrayLike, times: ArrayLike, g: ArrayLike) -> Iterator[list[F32]]:
     """Yield the pyramid of X of pair after pair, from the shortest exposure to the longest."""
-    images, times, f_inv = np.asarray(images), np.asarray(times, float), np.exp(g)
-    if images.ndim < 3 or images.dtype.kind != "u" or times.shape != images.shape[:1]:
-        raise ValueError(
-            f"expected photographs (P, H, W[, 3]) and P times, got {images.shape}, {times.shape}"
-        )
-    Z = images if images.ndim == 3 else images[..., 1]
-    f_inv = f_inv if f_inv.ndim == 1 else f_inv[:, 1]
-    for moving, fixed in pairwise(np.argsort(times, kind="stable")):
-        yield pair(Z[fixed], Z[moving], f_inv, times[fixed] / times[moving] * f_inv)
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    wrong = images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,))
+    if wrong or not images.size or t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
+        raise ValueError(f"expected photographs (P, H, W[, 3]), positive times (P,), got {images.shape}, {t}")
+    Z, n = images if images.ndim == 3 else images[..., 1], np.iinfo(images.dtype).max + 1
+    if g.shape not in ((n,), (n, 3)) or not np.all(np.abs(g) < 80) or not np.all(g[-1] > g[0]):
+        raise ValueError(f"expected g ({n},) or ({n}, 3) that rises, -80 to 80, got {g.shape}")
+    f_inv = np.exp(g if g.ndim == 1 else g[:, 1])
+    for moving, fixed in pairwise(np.argsort(t, kind="stable")):
+        yield pair(Z[fixed], Z[moving], f_inv, t[fixed] / t[moving] * f_inv)
 
 
 def pair(fixed: Array, moving: Array, bright: F64, dark: F64) -> list[F32]:

@@ -65,6 +65,8 @@ def shift(images: ArrayLike, offsets: ArrayLike) -> Array:
     [[[4, 5, 6], [8, 9, 10]], [[13, 14, 15], [17, 18, 19]]]
     """
     images = np.asarray(images)
+    if images.ndim < 3:
+        raise ValueError(f"expected images (P, H, W[, 3]), got {images.dtype} {images.shape}")
     moved = as_offsets(offsets, len(images))
     if not moved.any():
         return images

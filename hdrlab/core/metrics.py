@@ -81,7 +81,7 @@ def well_exposed(images: ArrayLike, valid: NDArray[np.bool_] | None = None) -> N
     return np.any(inside if valid is None else inside & valid, axis=0)
 
 
-def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> F64:
+def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     """Return s E / E_true - 1 in every pixel and channel, (H, W[, 3]); NaN where the truth is without light.
 
     The factor s is one for all, and makes the median of s E / E_true over the pixels of `well` 1.
@@ -98,8 +98,11 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: NDArray[np.bool_]) -> 
     array([[0. , 0. , 0.1]])
     """
     E, truth = as_radiance(E).astype(np.float64), as_radiance(truth)
-    if not (E.shape == truth.shape and E.shape[:2] == well.shape):
-        raise ValueError(f"expected maps of one shape, got {E.shape}, truth {truth.shape} and {well.shape}")
+    well = np.asarray(well)
+    if not (E.shape == truth.shape and E.shape[:2] == well.shape and well.dtype == bool):
+        raise ValueError(
+            f"expected maps of one shape, got {E.shape}, truth {truth.shape} and {describe(well)}"
+        )
     ratio = E / np.where(truth > 0, truth, np.nan)
     median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
     if not median > 0:

@@ -117,13 +117,15 @@ def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None
     >>> bool(np.allclose(E, [[40 / 128, 90 / 128]]))
     True
     """
-    images, t = np.asarray(images), np.asarray(times, np.float64)
-    if images.dtype.kind != "u" or t.shape != images.shape[:1] or not np.all(t > 0):
-        raise ValueError(
-            f"expected photographs of {len(t)} positive times, got {images.shape} {images.dtype}"
-        )
+    images, t, g = np.asarray(images), np.asarray(times, np.float64), np.asarray(g, np.float64)
+    if images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,)) or not images.size:
+        raise ValueError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
+    if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
+        raise ValueError(f"expected {len(images)} positive times in seconds, got {t}")
     n, Z, B = np.iinfo(images.dtype).max + 1, images.reshape(*images.shape[:3], -1), np.log(t)
     c, top = np.arange(Z.shape[-1]), int(TOP * (n - 1)) + 1
+    if g.shape not in ((n,), (n, 1), (n, c.size)) or not np.all(np.abs(g) < 80) or not np.all(g[-1] > g[0]):
+        raise ValueError(f"expected g ({n},) or ({n}, {len(c)}) that rises, -80 to 80, got {g.shape}")
     g = np.broadcast_to(np.reshape(g, (n, -1)), (n, len(c)))
     W = weigh(Z, hat(n) if w is None else np.asarray(w), top)
     total = W.sum(axis=0)

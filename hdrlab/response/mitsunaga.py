@@ -32,7 +32,6 @@ from hdrlab.core.types import F64, Indices, Mask
 RIDGE = 1e-7
 # brightness of a sample that both frames see well
 LOW, HIGH = 0.05, 0.98
-Pairs = tuple[F64, F64, Indices]
 
 
 class Fit(NamedTuple):
@@ -58,8 +57,7 @@ def value(M: ArrayLike, c: ArrayLike) -> F64:
     >>> value([0, 0.5, 1], []).tolist()  # with no terms a straight line
     [0.0, 0.5, 1.0]
     """
-    c = np.append(1, c)
-    return np.asarray(terms(M, len(c)) @ c)
+    return np.asarray(terms(M, np.size(c) + 1) @ np.append(1, c))
 
 
 def in_range(M: F64) -> Mask:
@@ -74,7 +72,7 @@ def in_range(M: F64) -> Mask:
     return inside[..., :-1] & inside[..., 1:]
 
 
-def neighbours(M: F64, order: int) -> Pairs:
+def neighbours(M: F64, order: int) -> tuple[F64, F64, Indices]:
     """Return the terms a, b (K, N) of samples M (N, P) that frames q (K,) and q + 1 see well."""
     used, phi = in_range(M), terms(np.nan_to_num(M), order)
     return phi[:, :-1][used], phi[:, 1:][used], np.nonzero(used)[1]
@@ -92,13 +90,12 @@ def coefficients(H: F64) -> F64:
     return np.linalg.solve(H[1:, 1:] + ridge, -H[1:, 0])
 
 
-def ratios(channels: Sequence[Pairs], c: F64, R: F64) -> F64:
+def ratios(channels: Sequence[tuple[F64, F64, Indices]], c: F64, R: F64) -> F64:
     """Return sum f^-1(M_q) / sum f^-1(M_q+1) of each pair [eq. 10]; R where no sample constrains it."""
     total = np.zeros((2, len(R)))
     for (a, b, q), own in zip(channels, c, strict=True):
         total += [np.bincount(q, phi[:, 0] + phi[:, 1:] @ own, len(R)) for phi in (a, b)]
-    known = (total[0] > 0) & (total[0] < total[1])
-    return np.divide(total[0], total[1], out=R.copy(), where=known)
+    return np.divide(*total, out=R.copy(), where=(total[0] > 0) & (total[0] < total[1]))
 
 
 def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[Fit]:
@@ -149,7 +146,7 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
     Raises
     ------
     ValueError
-        For photographs that share no levels worth using.
+        For photographs and times that do not fit, or photographs that share no levels worth using.
 
     References
     ----------
@@ -163,11 +160,14 @@ def recover(images: ArrayLike, times: ArrayLike, *, order: int = 5, eps: float =
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    by_time = np.argsort(times)
-    images, t = np.asarray(images)[by_time], np.asarray(times, np.float64)[by_time]
+    images, t = np.asarray(images), np.asarray(times, np.float64)
+    if images.dtype.kind != "u" or images.ndim < 3 or images.shape[3:] not in ((), (3,)) or not images.size:
+        raise ValueError(f"expected photographs (P, H, W[, 3]), got {images.dtype} {images.shape}")
+    if t.shape != images.shape[:1] or not np.all((t > 0) & (t < np.inf)):
+        raise ValueError(f"expected {len(images)} positive times in seconds, got {t}")
+    images, t = images[np.argsort(t)], np.sort(t)
     every = max(1, int(np.sqrt(images.size / len(t) / 12_000)))  # an even grid of some thousand pixels
-    M = images[:, ::every, ::every].reshape(len(t), -1, *images.shape[3:]).T / np.iinfo(images.dtype).max
-    M = M.reshape(-1, *M.shape[-2:])
+    M = images[:, ::every, ::every].reshape(len(t), -1, images[0, 0, 0].size).T / np.iinfo(images.dtype).max
     if not all(in_range(own).any() for own in M):
         raise ValueError("expected pixels between 0.05 and 0.98 of the top level in two neighbouring frames")
     *_, state = fit_steps(M, t[:-1] / t[1:], order, eps=eps)

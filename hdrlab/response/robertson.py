@@ -168,7 +168,9 @@ def recover(
     >>> bool(abs(g[200] - np.log(200 / 128)) < 0.01)
     True
     """
-    stack = as_stack(images)
+    stack, times = as_stack(images), np.asarray(times, np.float64)
+    if times.shape != (len(stack),) or not np.all((times > 0) & (times < np.inf)):
+        raise ValueError(f"expected {len(stack)} positive times in seconds, got {times}")
     w = weights.cut(weights.gaussian(), below=0.02) if w is None else np.asarray(w, np.float64)
     Z = choose(stack, samples, valid=valid)
     channels = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)

@@ -126,6 +126,8 @@ def lens(
     """
     if not (1 <= magnification <= size):
         raise ValueError(f"expected 1 <= magnification <= size, got {magnification=} and {size=}")
+    if np.shape(centre) != (2,) or not np.all(np.isfinite(centre)):
+        raise ValueError(f"expected the centre (y, x) of the brush, got {centre}")
     L = as_luminance(L)
     rows, columns = place_window(L.shape[:2], centre, -(-size // magnification))
     Ld = equalise(L[rows, columns], bins=bins, limit=limit)

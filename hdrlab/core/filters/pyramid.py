@@ -57,9 +57,9 @@ def interpolate(image: F32, shape: Sequence[int]) -> F32:
 
 
 def gaussian(image: F32, levels: int) -> list[F32]:
-    """Return g_0, g_1, ...: `levels` of them, each the one before it reduced."""
+    """Return g_0, g_1, ...: `levels` of them, each the one before it reduced; fewer where one is a pixel."""
     pyramid = [np.asarray(image, np.float32)]
-    for _ in range(1, levels):
+    while len(pyramid) < levels and pyramid[-1].shape[-2:] != (1, 1):
         pyramid.append(reduce(pyramid[-1]))
     return pyramid
 

@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.core.filters import pyramid
+from hdrlab.fast import pyramid as fast
 
 SHAPES = [(2, 2), (2, 3), (5, 9), (32, 31), (33, 64), (64, 65), (97, 130)]
 
@@ -44,7 +45,8 @@ def test_both_operators_are_opencvs(shape):
 def test_the_laplacian_pyramid_collapses_to_its_image_at_every_size(height, width, levels):
     image = noise((height, width))
     details = pyramid.laplacian(image, levels)
-    assert len(details) == levels and details[0].shape == image.shape
+    until_a_pixel = (max(height, width) - 1).bit_length() + 1
+    assert len(details) == min(levels, until_a_pixel) and details[0].shape == image.shape
     assert np.allclose(pyramid.collapse(details), image, atol=1e-5)
 
 
@@ -95,3 +97,10 @@ def test_what_does_not_fit_is_refused():
         pyramid.reduce(np.ones(5))
     with pytest.raises(ValueError, match=r"expected sides \(5, 6\)"):
         pyramid.expand(np.ones((5, 5)), (10, 11))
+
+
+@pytest.mark.parametrize("build", [pyramid.laplacian, fast.laplacian])
+@pytest.mark.parametrize("levels", [np.inf, 10**9])
+def test_a_pyramid_ends_at_one_pixel_however_many_levels_are_asked_for(build, levels):
+    found = build(np.ones((3, 5), np.float32), levels)
+    assert [level.shape for level in found] == [(3, 5), (2, 3), (1, 2), (1, 1)]
