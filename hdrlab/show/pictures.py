@@ -34,10 +34,8 @@ class Picture(NamedTuple):
 
     def _repr_html_(self) -> str:
         each = "".join(map(_figure, self.frames, self.alts, self.captions))
-        columns = "repeat(auto-fit,minmax(min(320px,100%),1fr))"
-        return (
-            f'<div style="display:grid;grid-template-columns:{columns};gap:0.75em">{each}</div>{self.legend}'
-        )
+        wide = "repeat(auto-fit,minmax(min(320px,100%),1fr))"
+        return f'<div style="display:grid;grid-template-columns:{wide};gap:0.75em">{each}</div>{self.legend}'
 
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
@@ -102,9 +100,7 @@ def strip(
     A gray square, level = 0; A gray square, level = 128
     """
     if len(values) != 1:
-        raise ValueError(
-            f"expected one parameter with its values, got {len(values)}: {', '.join(values) or 'none'}"
-        )
+        raise ValueError(f"expected one parameter with its values, got {len(values)}: {', '.join(values)}")
     ((name, each),) = values.items()
     each = list(each)
     if not each:

@@ -1,8 +1,10 @@
 """Widgets in Python: what they hand to the browser, and what they do when it moves a slider."""
 
+import base64
 import gc
 import io
 import itertools
+import re
 
 import imageio.v3 as iio
 import numpy as np
@@ -545,3 +547,39 @@ def test_the_background_is_kept_where_the_axes_stay_and_painted_again_where_they
         reuse.draw_reusing(draw, 1, render, kept)
         ((_, after),) = kept.background.values()
         assert (before is after) == stays
+
+
+STILLS = {
+    "play": lambda: widgets.play(range(3), lambda k: square(80 * k + 20), alt="A square"),
+    "tune": lambda: widgets.tune(square, same, alt="A square", level=(0, 255)),
+    "wipe": lambda: widgets.wipe(square(20), square(200), alt="A square", labels=["dark", "light"]),
+    "blink": lambda: widgets.blink(square(20), square(100), square(200), alt="A square"),
+    "brush": lambda: widgets.brush(np.full((32, 32), 1.0), alt="A square", picture=square(20, 32), size=64),
+}
+SHOWN = {"play": [20], "tune": [100], "wipe": [20, 200], "blink": [20, 100, 200], "brush": [20]}
+
+
+@pytest.mark.parametrize("name", STILLS)
+def test_a_saved_notebook_without_its_models_shows_each_widget_as_pictures_with_alt_text(name):
+    nbformat, nbconvert = pytest.importorskip("nbformat"), pytest.importorskip("nbconvert")
+    data, metadata = STILLS[name]()._repr_mimebundle_()
+    output = nbformat.v4.new_output("display_data", data=data, metadata=metadata)
+    notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell("widget", outputs=[output])])
+    page, _ = nbconvert.HTMLExporter(template_name="basic").from_notebook_node(notebook)
+    frames = re.findall(r'<img alt="A square[^"]*" src="data:image/webp;base64,([^"]+)"', page)
+    levels = [int(web.decode_picture(base64.b64decode(frame)).mean().round()) for frame in frames]
+    assert levels == pytest.approx(SHOWN[name], abs=2)
+
+
+@pytest.mark.parametrize("name", STILLS)
+def test_a_widget_reads_as_its_alt_text_where_nothing_can_be_drawn(name):
+    data, _ = STILLS[name]()._repr_mimebundle_()
+    assert "application/vnd.jupyter.widget-view+json" in data
+    assert data["text/plain"].startswith("A square")
+
+
+def test_a_large_comparison_adds_small_pictures_to_a_saved_notebook():
+    large = np.zeros((1200, 1960, 3), np.uint8)
+    data, _ = widgets.wipe(large, large, alt="Night")._repr_mimebundle_()
+    frame = re.search(r"base64,([^\"]+)", data["text/html"]).group(1)
+    assert web.decode_picture(base64.b64decode(frame)).shape == (400, 653, 3)

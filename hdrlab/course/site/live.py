@@ -57,9 +57,8 @@ def suffix(picture: bytes) -> str:
 def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, Live]]:
     """Yield each output of an executed notebook that shows a widget of ours, and the widget."""
     models = notebook.metadata.get("widgets", {}).get(STATE, {}).get("state", {})
-    for number, output in enumerate(
-        output for output in _outputs(notebook) if VIEW in output.get("data", {})
-    ):
+    shown = (output for output in _outputs(notebook) if VIEW in output.get("data", {}))
+    for number, output in enumerate(shown):
         model = models.get(output["data"][VIEW]["model_id"])
         if model is not None and "_esm" in model["state"]:
             yield output, live(model, f"{name}-{number + 1}")

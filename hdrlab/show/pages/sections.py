@@ -32,10 +32,7 @@ def facts(E: Array, quality: Image, medians: Float) -> list[tuple[str, str]]:
     low, high = np.nanpercentile(figures.stops(E), [0.1, 99.9])
     spread = consistency.measure_spread(medians)
     return [
-        (
-            f"{high - low:.1f} stops",
-            f"from dark to bright: {(high - low) * np.log10(2):.1f} decades of luminance",
-        ),
+        (f"{high - low:.1f} stops", f"of luminance, or {(high - low) * np.log10(2):.1f} decades"),
         (share(quality == Quality.MEASURED), "of the pixels measured by at least one frame"),
         (in_stops(spread), f"between what the frames say of the same light: {verdict(spread)}"),
     ]
@@ -168,15 +165,13 @@ def recipe(photographs: Bracket, given: str | Mapping[str, Any]) -> list[tuple[s
     """Return what one must know to make it again: (name, value)."""
     images = photographs.images
     knobs = ({"how": given} if given else {}) if isinstance(given, str) else given
-    kind = f"{'RGB' if images.ndim == 4 else 'gray'}, {8 * images.itemsize} bits"
+    colours, curve = "RGB" if images.ndim == 4 else "gray", ", linear" if photographs.linear else ""
+    kind = f"{colours}, {8 * images.itemsize} bits{curve}"
     return [
         *((str(knob), str(value)) for knob, value in knobs.items()),
         ("photographs", ", ".join(photographs.names)),
         ("times, s", ", ".join(f"{time:.6g}" for time in photographs.times)),
-        (
-            "size",
-            f"{images.shape[2]} × {images.shape[1]} pixels, {kind}{', linear' if photographs.linear else ''}",
-        ),
+        ("size", f"{images.shape[2]} × {images.shape[1]} pixels, {kind}"),
         ("hdrlab", hdrlab.__version__),
         ("numpy, scipy", f"{np.__version__}, {scipy.__version__}"),
         ("Python", platform.python_version()),

@@ -16,18 +16,18 @@ from contextlib import contextmanager
 from itertools import islice
 from typing import Any, TypeVar
 
-import anywidget
+import anywidget  # noqa: F401  first, so that it is named where it is missing
 import traitlets
 from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
 from hdrlab.io.web import Image
-from hdrlab.show.pictures import encode, pictured, render, require_alt, short
+from hdrlab.show.pictures import Picture, encode, pictured, render, require_alt, short
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
 from hdrlab.show.widgets.lens import Brush, brush
-from hdrlab.show.widgets.scripts import STYLE, script
+from hdrlab.show.widgets.scripts import Widget, script
 
 __all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "play", "tune", "wipe"]
 
@@ -49,15 +49,18 @@ def undisturbed() -> Iterator[None]:
             gc.enable()
 
 
-class Player(anywidget.AnyWidget):
+class Player(Widget):
     """Frames to move through; `index` is the one that is shown."""
 
     _esm = script("play.js")
-    _css = STYLE
     frames = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP
     alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
     name = traitlets.Unicode("step").tag(sync=True)
     index = traitlets.Int(0).tag(sync=True)
+
+    def still(self) -> Picture:
+        """Return the first frame."""
+        return Picture(tuple(self.frames[:1]), tuple(self.alts[:1]), ("",))
 
 
 def play(
@@ -96,24 +99,20 @@ def play(
     frames, alts, kept = [], [], reuse.Kept()
     for k, state in enumerate(islice(states, MOST + 1)):
         frames.append(reuse.draw_reusing(draw, state, encode, kept))
-        alts.append(
-            require_alt(alt(state) if callable(alt) else alt) + ("" if callable(alt) else f", {name} {k + 1}")
-        )
+        alts.append(require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}")
     if not 0 < len(frames) <= MOST:
         raise ValueError(f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}")
     return Player(frames=frames, alts=alts, name=name)
 
 
-class Tuner(anywidget.AnyWidget):
+class Tuner(Widget):
     """Sliders on a function's parameters: `at` is where they stand, `frame` the picture of `shown`."""
 
     _esm = script("tune.js")
-    _css = STYLE
     names = traitlets.List(traitlets.Unicode()).tag(sync=True)
     values = traitlets.List(traitlets.List(traitlets.Unicode())).tag(sync=True)  # each position's text
-    at = traitlets.List(traitlets.Int()).tag(
-        sync=True, echo_update=False
-    )  # the browser moves this, and knows
+    # The browser moves this, and knows.
+    at = traitlets.List(traitlets.Int()).tag(sync=True, echo_update=False)
     shown = traitlets.List(traitlets.Int()).tag(sync=True)
     frame = traitlets.Bytes().tag(sync=True)  # as `web.encode_frame` makes it
     alt = traitlets.Unicode().tag(sync=True)
@@ -134,6 +133,10 @@ class Tuner(anywidget.AnyWidget):
     def parameters(self) -> dict[str, Any]:
         """The values at which the sliders stand, by name."""
         return positions.values(self._grids, self.at)
+
+    def still(self) -> Picture:
+        """Return the picture of where the sliders start."""
+        return Picture(tuple(self.stored[:1]), (self.alt,), ("",))
 
     def _answer(self, _: object) -> None:
         """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""

@@ -10,16 +10,15 @@ All of it happens in the browser, on a page without a kernel too.
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-import anywidget
 import numpy as np
 import traitlets
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import Array, describe
 from hdrlab.io import web
-from hdrlab.show.pictures import render, require_alt
+from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
-from hdrlab.show.widgets.scripts import STYLE, script
+from hdrlab.show.widgets.scripts import Widget, script
 
 SIDE = 2000  # pixels: what is larger is shown by means of k x k pixels, or the page gets too heavy to open
 SHORTEST = 0.2  # seconds: more than three flashes in a second can harm a reader [WCAG 2.3.1]
@@ -33,10 +32,9 @@ class Readout(NamedTuple):
     channels: int
 
 
-class Comparison(anywidget.AnyWidget):
+class Comparison(Widget):
     """Pictures of one size, with what their pixels stand for."""
 
-    _css = STYLE
     pictures = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP, without loss
     labels = traitlets.List(traitlets.Unicode()).tag(sync=True)
     alt = traitlets.Unicode().tag(sync=True)
@@ -44,6 +42,11 @@ class Comparison(anywidget.AnyWidget):
     scales = traitlets.List(traitlets.Float()).tag(sync=True)
     channels = traitlets.List(traitlets.Int()).tag(sync=True)
     unit = traitlets.Unicode().tag(sync=True)
+
+    def still(self) -> Picture:
+        """Return all pictures side by side, with their labels below."""
+        alts = tuple(f"{self.alt}: {label}" for label in self.labels)
+        return Picture(tuple(self.pictures), alts, tuple(self.labels))
 
 
 class Wiper(Comparison):

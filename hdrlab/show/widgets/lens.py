@@ -8,27 +8,25 @@ compares them pixel by pixel.
 
 from typing import Any
 
-import anywidget
 import traitlets
 from numpy.typing import ArrayLike
 
 from hdrlab import pipeline
 from hdrlab.core.arrays import as_radiance
 from hdrlab.io import web
-from hdrlab.show.pictures import render, require_alt
+from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit
-from hdrlab.show.widgets.scripts import STYLE, script
+from hdrlab.show.widgets.scripts import Widget, script
 
 SIDE = 1536  # pixels: a larger map is shown by means of k x k pixels
 SIZES = (64, 512)  # sides of the brush, pixels
 MAGNIFICATIONS = (1, 8)
 
 
-class Brush(anywidget.AnyWidget):
+class Brush(Widget):
     """A radiance map, the picture of it that lies around the brush, and where the brush is."""
 
     _esm = script("half.js", "brush.js")
-    _css = STYLE
     radiance = traitlets.Bytes().tag(sync=True)  # half floats (H, W, channels)
     scale = traitlets.Float(1.0).tag(sync=True)
     shape = traitlets.List(traitlets.Int()).tag(sync=True)
@@ -39,6 +37,10 @@ class Brush(anywidget.AnyWidget):
     size = traitlets.Int(256).tag(sync=True)
     magnification = traitlets.Int(1).tag(sync=True)
     limit = traitlets.Float(4.0).tag(sync=True)
+
+    def still(self) -> Picture:
+        """Return the picture that lies around the brush."""
+        return Picture((self.picture,), (self.alt,), ("",))
 
 
 def brush(
@@ -84,12 +86,8 @@ def brush(
     [120, 160]
     """
     E = as_radiance(E)
-    knobs = {
-        "size": (size, *SIZES),
-        "magnification": (magnification, *MAGNIFICATIONS),
-        "limit": (limit, 1, 16),
-    }
-    for name, (value, low, high) in {**knobs, "bins": (bins, 2, 65536)}.items():
+    knobs = {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)}
+    for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16), "bins": (bins, 2, 65536)}).items():
         if not low <= value <= high:
             raise ValueError(f"expected {name} from {low} to {high}, got {value}")
     around = fit(pipeline.develop(E) if picture is None else render(picture), SIDE)

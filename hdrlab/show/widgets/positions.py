@@ -23,9 +23,7 @@ def grid(name: str, given: Any) -> list[Any]:
     if not isinstance(given, tuple):
         each = list(given) if isinstance(given, Iterable) and not isinstance(given, str) else []
         if len(each) < 2:
-            raise ValueError(
-                f"expected {name} as (low, high), (low, high, step) or a list of values, got {given!r}"
-            )
+            raise ValueError(f"expected {name} as (low, high[, step]) or a list of values, got {given!r}")
         return each
     low, high, step = given if len(given) == 3 else (*given, None) if len(given) == 2 else (0, 0, None)
     whole = all(isinstance(end, int | np.integer) for end in (low, high))
