@@ -190,7 +190,11 @@ def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
     state = {name: packed(getattr(widget, name)) for name in own if not name.startswith("_")}
     texts = {"state": json.dumps(state), "script": json.dumps(str(widget._esm)), "css": str(widget._css)}
     page.set_content(PAGE.format(**texts))
-    page.wait_for_function("document.querySelector('canvas')?.getAttribute('aria-label')", timeout=20_000)
+    shown = """() => {
+        const canvas = document.querySelector("canvas");  // a question may have none
+        return canvas ? canvas.getAttribute("aria-label") : document.querySelector(".hdrlab-note");
+    }"""
+    page.wait_for_function(shown, timeout=20_000)
 
 
 def changed_by(page: Any, widget: Any, move: Callable[[], object]) -> None:

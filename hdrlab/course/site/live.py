@@ -31,7 +31,7 @@ class Live(NamedTuple):
     script: str
     style: str
     state: dict[str, Any]  # bytes as {"base64": text}
-    picture: bytes
+    picture: bytes  # none where a question is answered without one
     alt: str
 
     def as_script(self) -> str:
@@ -41,12 +41,12 @@ class Live(NamedTuple):
 
     def as_html(self, folder: str) -> str:
         """Return what stands on the page, where `folder` is the address of the files."""
-        height, width = web.decode_picture(self.picture).shape[:2]
-        return (
-            f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">'
-            f'<img src="{folder}/{self.name}{suffix(self.picture)}" alt="{escape(self.alt)}" width="{width}" '
-            f'height="{height}"></div>'
-        )
+        still = f"<p>{escape(self.alt)}</p>"
+        if self.picture:
+            height, width = web.decode_picture(self.picture).shape[:2]
+            source = f'src="{folder}/{self.name}{suffix(self.picture)}"'
+            still = f'<img {source} alt="{escape(self.alt)}" width="{width}" height="{height}">'
+        return f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">{still}</div>'
 
 
 def suffix(picture: bytes) -> str:
@@ -75,9 +75,9 @@ def live(model: Any, name: str) -> Live:
             place = place[step]
         place[last] = {"base64": buffer["data"]}
     own = {key: value for key, value in state.items() if not (key.startswith("_") or key in NOT_OWN)}
-    shown = next(own[key] for key in PICTURES if key in own)
+    shown = next((own[key] for key in PICTURES if own.get(key)), {"base64": ""})  # a question has none
     shown = shown[0] if isinstance(shown, list) else shown
-    alt = own["alts"][0] if "alts" in own else own["alt"]
+    alt = own.get("question") or (own["alts"][0] if "alts" in own else own["alt"])
     return Live(name, state["_esm"], state.get("_css", ""), own, base64.b64decode(shown["base64"]), alt)
 
 
@@ -106,7 +106,8 @@ def liveliest(found: list[bytes]) -> bytes | None:
 def write(one: Live, folder: Path) -> None:
     """Write the files of a widget; what stands there as it should is left alone."""
     write_changed(folder / f"{one.name}.js", one.as_script().encode())
-    write_changed(folder / f"{one.name}{suffix(one.picture)}", one.picture)
+    if one.picture:
+        write_changed(folder / f"{one.name}{suffix(one.picture)}", one.picture)
 
 
 def write_changed(path: Path, content: bytes) -> None:

@@ -28,9 +28,13 @@ class Widget(anywidget.AnyWidget):
         """Return what the widget shows before anything is moved."""
         raise NotImplementedError
 
-    def _repr_mimebundle_(self, **kwargs: Any) -> tuple[dict[str, Any], dict[str, Any]]:
-        data, metadata = super()._repr_mimebundle_(**kwargs) or ({}, {})
+    def fallback(self) -> tuple[str, str]:
+        """Return the still picture as HTML and as text."""
         still = self.still()
         frames = tuple(encode(fit(web.decode_picture(frame), SIDE)) for frame in still.frames)
-        html = still._replace(frames=frames)._repr_html_()
-        return data | {"text/html": html, "text/plain": repr(still)}, metadata
+        return still._replace(frames=frames)._repr_html_(), repr(still)
+
+    def _repr_mimebundle_(self, **kwargs: Any) -> tuple[dict[str, Any], dict[str, Any]]:
+        data, metadata = super()._repr_mimebundle_(**kwargs) or ({}, {})
+        html, text = self.fallback()
+        return data | {"text/html": html, "text/plain": text}, metadata

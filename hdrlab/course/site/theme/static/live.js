@@ -38,7 +38,8 @@
     const el = document.createElement("div");
     const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value)]));
     await widget.render({ model: modelOf(values), el });
-    for (let k = 0; k < 120 && !el.querySelector("canvas")?.getAttribute("aria-label"); k++) await frame();
+    const waiting = () => el.querySelector("canvas")?.getAttribute("aria-label") === "";
+    for (let k = 0; k < 120 && waiting(); k++) await frame();
     place.replaceChildren(el); // the picture that stood here until now is what the canvas begins with
     place.dataset.state = "open";
   }

@@ -1,0 +1,69 @@
+"""Questions that take the answer before the picture comes: what they hand over, and what they refuse."""
+
+import numpy as np
+import pytest
+
+from hdrlab.io import web
+from hdrlab.show.widgets import predict
+
+RAMP = np.repeat(np.arange(0, 240, 2, dtype=np.uint8)[None], 40, axis=0)
+
+
+def test_a_choice_carries_its_pictures_and_which_is_true():
+    pictures = [np.full((30, 40), level, np.uint8) for level in (50, 150)]
+    asked = predict.choice("Which is brighter?", 1, ["left", "right"], pictures=pictures)
+    assert (asked.truth, asked.told) == (1, "right.")
+    assert [int(web.decode_picture(one).mean().round()) for one in asked.pictures] == [50, 150]
+
+
+@pytest.mark.parametrize(
+    ("truth", "between", "scale"),
+    [(3, (0, 7), [0, 7, 1]), (11.4, (0, 20), [0, 20, 0.2]), (0.02, (0, 0.1), [0, 0.1, 0.001])],
+)
+def test_a_number_is_asked_in_whole_steps_where_it_is_whole_and_else_in_a_hundred(truth, between, scale):
+    assert predict.number("How many?", truth, between).scale == pytest.approx(scale)
+
+
+def test_a_curve_is_asked_on_axes_that_leave_room_and_thinned_to_what_a_page_can_draw():
+    x = np.arange(65536)
+    asked = predict.curve("Draw it.", x, np.sqrt(x), names=("level", "light"))
+    xs, ys = asked.truth
+    assert asked.scale[:2] == [0, 65535] and asked.scale[2] < 0 and asked.scale[3] > 256
+    assert len(xs) == 257 and np.allclose(ys, np.sqrt(xs))
+
+
+@pytest.mark.parametrize("size", [(40, 120), (1200, 1950), (7, 5)])
+def test_the_mask_of_a_place_is_as_large_as_its_picture_and_loses_no_pixel(size):
+    mask = np.zeros(size, bool)
+    mask[size[0] // 2, size[1] // 2] = True
+    asked = predict.place("Where?", mask, np.zeros(size, np.uint8), alt="Night")
+    picture, right = map(web.decode_picture, asked.pictures)
+    assert picture.shape == right.shape and max(picture.shape) <= 960
+    assert np.count_nonzero(right[..., 0]) == 1
+
+
+REFUSED = {
+    "one label": lambda: predict.choice("?", 0, ["alone"]),
+    "a truth that is no label": lambda: predict.choice("?", 2, ["a", "b"]),
+    "a picture too few": lambda: predict.choice("?", 0, ["a", "b"], pictures=[RAMP]),
+    "a truth off the scale": lambda: predict.number("?", 30, (0, 20)),
+    "an empty scale": lambda: predict.number("?", 0, (0, 0)),
+    "x that falls": lambda: predict.curve("?", [1, 0], [0, 1], names=("x", "y")),
+    "y that is not finite": lambda: predict.curve("?", [0, 1], [0, np.nan], names=("x", "y")),
+    "a mask of another size": lambda: predict.place("?", RAMP[1:] > 9, RAMP, alt="A ramp"),
+    "an empty mask": lambda: predict.place("?", RAMP > 250, RAMP, alt="A ramp"),
+    "no question": lambda: predict.number(" ", 1, (0, 2)),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_a_question_that_has_no_answer_is_refused(what):
+    with pytest.raises(ValueError, match="expected"):
+        REFUSED[what]()
+
+
+def test_where_no_widget_is_shown_the_answer_is_there_to_be_opened():
+    asked = predict.number("How many stops?", 11.4, (0, 20), unit="stops", because="A photograph holds <8.")
+    data, _ = asked._repr_mimebundle_()
+    assert data["text/plain"] == "How many stops?"
+    assert "<summary>Answer</summary>11.4 stops. A photograph holds &lt;8.</details>" in data["text/html"]
