@@ -95,7 +95,7 @@ def ratios(channels: Sequence[tuple[F64, F64, Indices]], c: F64, R: F64) -> F64:
     total = np.zeros((2, len(R)))
     for (a, b, q), own in zip(channels, c, strict=True):
         total += [np.bincount(q, phi[:, 0] + phi[:, 1:] @ own, len(R)) for phi in (a, b)]
-    return np.divide(*total, out=R.copy(), where=(total[0] > 0) & (total[0] < total[1]))
+    return np.divide(total[0], total[1], out=R.copy(), where=(total[0] > 0) & (total[0] < total[1]))
 
 
 def fit_steps(M: F64, R: F64, order: int, *, eps: float = 1e-3, max_iterations: int = 30) -> Iterator[Fit]:

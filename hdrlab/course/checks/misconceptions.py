@@ -2,8 +2,8 @@
 
 A mistake's name begins with the id of its task. Many are one place of the solution written otherwise, in
 `mistakes/changes.toml`; where more is wrong, it is a file in `mistakes`: a docstring that says to the student
-what it is, and the wrong function. All are asked what the student was asked; wrong functions are ours, and run
-here. Answers are compared in the gauge or scale that the checks leave free.
+what it is, and the wrong function. All are asked what the student was asked; wrong functions are ours, and
+run here. Answers are compared in the gauge or scale that the checks leave free.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
