@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from computed_skin import DARK, LIGHT, synthetic
 from hypothesis import given
 from hypothesis import strategies as st
 from skimage import data
@@ -13,25 +14,12 @@ from hdrlab.enhance import battiato, relight, skin
 from hdrlab.scenes.computed import subjects
 
 LEVELS = np.arange(256)
-LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
-BLOOD = np.array([0.0, 0.12, 0.08])  # how much more of it takes from R, G, B, in ln
 
 
 def photographed(EV, make=subjects.backlight):
     """Return a photograph of a subject at f/8, and the mask of the subject."""
     scene = make()
     return to_8bit(np.minimum(scene.E / exposure.saturating_luminance(64 / 2**EV), 1)), scene.mask
-
-
-def synthetic(count=4000, *, rng=0):
-    """Return the levels (count, 3) of computed skin, light and dark in equal parts, in light and in shade."""
-    rng = np.random.default_rng(rng)
-    light, dark = (np.log(decode_srgb(np.array(levels) / 255)) for levels in (LIGHT, DARK))
-    melanin = rng.uniform(-0.25, 1.5, (count, 1))
-    ln = light + melanin * (dark - light) - rng.normal(0, 1, (count, 1)) * BLOOD
-    lamp = rng.normal(0, 0.1, (count, 1)) * np.array([1, 0, -1]) + rng.normal(0, 0.03, (count, 3))
-    ln = ln + lamp + rng.uniform(np.log(0.25), np.log(1.1), (count, 1))
-    return 255 * encode_srgb(np.minimum(np.exp(ln), 1))
 
 
 def test_no_light_is_the_identity():

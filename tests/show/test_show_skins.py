@@ -1,12 +1,13 @@
 """hdrlab.show.plots.lectures.skins: the plane of chrominance and the skin locus, drawn."""
 
+import computed_skin
 import numpy as np
 import pytest
 
 from hdrlab.enhance import skin
 from hdrlab.show.plots.lectures import skins
 
-TRAINING = skin.synthetic(3000)
+TRAINING = computed_skin.synthetic(3000)
 
 
 def test_the_ellipse_lies_at_its_reach_from_the_mean():
