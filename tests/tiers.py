@@ -88,6 +88,7 @@ TIERS = {
         "tests/cli/test_calibrate.py::test_the_plot_carries",
         "tests/cli/test_cli.py::test_a_doubtful_map",
         "tests/cli/test_demo.py::test_the_demo_announces",
+        "tests/cli/test_demo.py::test_the_demo_on_real",
         "tests/cli/test_demo.py::test_the_same_seed",
         "tests/cli/test_faults.py",
         "tests/cli/test_long_commands.py",

@@ -12,11 +12,13 @@ FIRST = "notebooks/00_welcome.ipynb"
 @common.command()
 @click.option("--out", type=common.FILE, default="hdrlab-demo", help="Folder for the results.")
 @click.option("--seed", default=1, help="Of noise and hand shake.")
-def demo(out: Path, seed: int) -> None:
+@click.option("--real", is_flag=True, help="Take six real photographs, from a telephone, instead.")
+def demo(out: Path, seed: int, real: bool) -> None:
     """Photograph a dark chapel with bright windows, and assemble the photographs again."""
     from hdrlab import demo as room
 
-    for line in common.progress(room.demo_steps(out, seed=seed), "demo", room.STEPS):
+    steps = room.real_steps(out) if real else room.demo_steps(out, seed=seed)
+    for line in common.progress(steps, "demo", room.STEPS):
         click.echo(line)
 
 

@@ -3,8 +3,9 @@
 import cv2
 import numpy as np
 import pytest
+from click.testing import CliRunner
 
-from hdrlab import demo
+from hdrlab import cli, demo
 from hdrlab.io.radiance import read_radiance
 
 
@@ -47,3 +48,19 @@ def test_the_report_is_one_file_that_asks_for_nothing_outside_itself(results):
 def test_the_same_seed_gives_the_same_map_bit_for_bit(results, tmp_path):
     list(demo.demo_steps(tmp_path))
     assert (tmp_path / "radiance.pfm").read_bytes() == (results[0] / "radiance.pfm").read_bytes()
+
+
+def test_the_demo_on_real_photographs_prints_as_many_lines_without_a_truth(tmp_path):
+    lines = list(demo.real_steps(tmp_path / "new"))
+    assert len(lines) == demo.STEPS and lines[1] == "bracket    6 photographs, hand-held"
+    assert "the frames agree to 0.0" in lines[6]
+    assert sorted(file.name for file in (tmp_path / "new").iterdir())[1:] == [
+        "radiance.exr", "radiance.hdr", "radiance.pfm", "report.html",
+    ]  # fmt: skip
+    assert "the error" not in (tmp_path / "new" / "report.html").read_text("utf8")
+
+
+def test_the_command_takes_the_real_photographs_where_it_is_told_to(tmp_path, monkeypatch):
+    monkeypatch.setattr(demo, "real_steps", lambda out: iter([f"real in {out}"]))
+    ran = CliRunner().invoke(cli.main, ["demo", "--real", "--out", str(tmp_path)])
+    assert ran.exit_code == 0 and ran.output == f"real in {tmp_path}\n"
