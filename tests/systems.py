@@ -27,7 +27,7 @@ HEAD = """# Every system, and where it is
 
 The course rests on five documents: the slides, and four papers. Each system in them has a row here: functions
 of the library, the sections of a notebook that play it step by step, and the tasks that check a student's own
-function, where there is one. A letter says whose it is: """
+function, where there is one. Letters say whose it is: """
 
 
 def table():
@@ -80,16 +80,16 @@ def link(place):
 def written():
     """Return the page."""
     tasks = timetable.tasks()
-    lines = [HEAD + ", ".join(f"{letter} {name}" for letter, name in PAPERS.items()) + ".", ""]
-    lines += ["| | system | of | library | steps in a notebook | graded |", "|---|---|---|---|---|---|"]
+    lines = [HEAD + "; ".join(f"{letter}, {name}" for letter, name in PAPERS.items()) + ".", ""]
+    lines += ["| system | library | steps in a notebook | graded |", "|---|---|---|---|"]
     for n, (name, papers, places, sections, graded) in enumerate(table(), 1):
         played = []
         for number in dict.fromkeys(number for number, _ in sections):
             each = ", ".join(f"“{heading}”" for other, heading in sections if other == number)
             played.append(f"[{number}](notebooks/{path_of(number).name}): {each}")
         checked = [f"[`{task}`](assignments/{tasks[task][0]}.ipynb)" for task in graded]
-        cells = [", ".join(papers), ", ".join(map(link, places)), "; ".join(played), ", ".join(checked)]
-        lines.append(f"| {n} | {name} | {' | '.join(cells)} |")
+        cells = [", ".join(map(link, places)), "; ".join(played), ", ".join(checked)]
+        lines.append(f"| {n} {name} ({', '.join(papers)}) | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 
 
