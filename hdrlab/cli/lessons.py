@@ -1,5 +1,6 @@
 """Commands that begin with nothing: a demonstration, and the notebooks."""
 
+import os
 from pathlib import Path
 
 import click
@@ -29,7 +30,8 @@ def demo(out: Path, seed: int, real: bool) -> None:
 def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     """Open JupyterLab on a copy of the notebooks and the assignments, at the first notebook.
 
-    What you changed in your copy stays. OPTIONS go to JupyterLab.
+    What you changed in your copy stays. JupyterLab saves what the widgets show, unless your own settings say
+    otherwise. OPTIONS go to JupyterLab.
     """
     from hdrlab.course.material import materials
 
@@ -38,5 +40,7 @@ def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
     if not copy_only:
         from jupyterlab.labapp import LabApp
 
+        own = os.environ.get("JUPYTER_CONFIG_PATH")
+        os.environ["JUPYTER_CONFIG_PATH"] = os.pathsep.join(filter(None, [str(materials.JUPYTER), own]))
         where = [f"--notebook-dir={folder}", f"--LabApp.default_url=/lab/tree/{FIRST}"]
         LabApp.launch_instance([*where, *options])

@@ -1,5 +1,6 @@
 """What a shell user may expect of the `hdrlab` command."""
 
+import os
 import subprocess
 import sys
 
@@ -311,11 +312,23 @@ def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(
 
 def test_lab_opens_the_first_notebook_of_the_copy(tmp_path, monkeypatch):
     called = []
+    monkeypatch.setenv("JUPYTER_CONFIG_PATH", "")  # which the command sets
     monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", called.append)
     assert hdrlab("lab", "--folder", tmp_path / "mine", "--", "--port", "9000") == 0
     first = next(part for part in called[0] if part.startswith("--LabApp.default_url="))
     assert (tmp_path / "mine" / first.removeprefix("--LabApp.default_url=/lab/tree/")).is_file()
     assert called[0][-2:] == ["--port", "9000"]
+
+
+def test_lab_saves_what_the_widgets_show_and_keeps_news_away(tmp_path, monkeypatch):
+    server = pytest.importorskip("jupyterlab_server.config")
+    monkeypatch.setenv("JUPYTER_CONFIG_PATH", str(tmp_path / "own"))
+    monkeypatch.setattr("jupyterlab.labapp.LabApp.launch_instance", lambda options: None)
+    assert hdrlab("lab", "--folder", tmp_path / "mine") == 0
+    found = server.ConfigManager(config_dir_name="labconfig").get("default_setting_overrides")
+    assert found["@jupyter-widgets/jupyterlab-manager:plugin"] == {"saveState": True}
+    assert found["@jupyterlab/apputils-extension:notification"]["fetchNews"] == "false"
+    assert os.environ["JUPYTER_CONFIG_PATH"].endswith(os.pathsep + str(tmp_path / "own"))
 
 
 def test_an_agreement_that_cannot_be_measured_is_no_number_of_stops():

@@ -4,6 +4,7 @@ import shutil
 from pathlib import Path
 
 COURSE = Path(__file__).parents[1]
+JUPYTER = Path(__file__).parent / "jupyter"  # settings of JupyterLab: widgets are saved, news stay away
 
 
 def folder(name: str) -> Path:
