@@ -143,8 +143,17 @@ def test_a_single_pixel_is_a_square_of_one_shade_at_high_zoom(open_):
     noise = np.random.default_rng(0).integers(0, 256, (480, 480), np.uint8)
     page = open_(widgets.blink(noise, 255 - noise, alt="Noise"))
     page.get_by_role("slider", name="zoom").press("End")
-    shown = pixels(page)[16:-16, 16:-16, 0]  # half a pixel at each edge, for the middle stays in the middle
-    assert np.array_equal(shown, noise[233:247, 233:247].repeat(32, axis=0).repeat(32, axis=1))
+    shown = pixels(page)[32:-32, 32:-32, 0]  # half a pixel at each edge, for the middle stays in the middle
+    assert np.array_equal(shown, noise[233:247, 233:247].repeat(64, axis=0).repeat(64, axis=1))
+
+
+@pytest.mark.parametrize(("width", "shown"), [(200, 960), (384, 960), (1200, 1200)])
+def test_a_small_picture_is_shown_as_wide_as_a_column(open_, width, shown):
+    picture = np.full((90, width), 100, np.uint8)
+    page = open_(widgets.wipe(picture, picture, alt="Gray"))
+    assert page.locator("canvas").bounding_box()["width"] == shown
+    page.set_viewport_size({"width": 390, "height": 800})
+    assert page.locator("canvas").bounding_box()["width"] < 390
 
 
 def test_the_wheel_zooms_after_a_click_and_scrolls_the_page_before_it(wiper):

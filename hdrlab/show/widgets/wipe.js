@@ -36,7 +36,7 @@ async function render({ model, el }) {
 
   const hint = "Drag the edge. To zoom, click and turn the wheel, or pinch; the arrow keys read single pixels.";
   const view = await viewer(root, model, { help: `${first} and ${second}`, hint, compose, take });
-  names.style.width = `${view.canvas.width}px`;
+  names.style.width = view.canvas.style.width || `${view.canvas.width}px`;
   const bar = slider(view.controls, "edge", 101);
   view.controls.prepend(bar.input.parentElement);
 
