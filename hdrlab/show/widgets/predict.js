@@ -202,7 +202,9 @@ const KINDS = {
     let [cross, closed] = [null, false];
 
     function paint(truth = false) {
+      context.filter = truth ? "grayscale(1) brightness(0.85)" : "none"; // so that the truth stands out
       context.drawImage(photograph, 0, 0, canvas.width, canvas.height);
+      context.filter = "none";
       if (truth) {
         context.fillStyle = TRUTH;
         const side = Math.max(larger, (3 * canvas.width) / 960); // a single pixel is to be seen, too
