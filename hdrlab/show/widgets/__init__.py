@@ -4,6 +4,7 @@ play   draws every state once and moves through the frames in the browser: at on
 tune   calls a function on each move of a slider; a few positions are stored for a page that has no kernel
 wipe   two pictures with a movable edge between them: `show.widgets.compared`
 blink  pictures in one place, one after the other: `show.widgets.compared`
+predict  a question that takes the answer before the picture comes: `show.widgets.predict`
 brush  the Detail Brush over a radiance map: `show.widgets.lens`
 
 The first two know no algorithm: `states` is any iterable (the library's `<verb>_steps`, or a generator of
