@@ -3,8 +3,8 @@
 import numpy as np
 
 from hdrlab.core.colour import decode_srgb, encode_srgb
+from hdrlab.enhance.skin import DARK, LIGHT
 
-LIGHT, DARK = (194, 150, 130), (115, 82, 68)  # sRGB of the ColorChecker's two skins
 BLOOD = np.array([0.0, 0.12, 0.08])  # how much more of it takes from R, G, B, in ln
 
 

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from computed_skin import DARK, LIGHT, synthetic
+from computed_skin import synthetic
 from hypothesis import given
 from hypothesis import strategies as st
 from skimage import data
@@ -11,6 +11,7 @@ from hdrlab.capture import exposure
 from hdrlab.core.colour import decode_srgb, encode_srgb, to_8bit
 from hdrlab.core.steps import last
 from hdrlab.enhance import battiato, relight, skin
+from hdrlab.enhance.skin import DARK, LIGHT
 from hdrlab.scenes.computed import subjects
 
 LEVELS = np.arange(256)
