@@ -1,6 +1,7 @@
 // Shared by the comparisons: pictures of one size under one zoom, and the pixel that is read out.
 
 const MOST_ZOOM = 32;
+const TALL = 80; // percent of the screen's height at most, so that an upright one is seen as a whole
 const WIDE = 960; // pixels of the page where it has them: a small picture fills the column
 const KEYS = "arrow keys move the cross, Shift further; plus and minus zoom, 0 shows all";
 
@@ -37,7 +38,7 @@ async function viewer(root, model, { help, hint, compose, take = () => null, key
   const { width, height } = bitmaps[0];
   const enlarged = Math.max(1, Math.floor(WIDE / width));
   [canvas.width, canvas.height] = [width * enlarged, height * enlarged];
-  if (width < WIDE) canvas.style.width = `${WIDE}px`;
+  if (width < WIDE) canvas.style.width = `min(${WIDE}px, ${(TALL * width) / height}vh)`;
   let [zoom, left, top, cross, drag] = [1, 0, 0, null, null];
   const pointers = new Map();
 
