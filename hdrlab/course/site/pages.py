@@ -124,7 +124,7 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
     import nbformat
 
     found = list(live.widgets(notebook, name))
-    shown = [one.picture for _, one in found] + list(live.pictures(notebook))
+    shown = [one.picture for _, one in found if one.picture] + list(live.pictures(notebook))
     for output, one in found:
         live.write(one, folder)
         output["data"] = {"text/html": one.as_html(f"../{WIDGETS}")}
