@@ -132,6 +132,7 @@ MISTAKES = {
         "four channels": lambda a: np.stack([a] * 4, axis=-1),
         "no columns": lambda a: a[:, :, :0],
         "one photograph of Pillow in CMYK": lambda a: Image.fromarray(a[0]).convert("CMYK"),
+        "Pillow's places in a palette": lambda a: [Image.fromarray(one).convert("P") for one in a],
     },
     "times": {
         **ANY,
@@ -150,7 +151,12 @@ MISTAKES = {
     **dict.fromkeys(
         ("L", "E", "F"), {**ANY, **NO_LIGHT, "four channels": lambda a: np.stack([a] * 4, axis=-1)}
     ),
-    "picture": {**ANY, "shares": lambda a: a / 255, "16 bits": lambda a: a.astype(np.uint16)},
+    "picture": {
+        **ANY,
+        "shares": lambda a: a / 255,
+        "16 bits": lambda a: a.astype(np.uint16),
+        "Pillow's places in a palette": lambda a: Image.fromarray(a).convert("P"),
+    },
     "truth": {**ANY, **NO_LIGHT, "another size": lambda a: a[:-1]},
     "Ld": {**ANY, **NOT_FINITE, "another size": lambda a: a[:-1]},
     "well": {**ANY, "another size": lambda a: a[:-1]},
@@ -176,12 +182,13 @@ ANSWERED = {
     ("tonemap.reinhard.tonemap", "L"): {"beyond float32"},
     ("capture.camera.shoot", "times"): {"one too few"},
 }
-# a lesson takes for numbers what NumPy does: the real part, and what a mask hides; the commands run `fast`,
-# or come through `core.bracket`, which do not
+# a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette; the commands
+# run `fast`, or come through `core.bracket`, which do not
 LESSONS = ("align.cerman.align", "align.homography.align", "align.mtb.align", "radiance.merge.merge")
 LESSONS += ("response.mitsunaga.recover", "response.robertson.recover")
+HIDDEN = ("masked", "masked frames", "Pillow's places in a palette")
 ANSWERED |= {
-    (lesson, name): {"masked", "masked frames"} | ({"complex"} if name != "images" else set())
+    (lesson, name): {*HIDDEN} | ({"complex"} if name != "images" else set())
     for lesson in LESSONS
     for name in ("images", "times", "g")
     if (lesson, name) != ("response.robertson.recover", "images")

@@ -19,6 +19,11 @@ from hdrlab.core.types import Array
 LARGEST_LN_EXPOSURE = 80
 
 
+def hidden(array: object) -> str:
+    """Return what keeps the values from being levels: a mask, or the palette of a Pillow picture; else ""."""
+    return "a palette" if getattr(array, "mode", "") == "P" else "some of it masked" * np.ma.is_masked(array)
+
+
 def describe(array: ArrayLike) -> str:
     """Return what came, for an error message: shape, dtype and range, or that some of it is masked."""
     array, masked = np.asarray(array), np.ma.is_masked(array)
@@ -30,11 +35,13 @@ def describe(array: ArrayLike) -> str:
 def as_stack(images: ArrayLike | Sequence[ArrayLike]) -> Array:
     """Return `images` as one array (P, H, W[, 3]) of uint8 or uint16, or raise a ValueError."""
     if not isinstance(images, np.ndarray):
-        frames = list(map(np.asanyarray, images if isinstance(images, Iterable) else [images]))
-        kinds = sorted({f"{frame.shape} {frame.dtype}" for frame in frames})
+        given = list(images) if isinstance(images, Iterable) else [images]
+        frames = list(map(np.asanyarray, given))
+        kinds = {f"{frame.shape} {frame.dtype}" for frame in frames} | {*filter(None, map(hidden, given))}
         # np.stack would take 8 and 16 bits together, and make the former nearly black; and it forgets masks
-        if len(kinds) > 1 or any(map(np.ma.is_masked, frames)):
-            raise ValueError(f"expected frames of one size and type, none masked, got {', '.join(kinds)}")
+        if len(kinds) > 1:
+            got = ", ".join(sorted(kinds))
+            raise ValueError(f"expected frames of one size and type, no mask and no palette, got {got}")
         images = np.stack(frames) if frames else np.empty(0)
     if images.ndim not in (3, 4) or (images.ndim == 4 and images.shape[-1] != 3) or 0 in images.shape:
         raise ValueError(f"expected a stack of images (P, H, W) or (P, H, W, 3), got {describe(images)}")
@@ -89,10 +96,10 @@ def as_luminance(L: ArrayLike) -> NDArray[np.float32]:
 
 def as_picture(picture: ArrayLike) -> Array:
     """Return `picture` as uint8 (H, W) or (H, W, 3), or raise a ValueError."""
-    array = np.asarray(picture) if not np.ma.is_masked(picture) else np.empty(0)
-    if array.dtype != np.uint8 or array.ndim < 2 or array.shape[2:] not in ((), (3,)) or not array.size:
-        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(picture)}")
-    return array
+    Z, why = np.asarray(picture), hidden(picture)
+    if why or Z.dtype != np.uint8 or Z.ndim < 2 or Z.shape[2:] not in ((), (3,)) or not Z.size:
+        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {why or describe(picture)}")
+    return Z
 
 
 def _finite(array: Array, what: str) -> NDArray[np.float32]:

@@ -32,7 +32,7 @@ class Bracket(NamedTuple):
 
 
 def bracket(
-    images: ArrayLike | Sequence[ArrayLike],
+    images: ArrayLike,
     times: ArrayLike,
     names: Sequence[str] | None = None,
     *,

@@ -105,11 +105,7 @@ def add_term(blended: F32, W: F32, detail: F32) -> F32:
 
 
 def fuse_steps(
-    images: ArrayLike | Sequence[ArrayLike],
-    *,
-    contrast: float = 1.0,
-    saturation: float = 1.0,
-    exposedness: float = 1.0,
+    images: ArrayLike, *, contrast: float = 1.0, saturation: float = 1.0, exposedness: float = 1.0
 ) -> Iterator[State]:
     """Yield the State after each photograph; the parameters are those of `fuse`.
 
@@ -128,11 +124,7 @@ def fuse_steps(
 
 
 def fuse(
-    images: ArrayLike | Sequence[ArrayLike],
-    *,
-    contrast: float = 1.0,
-    saturation: float = 1.0,
-    exposedness: float = 1.0,
+    images: ArrayLike, *, contrast: float = 1.0, saturation: float = 1.0, exposedness: float = 1.0
 ) -> F32:
     """Return one picture that takes each place from the photographs that show it best.
 

@@ -82,10 +82,9 @@ def settle_steps(p: F64, target: float = TARGET, *, a: float = A, c: float = C) 
     So the round is repeated with the mean that resulted, a dozen times at most.
     """
     delta, mean = 0.0, float(p @ LEVELS)
-    yield State(delta, mean)
-    for _ in range(12):
+    for _ in range(13):
+        yield State(delta, mean)
         if abs(mean - target) < TOLERANCE or not 0 < mean < 255:
             return
         delta = float(np.clip(delta + offset(mean, target, a=a, c=c), -DELTA_LIMIT, DELTA_LIMIT))
         mean = float(p @ curve(delta, a=a, c=c))
-        yield State(delta, mean)

@@ -74,9 +74,8 @@ def fit(Z: ArrayLike) -> Skin:
 
 def distance(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
     """Return d with d^2 = (x - mu)' S^-1 (x - mu), of each pixel (..., 3) [Battiato08 eq. 1.8]."""
-    mu, S = skin
-    away = chrominance(Z) - mu
-    return np.sqrt(np.einsum("...i,ij,...j->...", away, np.linalg.inv(S), away))
+    away = chrominance(Z) - skin.mu
+    return np.sqrt(np.einsum("...i,ij,...j->...", away, np.linalg.inv(skin.S), away))
 
 
 def likelihood(Z: ArrayLike, skin: Skin = DEFAULT) -> F64:
