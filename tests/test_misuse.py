@@ -182,8 +182,8 @@ ANSWERED = {
     ("tonemap.reinhard.tonemap", "L"): {"beyond float32"},
     ("capture.camera.shoot", "times"): {"one too few"},
 }
-# a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette; the commands
-# run `fast`, or come through `core.bracket`, which do not
+# a lesson takes for numbers what NumPy does: the real part, what a mask hides, places in a palette; the
+# commands run `fast`, or come through `core.bracket`, which do not
 LESSONS = ("align.cerman.align", "align.homography.align", "align.mtb.align", "radiance.merge.merge")
 LESSONS += ("response.mitsunaga.recover", "response.robertson.recover")
 HIDDEN = ("masked", "masked frames", "Pillow's places in a palette")
