@@ -1,0 +1,88 @@
+"""Codes for luminance beyond a gamma: PQ (SMPTE ST 2084, 2014) and HLG (ARIB STD-B67); both ITU-R BT.2100.
+
+FD     luminance that a display shows   cd/m2, 0 to 10,000; any shape
+E      light of the scene               0 to 1, 1 = the brightest that is coded; any shape
+v      signal, E' in BT.2100            0 to 1, the code over the largest code; same shape
+peak   L_W, the display's white         cd/m2
+
+PQ is absolute: a code stands for so many cd/m2, and each step is about as large as an eye just does not see.
+HLG is relative: up to v = 1/2 it is a root, as a gamma, so that an old display shows it; above that it is a
+logarithm, and each display makes of E what its white allows.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64
+
+# cd/m2, of PQ's largest code
+BRIGHTEST = 10_000
+# of PQ [BT.2100 table 4]
+M1, M2 = 2610 / 16384, 128 * 2523 / 4096
+C1, C2, C3 = 3424 / 4096, 32 * 2413 / 4096, 32 * 2392 / 4096
+# of HLG: root and logarithm meet at E = 1/12 with one slope, and E = 1 has v = 1 [BT.2100 table 5]
+A = 0.17883277
+B, C = 1 - 4 * A, 0.5 - A * np.log(4 * A)
+
+
+def within(values: ArrayLike, high: float) -> F64:
+    """Return values as float64, 0 ... high but for rounding, which is cut; or raise a ValueError."""
+    array = np.asarray(values, np.float64)
+    if not np.all((array >= 0) & (array <= high * (1 + 1e-6))):
+        raise ValueError(f"expected values in 0 ... {high}, got {describe(values)}")
+    return np.minimum(array, high)
+
+
+def pq(FD: ArrayLike) -> F64:
+    """Return v = ((c1 + c2 Y^m1) / (1 + c3 Y^m1))^m2, Y = FD / 10,000 [BT.2100 table 4, inverse EOTF].
+
+    Examples
+    --------
+    >>> pq([0.1, 1, 100, 10_000]).round(3)
+    array([0.062, 0.15 , 0.508, 1.   ])
+    """
+    Ym = (within(FD, BRIGHTEST) / BRIGHTEST) ** M1
+    return ((C1 + C2 * Ym) / (1 + C3 * Ym)) ** M2
+
+
+def pq_inverse(v: ArrayLike) -> F64:
+    """Return FD = 10,000 (max(v^(1/m2) - c1, 0) / (c2 - c3 v^(1/m2)))^(1/m1) [BT.2100 table 4, EOTF]."""
+    vm = within(v, 1) ** (1 / M2)
+    return BRIGHTEST * (np.maximum(vm - C1, 0) / (C2 - C3 * vm)) ** (1 / M1)
+
+
+def hlg(E: ArrayLike) -> F64:
+    """Return v = root(3 E) up to E = 1/12, and a ln(12 E - b) + c above it [BT.2100 table 5, OETF].
+
+    Examples
+    --------
+    >>> hlg([0, 1 / 12, 1]).round(3)
+    array([0. , 0.5, 1. ])
+    """
+    E = within(E, 1)
+    return np.where(E <= 1 / 12, np.sqrt(3 * E), A * np.log(np.maximum(12 * E, 1) - B) + C)
+
+
+def hlg_inverse(v: ArrayLike) -> F64:
+    """Return E = v^2 / 3 up to v = 1/2, and (exp((v - c) / a) + b) / 12 above it [BT.2100 table 5]."""
+    v = within(v, 1)
+    return np.where(v <= 0.5, v**2 / 3, (np.exp((v - C) / A) + B) / 12)
+
+
+def display_light(E: ArrayLike, *, peak: float = 1000.0) -> F64:
+    """Return FD = L_W E^gamma of a gray, gamma = 1.2 + 0.42 log10(L_W / 1000) [BT.2100 table 5, OOTF]."""
+    return peak * within(E, 1) ** (1.2 + 0.42 * np.log10(peak / 1000))
+
+
+def codes(encode: Callable[[float], ArrayLike], low: float, high: float, *, bits: int = 10) -> float:
+    """Return (2^bits - 1) (encode(high) - encode(low)): how many codes the band from low to high gets.
+
+    Examples
+    --------
+    >>> round(codes(pq, 0.1, 1.0)), round(codes(lambda FD: (FD / 10_000) ** (1 / 2.4), 0.1, 1.0))
+    (90, 14)
+    """
+    return (2**bits - 1) * float(np.subtract(encode(high), encode(low)))
