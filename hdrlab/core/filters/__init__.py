@@ -1,1 +1,1 @@
-"""What works on whole pictures: blur, bilateral filter, pyramids, Poisson equation, mosaics, homographies."""
+"""What works on whole pictures: blur, bilateral and guided filter, pyramids, Poisson, mosaics, warps."""

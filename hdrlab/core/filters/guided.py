@@ -1,0 +1,67 @@
+"""The guided filter (He, Sun and Tang, ECCV 2010; IEEE Transactions on PAMI 35(6), 2013).
+
+I        guide                     (H, W), such as log luminance
+p        what is filtered          (H, W); to smooth a picture but for its edges, the guide itself
+r        radius of a window        pixels; the square has (2 r + 1)^2, fewer at the picture's edge
+eps      what variance is an edge  in squares of the unit of I: windows that vary less become flat
+a, b     line of each window       (H, W), p = a I + b as well as it goes; a = 1 keeps I, a = 0 is its mean
+q        p, smoothed               (H, W)
+
+All lines come from means, whose cost does not depend on r. The bilateral filter asks pixel by pixel who is
+alike; here one answer holds for a whole window: beside an edge fine detail stays in q, and is not smoothed.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.ndimage import uniform_filter
+
+from hdrlab.core.types import F64
+
+
+class Lines(NamedTuple):
+    """Attributes: a, b (H, W), slope and offset of the line of the window around each pixel."""
+
+    a: F64
+    b: F64
+
+
+def window_mean(v: F64, radius: int) -> F64:
+    """Return the mean of v (H, W) over the window of each pixel, as far as it lies in the picture."""
+    total, count = (uniform_filter(x, 2 * radius + 1, mode="constant") for x in (v, np.ones_like(v)))
+    return total / count
+
+
+def lines(I: F64, p: F64, *, radius: int, epsilon: float) -> Lines:  # noqa: E741
+    """Return a = cov(I, p) / (var(I) + eps) and b = mean(p) - a mean(I) of each window [He13 eq. 5, 6].
+
+    It is the least squares of (a I + b - p)^2 + eps a^2, summed over the window [He13 eq. 4].
+    """
+    mean_I, mean_p = window_mean(I, radius), window_mean(p, radius)
+    cov = window_mean(I * p, radius) - mean_I * mean_p
+    var = window_mean(I * I, radius) - mean_I**2
+    a = cov / (var + epsilon)
+    return Lines(a, mean_p - a * mean_I)
+
+
+def guided(I: ArrayLike, p: ArrayLike | None = None, *, radius: int, epsilon: float) -> F64:  # noqa: E741
+    """Return q = mean(a) I + mean(b), means over all windows that hold the pixel [He13 eq. 8].
+
+    p is I where none is given. Both are finite and of one shape (H, W), radius >= 1 and epsilon > 0, or it is
+    a ValueError.
+
+    Examples
+    --------
+    >>> step = np.where(np.arange(40) < 20, 0, 3) * np.ones((30, 1))
+    >>> bool(np.allclose(guided(step, radius=4, epsilon=0.01), step, atol=0.1))
+    True
+    """
+    I = np.asarray(I, np.float64)  # noqa: E741
+    p = I if p is None else np.asarray(p, np.float64)
+    if I.ndim != 2 or p.shape != I.shape or not (np.isfinite(I).all() and np.isfinite(p).all()):
+        raise ValueError(f"expected a finite guide (H, W) and p of its shape, got {I.shape} and {p.shape}")
+    if not (radius >= 1 and 0 < epsilon < np.inf):
+        raise ValueError(f"expected radius >= 1 and epsilon > 0, got {radius=}, {epsilon=}")
+    a, b = lines(I, p, radius=radius, epsilon=epsilon)
+    return window_mean(a, radius) * I + window_mean(b, radius)

@@ -1,0 +1,105 @@
+"""hdrlab.core.filters.guided: lines of windows, against sums written out, and what makes it keep edges."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.core.filters import guided
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(3)
+
+
+def by_definition(I, p, radius, epsilon):  # noqa: E741
+    """Return q, each window's line fitted by least squares, each pixel's lines averaged."""
+    H, W = I.shape
+    lines, q = np.zeros((H, W, 2)), np.zeros((H, W))
+
+    def window(y, x):
+        return np.s_[max(y - radius, 0) : y + radius + 1, max(x - radius, 0) : x + radius + 1]
+
+    for y in range(H):
+        for x in range(W):
+            seen, asked = I[window(y, x)].ravel(), p[window(y, x)].ravel()
+            A = np.stack([seen, np.ones_like(seen)], axis=1)
+            pull = np.diag([epsilon * seen.size, 0])  # eps a^2, once for each pixel
+            lines[y, x] = np.linalg.solve(A.T @ A + pull, A.T @ asked)
+    for y in range(H):
+        for x in range(W):
+            a, b = lines[window(y, x)].reshape(-1, 2).mean(axis=0)
+            q[y, x] = a * I[y, x] + b
+    return q
+
+
+@pytest.mark.parametrize(("radius", "epsilon"), [(1, 0.3), (2, 0.01), (4, 1e-4), (30, 0.1)])
+def test_the_filter_is_the_least_squares_of_each_window_averaged(rng, radius, epsilon):
+    I, p = rng.normal(size=(2, 11, 14))  # noqa: E741
+    assert np.allclose(
+        guided.guided(I, p, radius=radius, epsilon=epsilon), by_definition(I, p, radius, epsilon)
+    )
+
+
+def test_a_picture_is_its_own_guide_where_none_is_given(rng):
+    I = rng.normal(size=(20, 30))  # noqa: E741
+    knobs = {"radius": 3, "epsilon": 0.2}
+    assert np.array_equal(guided.guided(I, **knobs), guided.guided(I, I, **knobs))
+
+
+@given(radius=st.integers(1, 40), epsilon=st.floats(1e-6, 1e3), level=st.floats(-5, 5))
+def test_a_flat_picture_stays_as_it_is(radius, epsilon, level):
+    assert np.allclose(guided.guided(np.full((9, 7), level), radius=radius, epsilon=epsilon), level)
+
+
+def test_a_level_added_to_the_picture_is_added_to_the_base(rng):
+    I, knobs = rng.normal(size=(20, 30)), {"radius": 3, "epsilon": 0.2}  # noqa: E741
+    assert np.allclose(guided.guided(I + 7, **knobs), guided.guided(I, **knobs) + 7)
+
+
+def test_epsilon_is_in_squares_of_the_unit(rng):
+    I = rng.normal(size=(20, 30))  # noqa: E741
+    one, ten = (guided.guided(k * I, radius=3, epsilon=0.2 * k * k) for k in (1, 10))
+    assert np.allclose(ten, 10 * one)
+
+
+def test_a_large_epsilon_leaves_two_means_and_a_small_one_the_picture(rng):
+    I = rng.normal(size=(20, 30))  # noqa: E741
+    twice = guided.window_mean(guided.window_mean(I, 2), 2)
+    assert np.allclose(guided.guided(I, radius=2, epsilon=1e9), twice, atol=1e-6)
+    assert np.allclose(guided.guided(I, radius=2, epsilon=1e-12), I, atol=1e-6)
+
+
+def test_a_step_stays_and_a_ripple_goes_but_for_beside_the_step():
+    x = np.arange(200)
+    plains, ripple = np.where(x < 100, 0.0, 2.0), 0.1 * np.sin(x / 2)
+    left = guided.guided((plains + ripple) * np.ones((40, 1)), radius=8, epsilon=0.04)[20] - plains
+    assert np.abs(left[20:80]).max() < 0.02 and np.abs(left).max() < 0.1
+    assert np.abs(left[85:115]).max() > 0.05
+
+
+def test_the_edge_of_another_guide_is_taken_over(rng):
+    """Flash and no flash: noise goes, and the guide's edge comes."""
+    I = np.where(np.arange(60) < 30, 0.0, 1.0) * np.ones((40, 1))  # noqa: E741
+    p = 3 * I + rng.normal(0, 0.3, I.shape)
+    q = guided.guided(I, p, radius=5, epsilon=1e-3)
+    assert np.abs(q - 3 * I).max() < 0.2 and np.std(q - 3 * I) < 0.06
+
+
+@pytest.mark.parametrize(
+    ("I", "p", "knobs"),
+    [
+        (np.ones(5), None, {}),
+        (np.ones((5, 5, 3)), None, {}),
+        (np.full((5, 5), np.nan), None, {}),
+        (np.ones((5, 5)), np.ones((5, 6)), {}),
+        (np.ones((5, 5)), np.full((5, 5), np.inf), {}),
+        (np.ones((5, 5)), None, {"radius": 0}),
+        (np.ones((5, 5)), None, {"epsilon": 0}),
+        (np.ones((5, 5)), None, {"epsilon": np.inf}),
+    ],
+)
+def test_what_has_no_line_is_refused(I, p, knobs):  # noqa: E741
+    with pytest.raises(ValueError, match="expected"):
+        guided.guided(I, p, **{"radius": 2, "epsilon": 0.1} | knobs)
