@@ -2,6 +2,7 @@
 
 import ast
 import re
+import symtable
 from pathlib import Path
 
 import nbformat
@@ -23,6 +24,17 @@ def calls_of(cell):
     """Return the calls that make a picture: pictures.picture(...), widgets.play(...)."""
     calls = [node for node in ast.walk(ast.parse(cell.source)) if isinstance(node, ast.Call)]
     return [call for call in calls if ".".join(ast.unparse(call.func).split(".")[-2:]) in PICTURES]
+
+
+def bound(table):
+    return {name.get_name() for name in table.get_symbols() if name.is_assigned() or name.is_imported()}
+
+
+def globals_read(table):
+    """Return the globals that the functions of a cell read; a comprehension runs at once, and is none."""
+    inner = [each for each in table.get_children() if not each.get_name().endswith(("comp", "genexpr"))]
+    found = {name.get_name() for each in inner for name in each.get_symbols() if name.is_global()}
+    return found.union(*map(globals_read, inner))
 
 
 def kinds_of(cell):
@@ -64,6 +76,20 @@ def test_every_picture_has_alt_text(path):
             assert not isinstance(texts[0], ast.Constant) or len(texts[0].value) > 10, cell.id
     for cell in cells_of(path, "markdown"):
         assert "![](" not in cell.source and ("<img" not in cell.source or "alt=" in cell.source), cell.id
+
+
+def test_a_prediction_binds_no_name_that_a_function_reads_from_another_cell(path):
+    """A slider calls its function late: what it reads must not have become something else by then."""
+    cells = cells_of(path, "code")
+    tables = [symtable.symtable(cell.source, cell.id, "exec") for cell in cells]
+    binds = [bound(table) for table in tables]
+    asks = [k for k, cell in enumerate(cells) if re.search(r"^predict\.", cell.source, re.M)]
+    for k, table in enumerate(tables):
+        for name in globals_read(table) & set().union(*binds[: k + 1]):
+            meant = max(j for j in range(k + 1) if name in binds[j])
+            assert [cells[j].id for j in asks if name in binds[j] and j != meant] == [], (
+                f"{cells[k].id}: {name}"
+            )
 
 
 def test_a_question_stands_before_each_picture(path):
