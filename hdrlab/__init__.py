@@ -23,6 +23,7 @@ A camera, its sensor and its meter     capture.camera.shoot, capture.photon_tran
 A response from measured curves        response.space.recover, response.marginal.calibrate, response.linear
 ... without a bracket                  calibration.chart, calibration.display, calibration.motion_blur
 What moved, and what the lens did      radiance.deghosting.ghosts, radiance.flare, radiance.ratios
+Edges made smaller at each scale       tonemap.local_laplacian.tonemap
 The codes of HDR screens: PQ, HLG      tonemap.transfer
 Other cameras, patches, video          beyond.assorted, beyond.flutter, beyond.patches, beyond.video
 The same functions, fast               fast.debevec, fast.merge, fast.durand

@@ -28,6 +28,7 @@ VERBS = (
     "tonemap.durand.tonemap",
     "tonemap.reinhard.tonemap",
     "tonemap.fattal.tonemap",
+    "tonemap.local_laplacian.tonemap",
     "enhance.mertens.fuse",
     "enhance.battiato.correct",
 )

@@ -34,6 +34,11 @@ VARIED = {
         {"black": 0, "white": 0},
         {"black": 0.1},
     ],
+    "local_laplacian": [
+        {"sigma": 0.3, "samples": 2},
+        {"alpha": 0.5, "beta": 1},
+        {"alpha": 3, "beta": 0.3, "samples": 9},
+    ],
     "reinhard": [
         {"key": 0.72, "white": 0.5},
         {"key": "auto", "white": np.inf},

@@ -1,0 +1,94 @@
+"""hdrlab.tonemap.local_laplacian: the remapping, and samples against a pyramid for each coefficient."""
+
+import laws
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.core.filters import pyramid
+from hdrlab.core.steps import last
+from hdrlab.tonemap import local_laplacian
+
+KNOBS = {"sigma": 0.9, "alpha": 1.0, "beta": 0.2}
+
+
+def by_definition(lL, **knobs):
+    """Return O_k: a pyramid of the picture remapped anew for each coefficient [Paris11 algorithm 1]."""
+    G = pyramid.gaussian(lL, pyramid.depth(lL.shape, 2))
+    answer = [np.zeros_like(level) for level in G[:-1]] + G[-1:]
+    for k, level in enumerate(answer[:-1]):
+        for y, x in np.ndindex(level.shape):
+            r = local_laplacian.remap(lL, float(G[k][y, x]), **knobs)
+            level[y, x] = pyramid.laplacian(r, len(G))[k][y, x]
+    return answer
+
+
+def test_the_samples_come_to_the_definition_and_more_of_them_nearer():
+    lL = np.log(laws.scene((18, 25)))
+    true, off = pyramid.collapse(by_definition(lL, **KNOBS)), []
+    for samples in (8, 32, 256):
+        found = last(local_laplacian.filter_steps(lL, **KNOBS, samples=samples)).levels
+        off.append(np.abs(pyramid.collapse(found) - true).max())
+    assert off[0] > 3 * off[1] > 9 * off[2] and off[2] < 0.01
+
+
+@pytest.mark.parametrize("samples", [2, 5, 24])
+def test_with_powers_and_slopes_of_1_the_picture_stays(samples):
+    lL = np.log(laws.scene((40, 61)))
+    found = last(local_laplacian.filter_steps(lL, sigma=0.5, alpha=1.0, beta=1.0, samples=samples))
+    assert np.allclose(pyramid.collapse(found.levels), lL, atol=1e-4)
+
+
+@given(sigma=st.floats(0.1, 5), alpha=st.floats(0.2, 3), beta=st.floats(0, 1), g=st.floats(-9, 0))
+def test_the_remapping_is_odd_about_g_and_goes_on_where_detail_ends(sigma, alpha, beta, g):
+    d = np.array([0, sigma / 2, sigma, 1.001 * sigma, 3 * sigma])
+    up, down = (local_laplacian.remap(g + s * d, g, sigma=sigma, alpha=alpha, beta=beta) - g for s in (1, -1))
+    assert np.allclose(up, -down) and up[0] == 0
+    assert np.allclose(up[[1, 2, 4]], [sigma / 2**alpha, sigma, sigma + 2 * beta * sigma])
+    assert up[3] == pytest.approx(sigma, rel=0.0011)
+
+
+def test_each_sample_is_a_step_and_a_later_one_leaves_it_as_it_was():
+    lL = np.log(laws.scene((40, 50)))
+    steps = list(local_laplacian.filter_steps(lL, **KNOBS, samples=6))
+    assert np.allclose([step.g for step in steps], np.linspace(lL.min(), lL.max(), 6))
+    assert all(np.array_equal(step.r, local_laplacian.remap(lL, step.g, **KNOBS)) for step in steps)
+    one = next(local_laplacian.filter_steps(lL, **KNOBS, samples=6))
+    assert all(map(np.array_equal, one.levels, steps[0].levels))
+
+
+def test_a_smaller_beta_shows_more_of_the_dark_and_a_smaller_alpha_more_detail():
+    L = laws.scene((96, 128))
+    dark = [np.median(local_laplacian.tonemap(L, beta=beta)[L < np.median(L)]) for beta in (1, 0.4, 0)]
+    assert dark[0] < dark[1] < dark[2]
+    lLd = [np.log(local_laplacian.tonemap(L, alpha=alpha)) for alpha in (2, 1, 0.6)]
+    fine = [np.abs(pyramid.laplacian(one, 3)[0]).mean() for one in lLd]
+    assert fine[0] < fine[1] < fine[2]
+
+
+def test_beside_a_step_the_light_never_runs_the_other_way():
+    """A base that is blurred makes the dark side sink at the edge; here it rises to it."""
+    L = np.where(np.arange(128) < 64, 1.0, 1000.0) * np.ones((128, 1))
+    row = np.log(local_laplacian.tonemap(L)[64])
+    assert np.diff(row).min() > -0.02 and np.ptp(row) < 0.5 * np.log(1000)
+    assert row[64] - row[63] > 0.35 * np.ptp(row)
+
+
+def test_more_than_the_display_shows_is_compressed_to_its_contrast():
+    Ld = local_laplacian.tonemap(laws.scene(), beta=1)
+    low, high = np.log(np.quantile(Ld, [local_laplacian.CUT, 1 - local_laplacian.CUT]))
+    assert high == pytest.approx(0, abs=0.01) and low == pytest.approx(-local_laplacian.CONTRAST, abs=0.05)
+
+
+def test_an_even_scene_is_white_and_a_black_one_black():
+    assert np.all(local_laplacian.tonemap(np.full((20, 30), 3.7)) == 1)
+    assert not local_laplacian.tonemap(np.zeros((20, 30))).any()
+
+
+@pytest.mark.parametrize(
+    "knobs", [{"sigma": 0}, {"alpha": 0}, {"alpha": np.inf}, {"beta": -0.1}, {"beta": 1.1}, {"samples": 1}]
+)
+def test_knobs_out_of_range_are_refused(knobs):
+    with pytest.raises(ValueError, match="expected knobs in range"):
+        local_laplacian.tonemap(np.ones((3, 3)), **knobs)
