@@ -5,8 +5,7 @@ G_k    level k of its Gaussian pyramid
 g      a brightness                    nats: what G_k may be somewhere; g_0 in Paris, gamma in Aubry
 r      remapped about g                (H, W), nats
 sigma  what differs from g by less is detail, and by more an edge, nats
-alpha  power of details                below 1 they grow, above 1 they fade
-beta   what is left of edges           0 to 1, of what is beyond sigma
+alpha  power of details, below 1 they grow; beta, what is left of edges beyond sigma, 0 to 1
 O_k    level k of the answer           the coefficients L_k of r, each with g = G_k at its own place
 
 Paris et al. remap the picture anew for every coefficient, Aubry et al. for a few g, and interpolate. There is
