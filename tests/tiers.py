@@ -4,7 +4,7 @@ A test is quick unless another list below names it, and the longest name counts.
 specification on the library, the layers, the handouts against their source, one homework through the sandbox;
 a quick test takes at most 5 s.
 
-notebooks  every notebook, run once; the site that is made of notebooks
+notebooks  every notebook, run once; what long ones say of their numbers; the site that is made of them
 browser    JupyterLab on three notebooks, the site and the gallery in Chromium
 jupyterlab the other notebooks in JupyterLab; `.ci/run` leaves it to who asks for it
 grading    attacks, kills, clusters, whole classes, their likeness; the sandbox; how points are earned or not
@@ -23,6 +23,20 @@ TIERS = {
     ),
     "notebooks": (
         "tests/test_notebooks_run.py",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[00",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[02",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[03",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[04",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[05",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[06",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[08",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[10",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[11",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[12",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[16",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[18",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[20",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[21",
         "tests/cli/test_faults.py::test_a_disk_that_refuses_is_told_in_a_line[site",
         "tests/cli/test_faults.py::test_a_site",
         "tests/course/test_handouts.py::test_building_writes_both",

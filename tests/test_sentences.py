@@ -1,0 +1,419 @@
+"""What notebooks say of their own numbers: each sentence stands there, and the numbers bear it out.
+
+A row is a sentence, or the piece of it that could become untrue, and what makes it true, asked of the names
+that the notebook's own cells have made. A number is true if it rounds to the digits that the sentence has.
+"""
+
+import contextlib
+import io
+import json
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from test_notebooks import NOTEBOOKS
+
+from hdrlab.capture import ranges
+from hdrlab.core import metrics
+from hdrlab.show import pictures, widgets
+from hdrlab.show.widgets import predict
+
+SHOWN = {
+    pictures: ("picture", "radiance", "strip"),
+    widgets: ("play", "tune", "wipe", "blink", "brush"),
+    predict: ("choice", "number", "curve", "place"),
+}
+
+
+def off(g, truth):
+    """Return how far a response is off, in percent of the exposure of level 250."""
+    return metrics.response_rmse(g, truth)[0]
+
+
+def worst(g, truth, low=5, high=250):
+    """Return by how many stops a response is off at most, between two levels."""
+    return np.abs(g - truth)[low : high + 1].max() / np.log(2)
+
+
+def differ(n, width):
+    """Return which share of the bits differ where levels within a width of the median are left out."""
+    return (n.b[0] ^ n.b[1])[(n.far[0] > width) & (n.far[1] > width)].mean()
+
+
+def quality(n, name):
+    return n.quality.tmqi(n.L, n.changed[name])
+
+
+SENTENCES = {
+    "00": {
+        "Sky and corners lie about sixteen stops apart": lambda n: round(float(n.stops)) == 16,
+    },
+    "01": {
+        "The scene has more than a decade more than the sensor": lambda n: (
+            n.scenes.decades(n.E, tail=0) > 1 + ranges.sensor_range(n.GOOD)[0]
+        ),
+        "With 6 bits a level is 340 electrons wide": lambda n: round(20_000 / (2**6 - 1 - 2**2), -1) == 340,
+        "With 8 bits it is 84": lambda n: round(20_000 / (2**8 - 1 - 2**4)) == 84,
+        "Each photograph holds nearly twelve stops": lambda n: 11.5 < ranges.sensor_range(n.GOOD)[1] < 12,
+        "Four, at 1/64, 1/4, 4 and 64 s": lambda n: n.enough == 4,
+    },
+    "02": {
+        "With up to 6 pixels of shake alignment mends all of it": lambda n: (
+            worst(n.shaken(6)[3], n.shaken(6).truth, 10) <= 0.05
+        ),
+        "From the dark two shots do": lambda n: (
+            {len(n.steps(18, mode)) for mode in n.metering.MODES} == {2, 3}
+        ),
+    },
+    "03": {
+        "more than one bit in a hundred differs": lambda n: 0.01 < differ(n, -1) < 0.02,
+        "at width 2 there is hardly one left, and at 4, which is Ward's, none": lambda n: (
+            0 == differ(n, 4) < differ(n, 2) < 1e-4
+        ),
+        "By up to eight pixels to the side, and by one up or down": lambda n: (
+            np.abs(n.mtb.align(n.real)).max(axis=0).tolist() == [1, 8]
+        ),
+        "At $(-63, -63)$, as far as it can go": lambda n: n.corner == (-63, -63),
+        "at half a degree a corner is off by 2.4 pixels": lambda n: round(280 * np.deg2rad(0.5), 1) == 2.4,
+    },
+    "04": {
+        "with our $P = 7$ for 43": lambda n: n.debevec.samples_needed(7) == 43,
+        "For $P = 11$ this asks for $N = 26$": lambda n: n.debevec.samples_needed(11) == 26,
+        "$g(127)$ is a little less": lambda n: -0.05 < n.g[127] < 0 and abs(n.g[128]) < 1e-9,
+    },
+    "05": {
+        "it is 4 % of the full exposure after the first iteration, and stays there": lambda n: (
+            {round(off(g, n.truth)) for g in n.found[1:]} == {4}
+        ),
+        "Three iterations make the change hundreds of times smaller": lambda n: (
+            100 < n.change[1] / n.change[3] < 1000
+        ),
+        "`hat` and `flat` err most at the bright end": lambda n: (
+            min(off(n.weighted(w), n.truth) for w in ("hat", "flat"))
+            > 2 * off(n.weighted("gaussian"), n.truth)
+        ),
+        "scallops of up to 0.3 stops": lambda n: (
+            round(worst(n.found[1], n.truth), 1) == round(worst(n.found[30], n.truth), 1) == 0.3
+        ),
+        "the cut lies on the line": lambda n: off(n.weighted("cut"), n.truth) < 0.2,
+    },
+    "06": {
+        "For 27 of the 32 the floor of the valley leads the right way": lambda n: gained(n) == 27,
+        "After the tenth iteration the error falls by a fifth": lambda n: (
+            round(n.fall.error[299] / n.fall.error[9], 1) == 0.8
+        ),
+        "more than ten times as far off as after the first": lambda n: n.fall.off[299] > 10 * n.fall.off[0],
+        "and they are right within 0.002": lambda n: (
+            np.abs(n.R ** (np.log(n.true).sum() / np.log(n.R).sum()) - n.true).max() < 0.0025
+        ),
+        "the ratios found are all a little low": lambda n: np.all(n.R < n.true),
+        "the camera called the whole bracket five stops, and it was 4.8": lambda n: np.allclose(
+            -np.log2([n.stated.prod(), n.true.prod()]), [5, 4.8], atol=0.05
+        ),
+        "fewer than 10 iterations": lambda n: len(n.iterations) < 10,
+    },
+    "07": {
+        "order 10 is then off by two in a thousand": lambda n: (
+            round(off(n.polynomials(10, 0.98)[1], n.cubic), 1) == 0.2
+        ),
+        "the cut alone does not save it": lambda n: off(n.polynomials(10, 0.98)[0], n.cubic) > 5,
+        "The true order fits, noise or not": lambda n: max(off(g, n.cubic) for g in n.polynomials(3)) < 0.1,
+        "comes out low, for a ratio of 4 by two in a hundred at noise of four levels": lambda n: (
+            round(100 * (1 - n.estimate(4.0, 4.0)[0].k / 4)) == 2
+        ),
+        "From level 10 to 250 the table and the polynomial keep within some hundredths of a stop": lambda n: (
+            max(worst(n.three[name], n.responses.true_g("film"), 10, 250) for name in ("table", "polynomial"))
+            < 0.1
+        ),
+        "is off by more than a stop at both ends": lambda n: all(
+            worst(n.three["power law"], n.responses.true_g("film"), level, level) > 1 for level in (10, 250)
+        ),
+        "$k$ is 4 to a few thousandths": lambda n: abs(n.last_round("mid-step")[0].k - 4) < 0.005,
+        "and comes out above 4": lambda n: n.last_round("paper")[0].k > 4.005,
+    },
+    "08": {
+        "The screen and the many times hardly do worse than the true curve": lambda n: (
+            max(radiance_off(n, "a screen"), radiance_off(n, "a chart")) < 0.002 + radiance_off(n, "true")
+        ),
+        "with degree 2 or 3 the curve is off by more than 4 % of the range somewhere": lambda n: (
+            min(spline_off(n, n.simplex(degree)) for degree in (2, 3)) > 4
+        ),
+        "with 6 by a few tenths, with 9 by less": lambda n: (
+            1 > spline_off(n, n.simplex(6)) > spline_off(n, n.simplex(9))
+        ),
+        "Motion is far off": lambda n: radiance_off(n, "motion") > 0.1,
+        "Reading the photograph as sRGB is worse than that": lambda n: (
+            radiance_off(n, "sRGB") > radiance_off(n, "motion")
+        ),
+    },
+    "09": {
+        "`film` and `srgb` are met to a few tenths of a percent with 4 components": lambda n: all(
+            0.1 < off(*n.nearest(name, 4)) < 0.4 for name in ("film", "srgb")
+        ),
+        "`mix` with 6": lambda n: off(*n.nearest("mix", 6)) < 0.2,
+        "`wig` stays 2 to 3 % off with all twelve": lambda n: 2 < off(*n.nearest("wig", 12)) < 3,
+        "as the second does for `srgb`": lambda n: off(*n.nearest("srgb", 2)) > off(*n.nearest("srgb", 1)),
+        "is already within 1 %, with five within 0.2 %": lambda n: all(
+            patches_off(n, name, patches) < limit
+            for name in ("film", "srgb", "mix")
+            for patches, limit in ((3, 1), (5, 0.2))
+        ),
+        "the space is better for `film` and `srgb`, with half to two thirds of the error": lambda n: all(
+            0.5 <= round(share(n, name, 100), 2) <= 0.67 for name in ("film", "srgb")
+        ),
+        "worse for `mix`, and much worse for `wig`": lambda n: (
+            share(n, "wig", 100) > 5 > share(n, "mix", 100) > 1
+        ),
+        "With thousands of pixels `mix` is met, too": lambda n: share(n, "mix", 4000) < 1,
+        "`gsolve` gains for `srgb` and `wig` and loses for `film`": lambda n: (
+            gain(n, "film") < 1 < min(gain(n, "srgb"), gain(n, "wig"))
+        ),
+        "`film` is well met from 0.002 to 0.1": lambda n: all(
+            off(*n.believed(noise, "film")) < 0.25 for noise in (0.002, 0.005, 0.02, 0.05, 0.1)
+        ),
+        "at 0.05 it is already pulled off by a percent": lambda n: round(off(*n.believed(0.05, "mix"))) == 1,
+    },
+    "10": {
+        "The frames agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
+        "six stops below the windows": lambda n: round(n.scenes.decades(n.real.E) / np.log10(2)) == 6,
+        "film reaches level 128 with a seventh of the light that fills it": lambda n: (
+            round(float(np.exp(n.true_g[250]))) == 7
+        ),
+    },
+    "11": {
+        "A fifth of a degree": lambda n: round(float(np.abs(n.degrees).max()), 1) == 0.2,
+        "the frames agree alike": lambda n: np.ptp([one.spread for one in n.both.values()]) < 0.002,
+        "the histograms of the two photographs tell nearly the same": lambda n: (
+            abs(n.light.exposure_ratio(n.dark, n.bright, n.g[:, 1]) / n.k0 - 1) < 0.01
+        ),
+    },
+    "12": {
+        "will the error in the region shrink: two, five, or fifteen?": lambda n: 12 < errors_shrink(n) < 18,
+        "Once, where he stood in the reference photograph": lambda n: len(n.result.references) == 1,
+    },
+    "13": {
+        "an error of one to two percent in the worst channel of half of the pixels": lambda n: (
+            1 < np.median(n.worst) < 2
+        ),
+        "At a tenth of red it is up to 8 %": lambda n: round(blue_off(n, 0.095, 0.105).max()) == 8,
+        "up to a half; below $\\frac1{128}$": lambda n: (
+            round(blue_off(n, 1 / 128, 1 / 32).max()) == 50 and blue_off(n, 0, 1 / 128).min() == 100
+        ),
+        "RGBE is flat at 0.8 %, one part in 128": lambda n: round(n.top["RGBE"].max(), 1) == 0.8,
+        "Half is flat at 0.05 %": lambda n: (
+            round(n.top["half"][(n.decades > -4) & (n.decades < 4)].max(), 2) == 0.05
+        ),
+    },
+    "14": {
+        "the darker half of the pixels shares a handful": lambda n: n.darker_levels("linear") <= 5,
+        "with 10 bits 0.6 % at 1000 cd/m²": lambda n: round(step_at(n, "gamma", 1000), 1) == 0.6,
+        "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
+            round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
+        ),
+        "a dark halo of 5.7 stops": lambda n: round(float(np.log2(101 / 2)), 1) == 5.7,
+        "the walls then stand at half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
+    },
+    "16": {
+        "which fill less than a thousandth of the picture": lambda n: lamps(n) < 0.001,
+    },
+    "15": {
+        "a decade on each side": lambda n: (
+            round(float(np.abs(n.smoothed()["log L"] - n.smoothed()["Gaussian blur"])[90:110].max())) == 1
+        ),
+    },
+    "17": {
+        "Outlines stand after a few sweeps, and the large differences are missing for thousands": lambda n: (
+            np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
+        ),
+        "$\\alpha^{1 - \\beta} = 0.1^{0.1} = 0.79$": lambda n: round(0.1**0.1, 2) == 0.79,
+        "a climb of 5 nats, a factor of 150": lambda n: round(np.exp(5), -1) == 150,
+    },
+    "18": {
+        "for three hundredths": lambda n: (
+            round(quality(n, "as it is").Q - quality(n, "red and blue exchanged").Q, 2) == 0.03
+        ),
+        "The noise costs about as much; the vignette, which most viewers forgive, more": lambda n: (
+            abs(quality(n, "with noise").Q - quality(n, "red and blue exchanged").Q)
+            < 0.015
+            < quality(n, "with noise").Q - quality(n, "vignette").Q
+        ),
+        "and $S = 0$": lambda n: round(quality(n, "negative").S, 2) == 0,
+        "All three are near 0.9 at the finest scale": lambda n: all(
+            round(each[0][1].mean(), 1) == 0.9 > each[-1][1].mean() for each in n.found.values()
+        ),
+    },
+    "19": {
+        "about three quarters of the light face and nine tenths of the dark one": lambda n: (
+            round(4 * recall(n, "chrominance", "light")) == 3
+            and round(recall(n, "chrominance", "dark"), 1) == 0.9
+        ),
+        "The locus finds nearly all of both faces": lambda n: (
+            min(recall(n, "locus", tone) for tone in ("light", "dark")) > 0.9
+        ),
+        "nearly one pixel in ten of flag, rocket and wall": lambda n: all(
+            0.07 < mistaken(n, "locus", tone) < 0.1 for tone in ("light", "dark")
+        ),
+        "The face comes within a level in one round": lambda n: abs(n.states["skin"][1].mean - 128) < 1,
+        "The picture is off by two": lambda n: round(128 - n.states["whole picture"][1].mean) == 2,
+        "shade are off by nearly forty": lambda n: 35 < 128 - n.states["light and shade"][1].mean < 40,
+        "within four levels of the sRGB curve between levels 20 and 200": lambda n: (
+            np.abs(n.srgb - n.relight.f(n.q, a=1.79, c=0.192))[(n.srgb >= 20) & (n.srgb <= 200)].max() < 4
+        ),
+        "three stops up": lambda n: round(n.corrected().delta) == 3,
+    },
+    "20": {
+        "About a third, most by little": lambda n: (
+            round(float(((n.R < 0) | (n.R > 1)).any(axis=-1).mean()), 1) == 0.3
+        ),
+        "of two pixels that differ by two stops few are exchanged": lambda n: n.wrong < 0.01,
+    },
+    "21": {
+        "the first reflects 8 % and lets 92 % through": lambda n: share_of_light(n)[0] == 92,
+        "which reflects 6 % of that and lets the rest through: 7.52 %": lambda n: (
+            share_of_light(n)[1] == 7.52
+        ),
+        "to the third sensor: 0.44 %. Only 0.04 % is lost": lambda n: (
+            share_of_light(n)[2] == 0.44 and round(100 * (1 - n.shares.sum()), 2) == 0.04
+        ),
+        "3.6 stops and 4.1 more": lambda n: (
+            np.log2(n.shares[:-1] / n.shares[1:]).round(1).tolist() == [3.6, 4.1]
+        ),
+        "Ratios of 12 and 17 are large": lambda n: (
+            (n.shares[:-1] / n.shares[1:]).round().tolist() == [12, 17]
+        ),
+        "the brightest sensor keeps 92 %, an eighth of a stop less than all": lambda n: (
+            round(-8 * np.log2(n.shares[0])) == 1
+        ),
+        "17.6 times with the code": lambda n: round(n.flutter.amplification(n.CODE), 1) == 17.6,
+        "The noise grows 52 times with one chop": lambda n: round(n.flutter.amplification(n.ONE), 1) == 52,
+        "averaged short pictures meets the coded one's at nine": lambda n: (
+            1 + np.argmin(np.abs(n.short["mean of short pictures"] - n.short["one coded picture"])) == 9
+        ),
+        "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
+        "a quarter of a decade": lambda n: 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.3,
+        "`ghosts` is about as good here": lambda n: (
+            abs(np.diff([n.decibels(n.E3[way], n.taken.moments[1]) for way in ("patches", "ghosts")])[0]) < 1
+        ),
+    },
+    "22": {
+        "there are as many zeros as groups less one": lambda n: (
+            np.sum(n.stiff(0) < 1e-12 * n.stiff(0)[0]) == n.islands - 1
+        ),
+        "Exactly one is 0, but for rounding": lambda n: np.sum(np.linalg.svd(n.free)[1] < 1e-9) == 1,
+        "one line is about twice as steep as the other": lambda n: (
+            round(np.divide(*(np.polyfit(n.digits[4:13], one[4:13], 1)[0] for one in n.errors))) == 2
+        ),
+    },
+}
+
+
+def radiance_off(n, name):
+    """Return by how much radiance read off one photograph is off, in the median."""
+    return np.median(np.abs(metrics.radiance_errors(np.exp(n.g[name][n.shot]), n.workshop, n.well)[n.well]))
+
+
+def patches_off(n, name, patches):
+    """Return how far the likeliest curve through some gray patches is off, in percent."""
+    true, likely, _ = n.drawn(patches, name).values()
+    return 100 * np.abs(likely - true).mean()
+
+
+def share(n, name, samples):
+    """Return the error of the space of responses over that of gsolve."""
+    pair, true = n.both(name, samples)
+    return off(pair["space"], true) / off(pair["gsolve"], true)
+
+
+def gain(n, name):
+    """Return the error of gsolve of a hundred pixels over that of thousands."""
+    few, many = (off(pair["gsolve"], true) for pair, true in (n.both(name, 100), n.both(name, 4000)))
+    return few / many
+
+
+def errors_shrink(n):
+    """Return the error of the plain map in the region over that of the map without ghosts."""
+    taken = n.sim.images, n.sim.times, n.curve, n.w
+    merged = n.merge_with_quality(*taken)
+    clean = n.ghosts.remove_ghosts(*taken, merged=merged)
+    where = n.moving.region & (clean.labels > 0) & (clean.quality == 0)
+    each = [np.log2(E / np.maximum(n.truth, 1e-9))[where] for E in (merged.E, clean.E)]
+    return np.sqrt(np.mean(each[0] ** 2) / np.mean(each[1] ** 2))
+
+
+def blue_off(n, low, high):
+    """Return RGBE's errors of blue, in percent, where blue over red lies between two shares."""
+    error = 100 * np.abs(n.stored["RGBE"] / n.share - 1)
+    return error[(n.share > low) & (n.share < high)]
+
+
+def step_at(n, coding, light):
+    """Return the size of one step of 10 bits at a luminance, in percent."""
+    return np.interp(np.log10(light), n.DECADES, n.step_sizes(10)[coding])
+
+
+def gained(n):
+    """Return for how many cameras 300 iterations find a better curve than the scheme that stops."""
+    stops = ({"eps": 1e-3}, {"eps": 0, "max_iterations": 300})
+    fits = [[n.last(n.mitsunaga.fit_steps(M, [0.5] * 3, 5, **how)).c[0] for M in n.means] for how in stops]
+    ends = [[n.ambiguity.mean_error(c, one.c) for c, one in zip(cs, n.trials, strict=True)] for cs in fits]
+    return int(np.sum(np.less(*ends[::-1])))
+
+
+def spline_off(n, found):
+    """Return by how many percent of the range a joined curve is off at most, for the same two ends."""
+    (one,) = found.values()
+    true = n.responses.as_response("film").inverse(one.M)
+    true = (true - true[0]) / (true[-1] - true[0])
+    return 100 * np.abs((one.X - one.X[0]) / (one.X[-1] - one.X[0]) - true).max()
+
+
+def lamps(n):
+    """Return the share of the brightest pixels that hold half of the light."""
+    each = np.sort(n.L, axis=None)[::-1]
+    return np.searchsorted(np.cumsum(each), each.sum() / 2) / each.size
+
+
+def recall(n, way, tone):
+    return n.skin.FINDERS[way](n.portrait(tone))[n.face].mean()
+
+
+def mistaken(n, way, tone):
+    return n.skin.FINDERS[way](n.portrait(tone))[~n.wide & (n.y < 140)].mean()
+
+
+def share_of_light(n):
+    return (100 * n.shares).round(2).tolist()
+
+
+def cells_of(path):
+    return json.loads(path.read_text(encoding="utf-8"))["cells"]
+
+
+def names_of(path, monkeypatch):
+    """Return what the cells of a notebook make, run without drawing anything."""
+    for module, shown in SHOWN.items():
+        for name in shown:
+            monkeypatch.setattr(module, name, lambda *_, **__: None)
+    names = {}
+    with contextlib.redirect_stdout(io.StringIO()):
+        for cell in cells_of(path):
+            if cell["cell_type"] == "code":
+                exec(compile("".join(cell["source"]), f"{path.stem}:{cell['id']}", "exec"), names)
+    return SimpleNamespace(**names)
+
+
+SPEAKING = pytest.mark.parametrize(
+    "path", [path for path in NOTEBOOKS if path.stem[:2] in SENTENCES], ids=lambda path: path.stem
+)
+
+
+@SPEAKING
+def test_each_sentence_stands_in_its_notebook(path):
+    text = " ".join(" ".join("".join(cell["source"]) for cell in cells_of(path)).split())
+    assert [sentence for sentence in SENTENCES[path.stem[:2]] if sentence not in text] == []
+
+
+@SPEAKING
+def test_each_sentence_is_true_of_its_notebook(path, monkeypatch):
+    n = names_of(path, monkeypatch)
+    assert [sentence for sentence, is_true in SENTENCES[path.stem[:2]].items() if not is_true(n)] == []
