@@ -52,12 +52,21 @@ SENTENCES = {
         "The scene has more than a decade more than the sensor": lambda n: (
             n.scenes.decades(n.E, tail=0) > 1 + ranges.sensor_range(n.GOOD)[0]
         ),
+        "In the long exposure luminances of 0.3 to 0.6 cross three levels": lambda n: levels_met(n, 1.0) == 3,
+        "in the short one they are all below the first step": lambda n: levels_met(n, 0.1) == 1,
         "With 6 bits a level is 340 electrons wide": lambda n: round(20_000 / (2**6 - 1 - 2**2), -1) == 340,
         "With 8 bits it is 84": lambda n: round(20_000 / (2**8 - 1 - 2**4)) == 84,
         "Each photograph holds nearly twelve stops": lambda n: 11.5 < ranges.sensor_range(n.GOOD)[1] < 12,
         "Four, at 1/64, 1/4, 4 and 64 s": lambda n: n.enough == 4,
     },
     "02": {
+        "With the spot or the partial meter on her face she is about a stop too dark": lambda n: all(
+            round(n.place(mode).off) == -1 for mode in ("spot", "partial")
+        ),
+        "More than half of the picture is full then": lambda n: n.place("spot").full.mean() > 0.5,
+        "the face is four to five stops too dark": lambda n: all(
+            -5 < n.place(mode).off < -4 for mode in ("centre", "average", "matrix")
+        ),
         "With up to 6 pixels of shake alignment mends all of it": lambda n: (
             worst(n.shaken(6)[3], n.shaken(6).truth, 10) <= 0.05
         ),
@@ -214,14 +223,23 @@ SENTENCES = {
         "the walls then stand at half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
     },
     "16": {
+        "seven in ten belong to the brightest tenth": lambda n: (
+            round(np.mean((n.L >= np.quantile(n.L, 0.9))[n.index == 0]), 1) == 0.7
+        ),
         "which fill less than a thousandth of the picture": lambda n: lamps(n) < 0.001,
     },
     "15": {
+        "A lonely pixel is its own base: its detail is zero": lambda n: (
+            abs(n.glint - n.alone.mean)[32, 48] < 0.005 and round(float(n.alone.k[32, 48]), 1) == 1
+        ),
         "a decade on each side": lambda n: (
             round(float(np.abs(n.smoothed()["log L"] - n.smoothed()["Gaussian blur"])[90:110].max())) == 1
         ),
     },
     "17": {
+        "must flatten that the most to get the range down: soft edges": lambda n: (
+            fine_detail(n, "finest alone") < fine_detail(n, "all levels") < fine_detail(n, "coarsest alone")
+        ),
         "Outlines stand after a few sweeps, and the large differences are missing for thousands": lambda n: (
             np.std(n.guesses[1024] - n.done) > 0.2 * np.std(n.done)
         ),
@@ -236,6 +254,9 @@ SENTENCES = {
             abs(quality(n, "with noise").Q - quality(n, "red and blue exchanged").Q)
             < 0.015
             < quality(n, "with noise").Q - quality(n, "vignette").Q
+        ),
+        "S falls with the key, N has a peak, and Q follows N": lambda n: (
+            np.argmax(n.three["N"]) == np.argmax(n.three["Q"]) and n.three["S"][0] > 2 * n.three["S"][-1]
         ),
         "and $S = 0$": lambda n: round(quality(n, "negative").S, 2) == 0,
         "All three are near 0.9 at the finest scale": lambda n: all(
@@ -254,6 +275,9 @@ SENTENCES = {
             0.07 < mistaken(n, "locus", tone) < 0.1 for tone in ("light", "dark")
         ),
         "The face comes within a level in one round": lambda n: abs(n.states["skin"][1].mean - 128) < 1,
+        "hardly anything of flag, rocket and wall": lambda n: all(
+            mistaken(n, "chrominance", tone) < 0.02 for tone in ("light", "dark")
+        ),
         "The picture is off by two": lambda n: round(128 - n.states["whole picture"][1].mean) == 2,
         "shade are off by nearly forty": lambda n: 35 < 128 - n.states["light and shade"][1].mean < 40,
         "within four levels of the sRGB curve between levels 20 and 200": lambda n: (
@@ -269,6 +293,9 @@ SENTENCES = {
     },
     "21": {
         "the first reflects 8 % and lets 92 % through": lambda n: share_of_light(n)[0] == 92,
+        "112 waves in 256 pixels come back as 16, coarse and at full strength": lambda n: (
+            np.argmax(np.abs(np.fft.rfft(n.wave()[1] - n.wave()[1].mean()))) == 16 // 4
+        ),
         "which reflects 6 % of that and lets the rest through: 7.52 %": lambda n: (
             share_of_light(n)[1] == 7.52
         ),
@@ -296,6 +323,12 @@ SENTENCES = {
         ),
     },
     "22": {
+        "has used up its sixteen digits, and the other still has some nine": lambda n: (
+            n.errors[0][-1] > -1 and round(-n.errors[1][-1]) in (9, 10)
+        ),
+        "In between lies the smallest condition number": lambda n: (
+            min(condition(n, 0.1), condition(n, 1000)) > 2 * condition(n, 1)
+        ),
         "there are as many zeros as groups less one": lambda n: (
             np.sum(n.stiff(0) < 1e-12 * n.stiff(0)[0]) == n.islands - 1
         ),
@@ -305,6 +338,22 @@ SENTENCES = {
         ),
     },
 }
+
+
+def levels_met(n, time):
+    """Return how many levels the luminances of 0.3 to 0.6 get in an exposure."""
+    return len(np.unique(n.levels(time).Z[(n.across > 0.3) & (n.across < 0.6)]))
+
+
+def fine_detail(n, name):
+    """Return the strongest fine detail of a solution, in nats."""
+    return np.quantile(np.abs(n.three[name] - n.blur.gaussian(n.three[name], 2)), 0.99)
+
+
+def condition(n, smoothness):
+    """Return the condition number of gsolve's matrix."""
+    sigma = n.stiff(smoothness)
+    return sigma[0] / sigma[-1]
 
 
 def radiance_off(n, name):
