@@ -104,6 +104,12 @@ SENTENCES = {
         "scallops of up to 0.3 stops": lambda n: (
             round(worst(n.found[1], n.truth), 1) == round(worst(n.found[30], n.truth), 1) == 0.3
         ),
+        "At one stop they are small": lambda n: scallops(n, 1) < 0.1,
+        "at three stops they reach beyond half a stop": lambda n: scallops(n, 3) > 0.5,
+        "Smoothness of 100 takes nearly all of it away at two stops": lambda n: (
+            scallops(n, 2, 100) < 0.1 * scallops(n, 2)
+        ),
+        "At 1000 there is a new error": lambda n: scallops(n, 2, 1000) > 2 * scallops(n, 2, 100),
         "the cut lies on the line": lambda n: off(n.weighted("cut"), n.truth) < 0.2,
     },
     "06": {
@@ -149,6 +155,10 @@ SENTENCES = {
         ),
         "with 6 by a few tenths, with 9 by less": lambda n: (
             1 > spline_off(n, n.simplex(6)) > spline_off(n, n.simplex(9))
+        ),
+        "They err by about the same, with opposite signs": lambda n: all(
+            left > 0 > right and abs(left + right) < 0.1 * left
+            for left, right in (edges_off(n, faster) for faster in (0.05, 0.15, 0.3))
         ),
         "Motion is far off": lambda n: radiance_off(n, "motion") > 0.1,
         "Reading the photograph as sRGB is worse than that": lambda n: (
@@ -289,9 +299,10 @@ SENTENCES = {
         "About a third, most by little": lambda n: (
             round(float(((n.R < 0) | (n.R > 1)).any(axis=-1).mean()), 1) == 0.3
         ),
-        "of two pixels that differ by two stops few are exchanged": lambda n: n.wrong < 0.01,
+        "of two pixels that differ by two stops few are exchanged": lambda n: exchanged(n) < 0.01,
     },
     "21": {
+        "so bright that a fifth of the picture is full": lambda n: round(np.mean(n.L >= 1), 1) == 0.2,
         "the first reflects 8 % and lets 92 % through": lambda n: share_of_light(n)[0] == 92,
         "112 waves in 256 pixels come back as 16, coarse and at full strength": lambda n: (
             np.argmax(np.abs(np.fft.rfft(n.wave()[1] - n.wave()[1].mean()))) == 16 // 4
@@ -356,6 +367,24 @@ def condition(n, smoothness):
     return sigma[0] / sigma[-1]
 
 
+def exchanged(n):
+    """Return the share of pairs two stops apart that fusion brings into the wrong order."""
+    y, brighter = n.gray(n.fused), n.L.flat[n.a] > 4 * n.L.flat[n.b]
+    return np.mean(y.flat[n.a][brighter] <= y.flat[n.b][brighter])
+
+
+def edges_off(n, acceleration):
+    """Return by how many percent the curves of the left and the right edges are off, at most, with signs."""
+    found = n.motion_blur.compare_edges(n.waved(acceleration))
+    errors = [spline_error(n, one) for one in (found.left, found.right)]
+    return [each[np.argmax(np.abs(each))] for each in errors]
+
+
+def scallops(n, stops, smoothness=0):
+    """Return by how many stops the curve of photographs so far apart is off, but for its ends."""
+    return worst(n.alternated(stops, smoothness), n.truth, 16, 245)
+
+
 def radiance_off(n, name):
     """Return by how much radiance read off one photograph is off, in the median."""
     return np.median(np.abs(metrics.radiance_errors(np.exp(n.g[name][n.shot]), n.workshop, n.well)[n.well]))
@@ -408,12 +437,16 @@ def gained(n):
     return int(np.sum(np.less(*ends[::-1])))
 
 
+def spline_error(n, one):
+    """Return how far a joined curve is off along its range, in percent, for the same two ends."""
+    two = one.X, n.responses.as_response("film").inverse(one.M)
+    found, true = ((X - X[0]) / (X[-1] - X[0]) for X in two)
+    return 100 * (found - true)
+
+
 def spline_off(n, found):
-    """Return by how many percent of the range a joined curve is off at most, for the same two ends."""
-    (one,) = found.values()
-    true = n.responses.as_response("film").inverse(one.M)
-    true = (true - true[0]) / (true[-1] - true[0])
-    return 100 * np.abs((one.X - one.X[0]) / (one.X[-1] - one.X[0]) - true).max()
+    """Return by how many percent of the range a joined curve is off at most."""
+    return max(np.abs(spline_error(n, one)).max() for one in found.values())
 
 
 def lamps(n):
