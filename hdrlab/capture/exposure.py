@@ -4,7 +4,8 @@ T   shutter time     s
 F   f-number         focal length over aperture; the light that passes goes with 1 / F^2
 S   ISO speed        100 is the reference
 D   optical density  of a filter, which lets 10^-D of the light through
-L   luminance        cd/m^2
+L   luminance        cd/m^2: of a surface, in one direction; the same from near and far
+E   irradiance       lx: what the sensor gets of it, from the whole aperture
 EV  exposure value   stops: one more is half the light
 
 A dial says 1/60 and the shutter opens for 1/64 s: the series is one of powers of two, and its names are
@@ -150,6 +151,36 @@ def equivalent_time(T: Real, F: Real, F_new: Real, *, S: float = 100, S_new: flo
     require_positive(("shutter time", T), ("f-number", F), ("f-number", F_new))
     require_positive(("ISO speed", S), ("ISO speed", S_new))
     return T * (F_new / F) ** 2 * S / S_new
+
+
+def irradiance(L: Real, F: Real, *, angle: Real = 0.0) -> Real:
+    """Return E = L (pi / 4) (d / h)^2 cos^4 phi: what a surface of luminance L gives the sensor.
+
+    Parameters
+    ----------
+    L, F : cd/m^2, and the f-number h / d, focal length over the width of the aperture
+    angle : phi, radians, between the ray through the middle of the lens and its axis
+
+    Returns
+    -------
+    E : lx, of a lens that swallows nothing
+
+    Raises
+    ------
+    ValueError
+        For an f-number that is not positive.
+
+    References
+    ----------
+    Mitsunaga and Nayar, Radiometric self calibration, CVPR 1999, eq. 1.
+
+    Examples
+    --------
+    >>> float(irradiance(1000, 1).round()), float(irradiance(1000, 1, angle=np.pi / 4).round())
+    (785.0, 196.0)
+    """
+    require_positive(("f-number", F))
+    return np.asarray(L) * np.pi / 4 / np.asarray(F) ** 2 * np.cos(angle) ** 4
 
 
 def transmittance(D: Real) -> Real:

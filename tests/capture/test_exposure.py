@@ -85,3 +85,20 @@ def test_settings_that_are_not_positive_are_refused(bad):
             call()
     with pytest.raises(ValueError, match="1 or 3"):
         exposure.shutter_series(2)
+
+
+@pytest.mark.parametrize("angle", [0.0, 0.3, 0.75])
+def test_the_irradiance_is_all_that_a_small_aperture_sends_to_a_spot_of_the_sensor(angle):
+    h, d, n = 50.0, 50 / 16, 401  # mm
+    x = (np.arange(n) + 0.5) / n * d - d / 2
+    inside = np.hypot(x[:, None], x) < d / 2
+    square = h**2 + x[:, None] ** 2 + (x - h * np.tan(angle)) ** 2  # from a spot off the axis to the aperture
+    cosine = h / np.sqrt(square)  # the aperture is seen aslant, and the light falls aslant
+    arrived = 1000 * np.sum((cosine**2 / square)[inside]) * (d / n) ** 2
+    assert exposure.irradiance(1000, 16, angle=angle) == pytest.approx(arrived, rel=3e-3)
+
+
+def test_irradiance_goes_down_by_a_stop_where_the_aperture_does():
+    assert exposure.irradiance(5.0, 8 * np.sqrt(2)) == pytest.approx(exposure.irradiance(5.0, 8) / 2)
+    with pytest.raises(ValueError, match="f-number"):
+        exposure.irradiance(1.0, 0)
