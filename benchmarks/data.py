@@ -1,6 +1,6 @@
 """The arrays that everyone works on: a scene whose radiance is known, and its photographs.
 
-E        radiance (H, W, 3) float32: the room of `scenes.computed.view`, its contrast stretched to 6.5 decades
+E        radiance (H, W, 3) float32: the room of `scenes.computed`, its contrast stretched to 6.5 decades
 bracket  7 photographs, 2 stops apart, 8 bits, response of film, noise of a large sensor
 
 They are simulated once per folder and read from it afterwards, so that every process has the same ones.
@@ -18,6 +18,7 @@ from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket, bracket
+from scenes.computed import view
 
 SMALL, LARGE = (1224, 1632), (3000, 4000)  # 2 and 12 megapixels
 PIXELS = LARGE[0] * LARGE[1] / (SMALL[0] * SMALL[1])
@@ -31,7 +32,7 @@ def scene(folder: Path, size: Size = SMALL) -> NDArray[np.float32]:
     """Return E."""
 
     def make() -> Array:
-        E = scenes.room(size, samples=2 if size == SMALL else 1)
+        E = view.room(size, samples=2 if size == SMALL else 1)
         return (E / np.median(E)) ** np.float32(DECADES / scenes.decades(E, tail=0))
 
     return stored(folder, f"scene-{size[0]}", make)

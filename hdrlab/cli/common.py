@@ -112,7 +112,7 @@ def read_map(source: Path, clean: bool) -> Any:
 
 def size(E: Any) -> str:
     """Return what a radiance map is, in words: its size and its decades."""
-    from hdrlab.scenes.computed.view import decades
+    from hdrlab.scenes import decades
 
     return f"{E.shape[1]} x {E.shape[0]}, " + (f"{decades(E):.1f} decades" if E.any() else "all black")
 

@@ -108,8 +108,8 @@ def find_contradictions(
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.scenes.computed import view
-    >>> room = view.room((280, 420))
+    >>> from hdrlab import scenes
+    >>> room = scenes.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> find_contradictions(taken.images, taken.times * [1, 1, 2, 1, 1]).wrong
     (2,)

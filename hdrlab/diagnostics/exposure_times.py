@@ -94,8 +94,8 @@ def estimate_times(
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.scenes.computed import view
-    >>> room = view.room((280, 420))
+    >>> from hdrlab import scenes
+    >>> room = scenes.room((280, 420))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> estimate_times(taken.images, taken.times * [1, 1, 1.1, 1, 1]).accepted
     True

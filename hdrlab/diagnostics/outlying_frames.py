@@ -27,8 +27,8 @@ def find_outlying_frames(
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.scenes.computed import view
-    >>> room = view.room((140, 210))
+    >>> from hdrlab import scenes
+    >>> room = scenes.room((140, 210))
     >>> taken = camera.shoot(room, camera.times_around(room, 5, stops=1.5))
     >>> find_outlying_frames(taken.images, taken.times * [1, 1, 1, 6, 6]), find_outlying_frames(*taken[:2])
     ((), ())

@@ -85,8 +85,8 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     Examples
     --------
     >>> from hdrlab.capture import camera
-    >>> from hdrlab.scenes.computed import view
-    >>> photographs = camera.shoot(view.room((96, 144)), [0.01, 0.04, 0.16, 0.64], rng=1)
+    >>> from hdrlab import scenes
+    >>> photographs = camera.shoot(scenes.room((96, 144)), [0.01, 0.04, 0.16, 0.64], rng=1)
     >>> assembly = assemble(photographs)
     >>> assembly.E.shape, assembly.doubts
     ((96, 144, 3), ())

@@ -1,11 +1,12 @@
-"""The places that travel with the package: a dark chapel, a workshop by a sunny yard, a street at night.
+"""The places that travel with the package: a chapel, a workshop, a street at night, and a room with a window.
 
 E      radiance (H, W, 3) float32, cd/m^2, primaries of sRGB
 depth  (H, W) float32, metres from the camera along its axis
 mover  radiance (H, W, 3) of a visitor, cd/m^2, already multiplied by the mask
 mask   (H, W) float32, the share of a pixel that the visitor hides, 0 to 1
 
-They were rendered by `scenes.render` out of `scenes.models`, and are read from OpenEXR files.
+They were rendered by `scenes.render` out of `scenes.models`, the room by `scenes.computed`, and are read from
+OpenEXR files.
 """
 
 from pathlib import Path
@@ -16,6 +17,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.capture.movers import Figure, compose_moment
 from hdrlab.core.arrays import describe
+from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32, F64
 from hdrlab.io.maps.layers import read_layers
 
@@ -89,6 +91,20 @@ def street(shape: Shape | None = None) -> F32:
     (64, 96, 3)
     """
     return layers("street", shape).radiance
+
+
+def room(shape: Shape | None = None) -> F32:
+    """Return the radiance of a room by day: the sun in its window, a lamp, and an unlit room behind a door.
+
+    Parameters, what is returned and what is raised are those of `chapel`.
+
+    Examples
+    --------
+    >>> room((64, 96)).shape
+    (64, 96, 3)
+    """
+    E = read_layers(FOLDER / "room.exr")["radiance"]
+    return resample(E, E.shape[:2] if shape is None else shape)
 
 
 def layers(name: str, shape: Shape | None = None) -> Layers:
@@ -180,3 +196,35 @@ def mean_between(layer: F32, edges: F64, axis: int) -> F32:
     sums = (1 - share) * total.take(whole, axis) + share * total.take(whole + 1, axis)
     means = np.diff(sums, axis=axis) / (edges[1] - edges[0])
     return np.maximum(means, 0).astype(np.float32)  # where all is 0, rounding may have left less
+
+
+def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
+    """Return log10(L_high / L_low), the range of a scene or of a radiance map.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3), radiance
+    tail : share of the positive pixels left out at each end, so that one odd pixel decides nothing; with 0,
+        L_high and L_low are the maximum and the minimum
+
+    Returns
+    -------
+    decades : powers of ten; times 3.32 it is stops, times 20 decibels
+
+    Raises
+    ------
+    ValueError
+        For radiance that is not finite or negative, without a positive pixel, or a tail outside [0, 0.5).
+
+    Examples
+    --------
+    >>> round(decades([[0.01, 1000.0]], tail=0), 3)
+    5.0
+    """
+    if not 0 <= tail < 0.5:
+        raise ValueError(f"expected a tail in [0, 0.5), got {tail}")
+    L = luminance(E)
+    if not L.any():
+        raise ValueError("expected radiance with a positive pixel, got zeros")
+    low, high = np.quantile(L[L > 0].astype(np.float64), [tail, 1 - tail])
+    return float(np.log10(high / low))

@@ -7,7 +7,7 @@ import pytest
 
 from hdrlab.capture import autoexposure, exposure, metering
 from hdrlab.core.colour import luminance
-from hdrlab.scenes.computed import subjects
+from hdrlab.scenes import subjects
 
 SHAPE = (80, 120)
 SCENES = {name: make((96, 144)) for name, make in subjects.SUBJECTS.items()}

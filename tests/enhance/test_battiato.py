@@ -12,7 +12,7 @@ from hdrlab.core.colour import decode_srgb, encode_srgb, to_8bit
 from hdrlab.core.steps import last
 from hdrlab.enhance import battiato, relight, skin
 from hdrlab.enhance.skin import DARK, LIGHT
-from hdrlab.scenes.computed import subjects
+from hdrlab.scenes import subjects
 
 LEVELS = np.arange(256)
 

@@ -7,8 +7,11 @@ import numpy as np
 import pytest
 from numpy.linalg import norm
 
+from hdrlab import scenes
 from hdrlab.core.colour import luminance
-from hdrlab.scenes.computed import illumination, interior, textures, view
+from hdrlab.scenes import textures
+from scenes.computed import illumination, interior, view
+from scenes.computed.__main__ import SAMPLES
 
 
 @pytest.fixture(scope="module")
@@ -20,14 +23,14 @@ def room():
 
 
 def test_the_room_spans_more_than_five_decades(room):
-    assert view.decades(room) > 5
-    assert view.decades(room, tail=0) > view.decades(room)
+    assert scenes.decades(room) > 5
+    assert scenes.decades(room, tail=0) > scenes.decades(room)
 
 
 def test_the_default_room_spans_more_than_five_decades_between_its_thousandths():
     default = inspect.signature(view.room).parameters["shape"].default
     E = view.room(default)
-    assert E.shape == (*default, 3) and view.decades(E) > 5.2
+    assert E.shape == (*default, 3) and scenes.decades(E) > 5.2
 
 
 @pytest.mark.parametrize("shape", [(1, 1), (7, 50), (50, 7), (33, 33)])
@@ -83,6 +86,12 @@ def test_light_adds_up():
     )
 
 
+def test_the_room_that_travels_is_the_one_that_is_computed():
+    stored = scenes.room()
+    computed = view.room(stored.shape[:2], samples=SAMPLES)
+    assert np.allclose(stored, computed, rtol=2e-3)
+
+
 def test_nothing_is_downloaded(monkeypatch):
     def refuse(*_):
         raise OSError("no network in this test")
@@ -112,19 +121,19 @@ def test_a_room_that_cannot_be_is_refused(knobs):
 
 
 def test_decades_count_powers_of_ten():
-    assert np.isclose(view.decades(np.geomspace(1e-3, 1e4, 50)[None], tail=0), 7)
+    assert np.isclose(scenes.decades(np.geomspace(1e-3, 1e4, 50)[None], tail=0), 7)
 
 
 def test_decades_leave_out_black_and_the_odd_pixel():
     E = np.geomspace(1, 100, 10_000).reshape(100, 100)
     E[0, :3], E[0, 3] = 0, 1e9
-    assert np.isclose(view.decades(E), 2, atol=0.02)
+    assert np.isclose(scenes.decades(E), 2, atol=0.02)
 
 
 @pytest.mark.parametrize(("E", "tail"), [([[0.0]], 0), ([[1.0]], 0.5), ([[1.0]], -0.1), ([[-1.0]], 0)])
 def test_decades_of_what_has_none_are_refused(E, tail):
     with pytest.raises(ValueError, match="expected"):
-        view.decades(E, tail=tail)
+        scenes.decades(E, tail=tail)
 
 
 # Its light, its surfaces

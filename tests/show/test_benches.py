@@ -6,7 +6,7 @@ import pytest
 from hdrlab import scenes
 from hdrlab.capture import autoexposure, metering, photon_transfer, planning, ranges, sensor
 from hdrlab.core.colour import luminance
-from hdrlab.scenes.computed import subjects
+from hdrlab.scenes import subjects
 from hdrlab.show import pictures
 from hdrlab.show.plots.lectures import benches, sensors
 

@@ -51,7 +51,7 @@ class Page(HTMLParser):
 @pytest.fixture(scope="module")
 def room():
     """An assembly of hand-held noisy photographs of the room, and the truth."""
-    E = scenes.room((160, 240), samples=1)
+    E = scenes.room((160, 240))
     times, moves = (
         camera.times_around(E, 6, stops=2.5),
         np.array([[0, 0], [2, -1], [-3, 2], [0, 0], [1, 4], [0, -2]]),

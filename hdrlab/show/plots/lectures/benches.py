@@ -24,7 +24,7 @@ from hdrlab.capture.sensor import Sensor
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.fast import debevec
-from hdrlab.scenes.computed.subjects import Subject
+from hdrlab.scenes.subjects import Subject
 from hdrlab.show.plots import curves
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.plots.lectures import sensors

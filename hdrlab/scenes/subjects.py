@@ -13,7 +13,7 @@ import numpy as np
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32, Mask
-from hdrlab.scenes.computed.textures import Points, cover, look_up, rgb, within
+from hdrlab.scenes.textures import Points, cover, look_up, rgb, within
 
 SHAPE = (256, 384)
 

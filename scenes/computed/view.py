@@ -5,12 +5,11 @@ d  directions of sight (3, N), d_z = 1: x to the right, y up, z ahead
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32
-from hdrlab.scenes.computed.interior import trace
-from hdrlab.scenes.computed.textures import Points
+from hdrlab.scenes.textures import Points
+from scenes.computed.interior import trace
 
 # lines of sight traced at a time: their arrays stay near the processor
 SIGHTS_PER_BAND = 2**16
@@ -57,8 +56,6 @@ def room(
     >>> E = room((64, 96))
     >>> E.shape, E.dtype
     ((64, 96, 3), dtype('float32'))
-    >>> bool(decades(E, tail=0) > 5)
-    True
     """
     if len(shape) != 2 or min(shape) < 1 or samples < 1:
         raise ValueError(f"expected a shape (H, W) and a sample or more, got {shape} and {samples}")
@@ -73,35 +70,3 @@ def room(
         band = trace(d, pixel, sun, lamp).reshape(3, -1, samples, width, samples)
         E[top : top + step] = np.moveaxis(band.mean(axis=(2, 4)), 0, -1)
     return E
-
-
-def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
-    """Return log10(L_high / L_low), the range of a scene or of a radiance map.
-
-    Parameters
-    ----------
-    E : (H, W) or (H, W, 3), radiance
-    tail : share of the positive pixels left out at each end, so that one odd pixel decides nothing; with 0,
-        L_high and L_low are the maximum and the minimum
-
-    Returns
-    -------
-    decades : powers of ten; times 3.32 it is stops, times 20 decibels
-
-    Raises
-    ------
-    ValueError
-        For radiance that is not finite or negative, without a positive pixel, or a tail outside [0, 0.5).
-
-    Examples
-    --------
-    >>> round(decades([[0.01, 1000.0]], tail=0), 3)
-    5.0
-    """
-    if not 0 <= tail < 0.5:
-        raise ValueError(f"expected a tail in [0, 0.5), got {tail}")
-    L = luminance(E)
-    if not L.any():
-        raise ValueError("expected radiance with a positive pixel, got zeros")
-    low, high = np.quantile(L[L > 0].astype(np.float64), [tail, 1 - tail])
-    return float(np.log10(high / low))
