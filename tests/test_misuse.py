@@ -35,6 +35,7 @@ VALUES = {
     "time": 0.1,
     "sensor": Sensor(),
     "centre": (12, 16),
+    **{"x": 16, "y": 12, "reading": 5.0},
     "offsets": np.zeros((5, 2), int),
     "homographies": np.stack([np.eye(3)] * 5),
 }

@@ -1,6 +1,7 @@
 """What the commands share: kinds of options, progress, and text that becomes values."""
 
 import os
+import re
 from collections.abc import Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -134,6 +135,14 @@ def colour(text: str | None) -> tuple[int, int, int] | None:
     except ValueError:
         raise ValueError(f"--mask: expected a colour as RRGGBB, such as 0000FF, got {text!r}") from None
     return red, green, blue
+
+
+def reading(text: str) -> tuple[int, int, float]:
+    """Return X,Y=CD as a place and its luminance, or raise a ValueError."""
+    found = re.fullmatch(r"(\d{1,6}),(\d{1,6})=(\d{1,9}(?:\.\d{1,9})?)", text, re.ASCII)
+    if not found:
+        raise ValueError(f"--calibrate: expected X,Y=CD, such as 640,360=125, got {text[:40]!r}")
+    return int(found[1]), int(found[2]), float(found[3])
 
 
 def knob(text: str) -> tuple[str, Any]:

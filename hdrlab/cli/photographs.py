@@ -56,6 +56,11 @@ FUSION = "the picture is an exposure fusion of the photographs"
     help="Remove veiling glare, the light that the lens scattered.",
 )
 @click.option(
+    "--calibrate",
+    metavar="X,Y=CD",
+    help="A meter read CD cd/m^2 at this pixel of the map: the map's unit becomes cd/m^2.",
+)
+@click.option(
     "--tonemap",
     type=click.Choice(["photograph", *catalogue.names("tonemap")]),
     default="photograph",
@@ -71,6 +76,7 @@ def assemble(
     keep_times: bool,
     stops: float | None,
     mask: str | None,
+    calibrate: str | None,
     tonemap: str,
     picture: Path | None,
     report: Path | None,
@@ -92,18 +98,21 @@ def assemble(
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
 
-    recover = curves.method_or_curve(response)
+    recover, metered = curves.method_or_curve(response), calibrate and common.reading(calibrate)
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
     bracket = read_bracket(photos, times, mask, stops)
     methods["method"] = merge
     methods["times"] = "stated" if keep_times or times == "stated" else "correct"
     methods["times"] = "estimate" if times == "estimate" else methods["times"]
     assembly = _assembled(bracket, methods | {"response": recover})
+    if metered:
+        assembly = pipeline.calibrate(assembly, *metered)
     for note in assembly.notes:
         click.echo(f"note: {note}", err=True)
     for doubt in _shorten(assembly.doubts):
         click.echo(f"warning: {doubt}", err=True)
-    radiance.write_radiance(out, assembly.E, comments=[f"doubt: {doubt}" for doubt in assembly.doubts])
+    comments = ["unit: cd/m^2"] * bool(metered) + [f"doubt: {doubt}" for doubt in assembly.doubts]
+    radiance.write_radiance(out, assembly.E, comments=comments)
     if picture or report:
         rendered, settings = pipeline.develop_and_describe(assembly.E, tonemap)
         if assembly.fallback:

@@ -10,7 +10,7 @@ PLACES = {
     "assembly": ("Assembly", "Method"),
     "pictures": ("develop", "develop_and_describe", "own_saturation"),
     "registration": ("aligned", "moved"),
-    "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps"),
+    "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps", "calibrate"),
     "timing": ("space_by_stops",),
 }
 

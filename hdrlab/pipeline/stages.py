@@ -24,6 +24,7 @@ from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as lens
 from hdrlab.radiance.deghosting import ghosts as moving
 from hdrlab.radiance.merge import METHODS, Merged
+from hdrlab.radiance.scales import fit_unit
 
 STAGES = ("align", "times", "response", "merge", "compare")
 TIMES = ("correct", "stated", "estimate")
@@ -179,6 +180,15 @@ def remove_glare(state: Assembly) -> Assembly:
     return state._replace(
         stage="flare", E=found.E, glare=found.region, notes=(*state.notes, lens.note(found))
     )
+
+
+def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
+    """Return the Assembly with E in cd/m^2, by what a meter read at a pixel of it: see `scales.fit_unit`."""
+    if state.quality[y : y + 1, x : x + 1].any():
+        raise ValueError(f"expected a place that the photographs measured, got {x},{y}, which none did")
+    k = fit_unit(state.E, x, y, reading)
+    note = f"1 in the map is 1 cd/m^2: {reading:g} cd/m^2 were read at {x},{y}"
+    return state._replace(E=state.E * np.float32(k), notes=(*state.notes, note))
 
 
 def assess(state: Assembly, medians: NDArray[np.float64], moved: float) -> Assembly:

@@ -1,4 +1,4 @@
-"""What a response leaves open: the units of its colours (Mitsunaga and Nayar 1999, sec. 6.4).
+"""What a response leaves open: the unit of light, and of its colours (Mitsunaga and Nayar 1999, sec. 6.4).
 
 M   measured brightness   (N, 3), 0 ... 1
 I   radiance              (N, 3), each channel in a unit of its own
@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import as_radiance, describe
+from hdrlab.core.colour import luminance
 from hdrlab.core.types import F64
 
 
@@ -62,3 +63,36 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
 
     ln_k = least_squares(misses, (first - first[1])[[0, 2]]).x
     return np.exp([ln_k[0], 0.0, ln_k[1]])
+
+
+def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
+    """Return k that makes k E cd/m^2, from what a meter read at one place.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3), radiance in a unit of its own
+    x, y : the place, in pixels from the left and from the top; a hundredth of the width around it counts
+    reading : its luminance, cd/m^2
+
+    Returns
+    -------
+    k : the reading over the mean luminance of that place
+
+    Raises
+    ------
+    ValueError
+        For a place outside the map or without light, and for a reading that is not positive.
+
+    Examples
+    --------
+    >>> fit_unit(np.full((20, 30), 0.5), 10, 5, 120.0)
+    240.0
+    """
+    L = luminance(as_radiance(E))
+    reach = max(1, L.shape[1] // 200)
+    inside = 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
+    seen = L[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] if inside else L[:0]
+    if not (seen.any() and 0 < reading < np.inf):
+        size = f"{L.shape[1]} x {L.shape[0]}"
+        raise ValueError(f"expected cd/m^2 of a lit place in {size} pixels, got {reading:g} at {x},{y}")
+    return float(reading / seen.mean())

@@ -11,6 +11,7 @@ import pytest
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
 from hdrlab.cli.common import agreement
+from hdrlab.core.colour import luminance
 from hdrlab.io import radiance
 from hdrlab.io.photos import read_photo, write_picture
 
@@ -334,3 +335,24 @@ def test_lab_saves_what_the_widgets_show_and_keeps_news_away(tmp_path, monkeypat
 def test_an_agreement_that_cannot_be_measured_is_no_number_of_stops():
     assert agreement(0.0123) == "frames agree to 0.012 stops"
     assert agreement(float("nan")) == "how far the frames agree could not be measured"
+
+
+def test_one_reading_of_a_meter_makes_the_map_absolute(photographs, tmp_path, capsys):
+    folder, times = photographs
+    arguments = ["assemble", folder, "--times", times, "--align", "none", "-o", tmp_path / "a.exr"]
+    code, _, said = hdrlab(*arguments, "--calibrate", "20,30=50", capsys=capsys)
+    L, truth = luminance(radiance.read_radiance(tmp_path / "a.exr")), luminance(scenes.room((96, 144)))
+    assert code == 0 and "50 cd/m^2 were read at 20,30" in said
+    assert np.isclose(L[29:32, 19:22].mean(), 50, rtol=1e-3)
+    assert np.isclose(np.median(L / truth), 50 / truth[29:32, 19:22].mean(), rtol=0.15)
+
+
+@pytest.mark.parametrize(
+    ("reading", "expected"),
+    [("20;30=50", "expected X,Y=CD"), ("900,3=50", "144 x 96"), ("20,30=0", "got 0 at")],
+)
+def test_a_reading_that_cannot_be_writes_nothing(photographs, tmp_path, capsys, reading, expected):
+    folder, times = photographs
+    arguments = ["assemble", folder, "--times", times, "-o", tmp_path / "a.exr", "--calibrate", reading]
+    code, _, said = hdrlab(*arguments, capsys=capsys)
+    assert code == 2 and expected in said and not (tmp_path / "a.exr").exists()

@@ -100,3 +100,18 @@ def test_colours_share_one_weight_and_the_unit_of_exposure_is_no_matter():
 def test_what_is_no_response_is_refused(g):
     with pytest.raises(ValueError, match="expected a"):
         weights.snr(g)
+
+
+@given(k=st.floats(1e-3, 1e3), x=st.integers(0, 59), y=st.integers(0, 39))
+def test_one_reading_of_a_meter_gives_the_unit_back(k, x, y):
+    cd = 10 ** np.random.default_rng(7).uniform(0, 3, (40, 60))
+    around = cd[max(y - 1, 0) : y + 2, max(x - 1, 0) : x + 2].mean()
+    assert np.isclose(scales.fit_unit(cd / k, x, y, around), k, rtol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("x", "y", "reading"), [(60, 0, 1), (-1, 0, 1), (0, 40, 1), (5, 5, 0), (5, 5, np.nan)]
+)
+def test_a_reading_that_cannot_be_is_refused(x, y, reading):
+    with pytest.raises(ValueError, match="cd/m"):
+        scales.fit_unit(np.ones((40, 60)), x, y, reading)
