@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hdrlab import scenes
+from hdrlab import pipeline, scenes
 from hdrlab.capture import lens_flare as lens
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform
-from hdrlab.radiance import flare
+from hdrlab.radiance import flare, reflection
 
 
 @pytest.fixture(scope="module")
@@ -132,3 +132,34 @@ def test_scattered_light_falls_with_distance():
     E[4, 5] = 1
     veil = scatter(E, spread_transform(E.shape, 2.0))
     assert np.all(np.diff(veil[4, 6:]) < 0) and veil[4, 5] == pytest.approx(0, abs=1e-6)
+
+
+# reflections
+
+
+@pytest.mark.parametrize("place", [scenes.chapel, scenes.workshop, scenes.street])
+@pytest.mark.parametrize("r", [0.002, 0.01, 0.03])
+def test_the_picture_of_the_lights_is_found_and_removed(place, r):
+    E = place((128, 192))
+    F = E + np.float32(r) * E[::-1, ::-1]
+    assert reflection.fit_reflection(F) == pytest.approx(r, rel=0.02)
+    assert np.allclose(reflection.remove_reflection(F, r), E, rtol=1e-3, atol=1e-4 * E.max())
+
+
+@pytest.mark.parametrize("place", [scenes.chapel, scenes.workshop, scenes.street])
+def test_a_scene_without_a_reflection_is_left_as_it_is(place):
+    E = place((128, 192))
+    assert reflection.fit_reflection(E) < 1e-4
+    assert np.allclose(reflection.remove_reflection(E), E, rtol=0.02, atol=1e-5 * E.max())
+
+
+def test_what_is_alike_on_both_sides_is_no_reflection():
+    E = scenes.chapel((128, 192))
+    symmetric = E + E[::-1, ::-1]
+    assert np.array_equal(reflection.remove_reflection(symmetric), symmetric)
+    assert reflection.fit_reflection(np.ones((20, 30))) == 0
+
+
+def test_real_photographs_without_a_reflection_are_left_alone():
+    E = pipeline.assemble(scenes.photographs((250, 188))).E
+    assert reflection.fit_reflection(E) == 0
