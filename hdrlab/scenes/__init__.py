@@ -4,12 +4,14 @@ scenes.chapel(), workshop(), street(), room()         radiance (H, W, 3) of a pl
 scenes.layers("street")                               its depth as well, and somebody to walk through it
 scenes.compose(layers, (dy, dx))                      the place with that visitor, here or there
 scenes.photographs()                                  six real photographs, a bracket
+scenes.probe()                                        a studio from all directions, which lights what is in it
 scenes.decades(E)                                     the range of a scene or of a map
 
 How the places were made: `scenes.models`, and `python -m scenes.render`; the room: `scenes.computed`.
 """
 
 from hdrlab.scenes.places import PLACES, chapel, compose, decades, layers, room, street, workshop
-from hdrlab.scenes.real import photographs
+from hdrlab.scenes.real import photographs, probe
 
-__all__ = ["PLACES", "chapel", "compose", "decades", "layers", "photographs", "room", "street", "workshop"]
+__all__ = ["PLACES", "chapel", "compose", "decades", "layers", "photographs", "probe", "room"]
+__all__ += ["street", "workshop"]

@@ -1,12 +1,15 @@
-"""Photographs of a real place: a small tripod before a window, taken from the hand with a telephone.
+"""What was photographed: a small tripod before a window, from the hand; and a studio, in all directions.
 
-They are Fran Murcia's, under the MIT licence; `tripod/README.md` describes them and their times.
+The first are Fran Murcia's, under the MIT licence: `tripod/README.md`. The studio is Poly Haven's, CC0:
+`probe/README.md`.
 """
 
 import numpy as np
 
 from hdrlab.core.bracket import Bracket
+from hdrlab.core.types import F32
 from hdrlab.io.photos import read_bracket
+from hdrlab.io.radiance import read_radiance
 from hdrlab.scenes.places import FOLDER, Shape, resample
 
 
@@ -40,3 +43,16 @@ def photographs(shape: Shape | None = None) -> Bracket:
         return taken
     levels = [np.rint(resample(image, shape)).astype(np.uint8) for image in taken.images]
     return taken._replace(images=np.stack(levels))
+
+
+def probe() -> F32:
+    """Return the radiance of a studio from all directions, (64, 128, 3) float32, relative: up, round, colour.
+
+    Row i looks pi (i + 1/2) / 64 from the zenith, and column j looks 2 pi (j + 1/2) / 128 around it.
+
+    Examples
+    --------
+    >>> probe().shape
+    (64, 128, 3)
+    """
+    return read_radiance(FOLDER / "probe/studio.hdr")
