@@ -6,6 +6,7 @@ import pytest
 from hdrlab.capture import camera, responses
 from hdrlab.course.checks import laws
 from hdrlab.course.checks.compare import Different, as_shape, finite, numbers, same
+from hdrlab.response import mitsunaga
 
 SHOWN = slice(25, 246)
 
@@ -24,6 +25,21 @@ def photographs(rng, response, frames=5, shape=(60, 80)):
     """Return a Bracket a stop apart, hardly any noise."""
     E = (10.0 ** rng.uniform(-1.5, 1.5, shape)).astype(np.float32)
     return camera.shoot(E, camera.times_around(E, frames, stops=1), camera.Camera(response=response), rng=rng)
+
+
+def settled(rng):
+    """Return a response and its photographs, of which a polynomial of order 5 rises by itself.
+
+    Where it falls, readings of the paper part ways: a clamp, a constraint, or none.
+    """
+    for _ in range(20):
+        response = laws.drawn_response(rng)
+        taken = photographs(rng, response)
+        g = mitsunaga.recover(taken.images, taken.times, order=5)
+        slope = 255 * np.diff(np.exp(g - g[255]))[1:].min()
+        if slope > 0.01 and laws.curve_error(g, responses.true_g(response)) < 0.005:
+            break
+    return response, taken
 
 
 def same_curve(g, response, tolerance):
@@ -60,8 +76,7 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
     Use samples between 0.05 and 0.98 in both frames alone, and let f^-1(1) = 1 fix the scale.
     """
     for _ in range(2):
-        response = laws.drawn_response(rng)
-        taken = photographs(rng, response)
+        response, taken = settled(rng)
         same_curve(asked(subject, taken.images, taken.times, order=5), response, 0.025)
 
 
@@ -73,8 +88,7 @@ def test_frames_in_another_order_give_the_same_curve(subject, rng):
 
     Sort the frames by their times first.
     """
-    response = laws.drawn_response(rng)
-    taken = photographs(rng, response)
+    response, taken = settled(rng)
     order = rng.permutation(len(taken.times))
     shuffled = asked(subject, taken.images[order], taken.times[order], order=5)
     same_curve(shuffled, response, 0.025)
