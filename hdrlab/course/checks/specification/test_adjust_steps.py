@@ -16,12 +16,9 @@ def drawn(rng, bins=50):
     """
     b, D = np.arange(bins), float(np.log(100))
     while True:
-        h = (
-            20
-            + 900 * np.exp(-(((b - rng.integers(8, 20)) / 1.2) ** 2))
-            + 300 * np.exp(-(((b - 36) / 1.5) ** 2))
-        )
-        h, db = np.round(h + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24))
+        tall = 900 * np.exp(-(((b - rng.integers(8, 20)) / 1.2) ** 2))
+        low = 300 * np.exp(-(((b - 36) / 1.5) ** 2))
+        h, db = np.round(20 + tall + low + rng.uniform(0, 3, bins)), float(rng.uniform(0.18, 0.24))
         trims = [(one.trimmings / h.sum(), one.trimmings / one.T) for one in ward.adjust_steps(h, db, D)]
         if all(first > 0.028 or own < 0.022 for first, own in trims) and len(trims) > 3:
             return h, db, D
@@ -34,9 +31,8 @@ def asked(subject, h, db, D, **knobs):
     found = [finite(one, h.shape, what="h").astype(float) for one in each]
     low = h < 25  # far below every ceiling
     if not np.all(found[-1][low] >= 0.9 * h[low]):
-        raise Different(
-            "h: expected bins below the ceiling to stay, got less", expected=h, came=found[-1], kind="curve"
-        )
+        said = "h: expected bins below the ceiling to stay, got less"
+        raise Different(said, expected=h, came=found[-1], kind="curve")
     return found
 
 
@@ -53,12 +49,8 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
     T = end.sum()
     above = np.maximum(end - T * db / D, 0).sum()
     if not above <= 0.03 * T:
-        raise Different(
-            f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T",
-            expected=last(ward.adjust_steps(h, db, D)).h,
-            came=end,
-            kind="curve",
-        )
+        said = f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T"
+        raise Different(said, expected=last(ward.adjust_steps(h, db, D)).h, came=end, kind="curve")
 
 
 @pytest.mark.points(4)

@@ -53,13 +53,8 @@ def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
     lL = np.broadcast_to(np.arange(160, dtype=np.float32) * np.float32(c), (128, 160)).copy()
     came, lPhi = asked(subject, lL, alpha=0.1, beta=0.9)
     same(len(came), 3, 0, what="levels of 128 x 160 pixels, none of them below 32")
-    same(
-        lPhi[INNER],
-        np.full(lPhi.shape, 0.3 * np.log(0.1))[INNER],
-        0.04,
-        what="ln Phi of a ramp",
-        picture=True,
-    )
+    expected = np.full(lPhi.shape, 0.3 * np.log(0.1))
+    same(lPhi[INNER], expected[INNER], 0.04, what="ln Phi of a ramp", picture=True)
 
 
 @pytest.mark.points(3)
@@ -74,13 +69,8 @@ def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
     _, none = asked(subject, lL, alpha=0.1, beta=1.0)
     same(none, np.zeros(lL.shape), 1e-3, what="ln Phi with beta = 1", picture=True)
     one, other = (asked(subject, lL, alpha=alpha, beta=0.8)[1] for alpha in (0.1, 0.3))
-    difference = other - one
-    same(
-        difference,
-        np.full(lL.shape, 3 * 0.2 * np.log(3)),
-        0.05,
-        what="what alpha 0.3 instead of 0.1 adds to ln Phi",
-    )
+    expected = np.full(lL.shape, 3 * 0.2 * np.log(3))
+    same(other - one, expected, 0.05, what="what alpha 0.3 instead of 0.1 adds to ln Phi")
 
 
 @pytest.mark.points(4)
@@ -98,24 +88,13 @@ def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
         phi = finite(one[3], np.shape(one[1]), what="phi").astype(float)
         steep = slope > 0.2 * slope.mean()
         expected = np.where(steep, (np.maximum(slope, 1e-9) / (0.1 * slope.mean())) ** -0.2, np.nan)
-        same(
-            np.log(phi),
-            np.log(expected),
-            0.02,
-            what=f"ln phi of level {int(one[0])}",
-            picture=True,
-            where=steep,
-        )
-        level, true = fattal.slope(one[1].astype(np.float32), 0), slope
+        what = f"ln phi of level {int(one[0])}"
+        same(np.log(phi), np.log(expected), 0.02, what=what, picture=True, where=steep)
+        level = fattal.slope(one[1].astype(np.float32), 0)
         inner = (slice(4, -4), slice(4, -4))
-        ratio = (true * level).sum() / (level * level).sum()
-        same(
-            (true / level.mean())[inner],
-            (ratio * level / level.mean())[inner],
-            0.25,
-            what="the slope",
-            picture=True,
-        )
+        fitted = (slope * level).sum() / (level * level).sum() * level
+        steps, expected = (picture[inner] / level.mean() for picture in (slope, fitted))
+        same(steps, expected, 0.25, what="the slope", picture=True)
 
 
 @pytest.mark.points(5)

@@ -25,13 +25,8 @@ def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
     for contrast in (50.0, 10.0):
         m = np.log10(contrast) / (high - low)
         came = subject.compress(base, low, high, contrast=contrast)
-        same(
-            came - np.mean(came),
-            m * (base - base.mean()),
-            1e-3,
-            what="the compressed base less its mean",
-            picture=True,
-        )
+        what = "the compressed base less its mean"
+        same(came - np.mean(came), m * (base - base.mean()), 1e-3, what=what, picture=True)
 
 
 @pytest.mark.points(3)

@@ -67,9 +67,5 @@ def test_more_overlap_takes_more_photographs(subject, rng):
     scene, usable = float(rng.uniform(16, 24)), 7.0
     for overlap in (1.0, 3.0, 5.0, 6.0):
         expected = 1 + math.ceil((scene - usable) / (usable - overlap))
-        same(
-            subject.count(scene, usable, overlap),
-            expected,
-            0,
-            what=f"photographs at {overlap:g} stops of overlap",
-        )
+        what = f"photographs at {overlap:g} stops of overlap"
+        same(subject.count(scene, usable, overlap), expected, 0, what=what)

@@ -34,9 +34,8 @@ def test_the_layers_add_up_to_the_picture(subject, rng):
     base, detail = asked(subject, lL)
     same(base + detail, lL, 1e-3, what="base + detail", picture=True)
     if not detail.std() > 0.01:
-        raise Different(
-            "the detail: expected the texture of the walls, got hardly any", came=detail, kind="image"
-        )
+        said = "the detail: expected the texture of the walls, got hardly any"
+        raise Different(said, came=detail, kind="image")
 
 
 @pytest.mark.points(5)

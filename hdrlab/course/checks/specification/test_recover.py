@@ -13,9 +13,8 @@ SHOWN = slice(25, 246)
 
 def asked(subject, images, times, channels=(), **knobs):
     """Return g, moved to g[128] = 0; ln 0 at level 0 is taken for half of level 1."""
-    g = as_shape(numbers(subject.recover(images, times, **knobs), what="g"), (256, *channels), "g").astype(
-        float
-    )
+    came = numbers(subject.recover(images, times, **knobs), what="g")
+    g = as_shape(came, (256, *channels), "g").astype(float)
     g[0] = np.where(np.isneginf(g[0]), g[1] - np.log(2), g[0])
     g = finite(g, (256, *channels), what="g")
     return g - g[128]
@@ -47,12 +46,8 @@ def same_curve(g, response, tolerance):
     truth = responses.true_g(response)
     error = laws.curve_error(g, truth)
     if not error <= tolerance:
-        raise Different(
-            f"g: expected the curve of the camera within {tolerance:.1%}, got {error:.1%}",
-            expected=truth,
-            came=g,
-            kind="curve",
-        )
+        said = f"g: expected the curve of the camera within {tolerance:.1%}, got {error:.1%}"
+        raise Different(said, expected=truth, came=g, kind="curve")
 
 
 @pytest.mark.points(1)

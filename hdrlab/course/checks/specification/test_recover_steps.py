@@ -70,9 +70,8 @@ def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     found = asked(subject, Z, t, max_iterations=3, tolerance=0.0)
     if len(found) < 2:
         raise Different(f"expected a state before the first iteration and one after each, got {len(found)}")
-    same(
-        found[1][shown], truth[shown] / truth[128], 0.01, what="f^-1 after the first iteration", kind="curve"
-    )
+    expected = truth[shown] / truth[128]
+    same(found[1][shown], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
 
 
 @pytest.mark.points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")

@@ -54,15 +54,9 @@ def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
     blurred = drawn(rng)
     truth = list(reinhard.scale_steps(blurred))
     came, sure = asked(subject, blurred), ~doubtful(truth)
-    scale = np.abs(truth[-1].adaptation).max()
-    same(
-        came[-1][4] / scale,
-        truth[-1].adaptation / scale,
-        1e-3,
-        what="the adaptation",
-        picture=True,
-        where=sure,
-    )
+    expected = truth[-1].adaptation
+    scale = np.abs(expected).max()
+    same(came[-1][4] / scale, expected / scale, 1e-3, what="the adaptation", picture=True, where=sure)
     for one, true in zip(came, truth, strict=True):
         same(one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure)
 
