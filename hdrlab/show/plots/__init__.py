@@ -11,6 +11,7 @@ returns the Axes; nothing is shown or written here.
 
 from collections.abc import Sequence
 from itertools import chain
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -26,14 +27,8 @@ Place = tuple[float, float, float, float]  # left, bottom, width, height, in par
 # Okabe and Ito's colours. Line styles and markers differ too, so the channels also part in gray.
 CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
 GRAY = (("", "#1A1A1A", "-"),)
-SAMPLES = (
-    ("#D55E00", "o"),
-    ("#0072B2", "s"),
-    ("#009E73", "^"),
-    ("#CC79A7", "D"),
-    ("#E69F00", "v"),
-    ("#56B4E9", "*"),
-)
+COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
+SAMPLES = tuple(zip(COLOURS, "os^Dv*", strict=True))
 
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
@@ -87,6 +82,12 @@ def fix_limits(
         ax.set_ylim(limits)
 
 
+def with_legend(ax: Axes, place: Any) -> Axes:
+    """Return the Axes with a legend, through which a little of what it covers can be seen."""
+    ax.legend(loc=place, framealpha=0.9)
+    return ax
+
+
 def seconds(time: float) -> str:
     """Return an exposure time as a camera shows it: '1/60 s', '2 s'.
 
@@ -112,9 +113,7 @@ def response(
         ax.plot(
             curve, np.arange(len(curve)), style, color=colour, linewidth=1.8, label=f"{label} {name}".strip()
         )
-    if label or curves.ndim == 2:
-        ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left") if label or curves.ndim == 2 else ax
 
 
 def samples(
@@ -141,8 +140,7 @@ def samples(
             ax.plot(x[i], Z[i], "-", marker=marker, color=colour, linewidth=0.8, label=f"pixel {i + 1}")
     else:
         ax.plot(x.ravel(), Z.ravel(), ".", color="#56B4E9", markersize=5, label=f"{len(Z)} pixels")
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def system(A: ArrayLike, *, ax: Axes | None = None) -> Axes:

@@ -19,17 +19,11 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.metrics import RELIABLE_LEVELS
-from hdrlab.show.plots import SAMPLES, axes, fix_limits
+from hdrlab.show.plots import COLOURS, SAMPLES, axes, fix_limits, with_legend
 
 Dashes = str | tuple[int, tuple[float, ...]]
-LINES: tuple[tuple[str, Dashes], ...] = (
-    ("#1A1A1A", "-"),
-    ("#D55E00", "-"),
-    ("#0072B2", "--"),
-    ("#009E73", "-."),
-    ("#CC79A7", ":"),
-    ("#E69F00", (0, (8, 2))),
-)
+STYLES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
+LINES = tuple(zip(("#1A1A1A", *COLOURS[:5]), STYLES, strict=True))
 NARROW: dict[str, Any] = {"handlelength": 1.2, "columnspacing": 1.0, "borderaxespad": 0.2, "frameon": False}
 
 
@@ -62,8 +56,7 @@ def lines(
     if scale == "log":  # minor ticks and powers in mathematical type take longer than all the rest
         ax.minorticks_off()
         ax.yaxis.set_major_formatter(_short)
-    ax.legend(loc=legend, framealpha=0.9)
-    return ax
+    return with_legend(ax, legend)
 
 
 def _short(x: float, _: object) -> str:
@@ -91,8 +84,7 @@ def deviations(
         ax.plot(stops, y, linestyle=style, color=colour, linewidth=1.6, label=name)
     ax.set(xlabel="true exposure, stops from that of level 128", ylabel="found less true, stops")
     fix_limits(ax, span, (-limit, limit))
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def bundle(
@@ -104,8 +96,7 @@ def bundle(
     ax.add_collection(LineCollection(paths, colors="#56B4E9", linewidths=0.5, alpha=0.7, label=label))
     ax.autoscale_view()
     ax.set(xlabel=across, ylabel=up)
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def quotients(

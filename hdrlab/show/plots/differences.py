@@ -59,7 +59,7 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     ax.plot(x, seen, "-", color="#0072B2", linewidth=1.6, label="yours")
     ax.plot(k, seen[k], "o", color="#D55E00", markersize=9, markerfacecolor="none", label="furthest apart")
     ax.set(xlabel="index", ylabel="value")
-    ax.legend(loc="best", framealpha=0.9)
+    plots.with_legend(ax, "best")
     alt = f"{what}, expected {_range(truth)} and yours {_range(answer)}; at {k} they differ by {error:.4g}"
     return Picture((pictures.encode(ax),), (alt,), (f"expected and yours, furthest apart at {k}",))
 

@@ -87,18 +87,12 @@ def alone(axes: list[Axes]) -> bool:
 
 def look(ax: Axes) -> object:
     """Return what a drawing may change and `wipe` does not bring back."""
-    axis = [
-        (
-            [each.get_tick_params(which) for which in ("major", "minor")],
-            each.get_visible(),
-            each.label.get_color(),
-            each.label.get_fontsize(),
-        )
-        for each in (ax.xaxis, ax.yaxis)
-    ]
+    both = (ax.xaxis, ax.yaxis)
+    ticked = [each.get_tick_params(which) for each in both for which in ("major", "minor")]
+    axis = [(each.get_visible(), each.label.get_color(), each.label.get_fontsize()) for each in both]
     frame = [(spine.get_visible(), spine.get_edgecolor()) for spine in ax.spines.values()]
     background = (ax.figure.get_facecolor(), ax.get_axisbelow(), ax.axison)
-    return (axis, frame, background, ax.title.get_color(), ax.get_position().bounds, ax.margins())
+    return (ticked, axis, frame, background, ax.title.get_color(), ax.get_position().bounds, ax.margins())
 
 
 def wipe(ax: Axes) -> Axes:

@@ -22,7 +22,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.colour import encode_srgb
-from hdrlab.show.plots import axes, scaled_axes
+from hdrlab.show.plots import axes, scaled_axes, with_legend
 from hdrlab.show.plots.curves import LINES
 from hdrlab.show.plots.figures import MISSING, fit
 from hdrlab.show.plots.nearest import show
@@ -103,8 +103,7 @@ def trims(
         ax.axhline(ceiling, color="#D55E00", linestyle="--", linewidth=1.6, label="ceiling of this trim")
     ax.set(xlabel="brightness b = ln L", ylabel="foveal pixels f(b)", xlim=(b[0], b[-1]))
     ax.set_ylim(0, top or 1.02 * whole.max(initial=1))
-    ax.legend(loc="upper right", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper right")
 
 
 def bands(
@@ -128,8 +127,7 @@ def bands(
         ax.plot(stops, low, linestyle=style, color=colour, linewidth=1.2, label=name)
         ax.plot(stops, high, linestyle=style, color=colour, linewidth=1.2)
     ax.set(xlabel="luminance, stops from the median", ylabel="level on the display", ylim=(-3, 258))
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def _arrays(each: Mapping[str, ArrayLike]) -> list[Float]:

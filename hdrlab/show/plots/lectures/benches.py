@@ -58,9 +58,8 @@ def meter_scene(
     EV = autoexposure.expose(coarse, mode, at=at, photograph=photograph)
     fills = float(exposure.saturating_luminance(1.0, F=F))
     time, s = F**2 / 2.0**EV, 1 / fills
-    taken = camera.shoot(
-        scene.E, [time], camera.Camera(response="srgb", sensitivity=s, sensor=sensor), rng=rng
-    )
+    lens = camera.Camera(response="srgb", sensitivity=s, sensor=sensor)
+    taken = camera.shoot(scene.E, [time], lens, rng=rng)
     L = luminance(scene.E)
     noise = ranges.expose_levels(L, time, sensor, sensitivity=s).noise
     off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
@@ -78,12 +77,10 @@ def _enlarged(w: NDArray[np.float64], shape: tuple[int, ...]) -> Mask:
 def draw_shot(shot: Shot) -> Axes:
     """Draw a photograph with its lost pixels marked, and what the mode chose; a ring for whom it asked."""
     time = F**2 / 2.0**shot.EV
-    chosen = (
-        f"EV {shot.EV:.1f}: f/{F:g}, 1/{1 / time:.0f} s" if time < 1 else f"EV {shot.EV:.1f}: {time:.1f} s"
-    )
+    shutter = f"f/{F:g}, 1/{1 / time:.0f} s" if time < 1 else f"{time:.1f} s"
     lost = f"full {shot.full.mean():.1%} (orange), lost in noise {shot.noise.mean():.1%} (blue)"
     aside = "too bright" if shot.off > 0 else "too dark"
-    text = f"{chosen}; subject {abs(shot.off):.1f} stops {aside}\n{lost}"
+    text = f"EV {shot.EV:.1f}: {shutter}; subject {abs(shot.off):.1f} stops {aside}\n{lost}"
     return sensors.draw_titled(sensors.mark_lost(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
 
 
@@ -92,10 +89,8 @@ def draw_reading(state: State) -> Axes:
     Z = np.round(255 * encode_srgb(state.B)).astype(np.uint8)
     full = f"{np.mean(state.B >= 1):.0%} of the pixels full"
     text = f"EV {state.EV:.2f}: reading {state.B_pre:.3f}, {full}\n"
-    ring = state.w >= state.w.max() / 2
-    return sensors.draw_titled(
-        Z, text + f"wanted {metering.MIDDLE_GRAY}: next EV {state.EV_opt:.2f}", ring=ring
-    )
+    text += f"wanted {metering.MIDDLE_GRAY}: next EV {state.EV_opt:.2f}"
+    return sensors.draw_titled(Z, text, ring=state.w >= state.w.max() / 2)
 
 
 class Calibrated(NamedTuple):

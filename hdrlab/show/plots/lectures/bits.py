@@ -26,10 +26,7 @@ WIDTH = 5.4  # inches, as the other plots have
 ROW, SIDE, LONG = 0.36, 0.21, 20  # inches from row to row, and of a box; bits beyond which a row is long
 CHANNELS = {"red": "#F6CDBB", "green": "#BFE5D8", "blue": "#C0DAEE"}
 COLOURS = {"sign": "#E6E6E6", "exponent": "#F3D9A4", "mantissa": "#C6E2F5", **CHANNELS}
-FORMATS: dict[int, tuple[Any, Any, int, int]] = {
-    16: (np.float16, np.uint16, 5, 15),
-    32: (np.float32, np.uint32, 8, 127),
-}
+FORMATS: dict[int, Any] = {16: (np.float16, np.uint16, 5, 15), 32: (np.float32, np.uint32, 8, 127)}
 
 
 class Field(NamedTuple):
@@ -90,12 +87,7 @@ def rows(fields: Sequence[Field], *, title: str = "") -> Axes:
         ax.text(0, y + SIDE / 2, name, fontsize=10, va="center")
         ax.text(1.3 if long else 1.4 + SIDE * len(bits), y + SIDE / 2, said, fontsize=10, va="center")
     ax.add_collection(PatchCollection(boxes, facecolors=colours, edgecolors="#808080"))
-    look: dict[str, Any] = {
-        "color": "#1A1A1A",
-        "markersize": 7.0,
-        "markeredgewidth": 0.0,
-        "linestyle": "none",
-    }
+    look: dict[str, Any] = dict(color="#1A1A1A", markersize=7, markeredgewidth=0, linestyle="none")
     for digit, at in digits.items():  # as markers: a text for each bit takes longer than all the rest
         ax.plot(*np.reshape(at, (-1, 2)).T, marker=f"${digit}$", **look)
     ax.set(xlim=(0, WIDTH * 0.98), ylim=(sum(tall), -0.03))

@@ -16,7 +16,7 @@ from matplotlib.axes import Axes
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
-from hdrlab.show.plots import SAMPLES, axes
+from hdrlab.show.plots import SAMPLES, axes, with_legend
 from hdrlab.show.plots.curves import LINES
 
 Float = NDArray[np.float64]
@@ -33,25 +33,15 @@ def circle(A: ArrayLike, *, marks: ArrayLike | None = None, reach: float = 3.0) 
     if A.shape != (2, 2) or not np.all(np.isfinite(A)):
         raise ValueError(f"expected a finite matrix (2, 2), got {describe(A)}")
     angle = np.linspace(0, 2 * np.pi, 241)
-    ring, ax = (
-        A @ np.stack([np.cos(angle), np.sin(angle)]),
-        _plane(reach, "first component", "second component"),
-    )
+    ring = A @ np.stack([np.cos(angle), np.sin(angle)])
+    ax = _plane(reach, "first component", "second component")
     ax.plot(*ring, color="#1A1A1A", linewidth=1.5)
     ax.scatter(ring[0, :-1:20], ring[1, :-1:20], c=np.arange(12), cmap="viridis", s=28, zorder=3)
     for end, (colour, marker), name in zip(_marks(marks).T, SAMPLES, ("v1", "v2"), strict=False):
         x, y = A @ end
-        ax.plot(
-            [0, x],
-            [0, y],
-            color=colour,
-            marker=marker,
-            markevery=[1],
-            linewidth=2,
-            label=f"what became of {name}",
-        )
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+        line = ax.plot([0, x], [0, y], color=colour, linewidth=2, label=f"what became of {name}")
+        line[0].set(marker=marker, markevery=[1])
+    return with_legend(ax, "upper left")
 
 
 def equations(
@@ -74,17 +64,14 @@ def equations(
     for (p, q), right in zip(A, b, strict=True):
         if p or q:
             foot, along = np.array([p, q]) * right / (p * p + q * q), np.array([-q, p]) / np.hypot(p, q)
-            ax.plot(
-                *(foot[:, None] + along[:, None] * np.array([-3, 3]) * reach), color="#0072B2", linewidth=1.2
-            )
+            ends = foot[:, None] + along[:, None] * np.array([-3, 3]) * reach
+            ax.plot(*ends, color="#0072B2", linewidth=1.2)
     for k, (name, at) in enumerate((points or {}).items()):
         colour, marker = (("#D55E00", "o"), ("#009E73", "^"), ("#CC79A7", "D"))[k % 3]
         x, y = np.reshape(np.asarray(at, np.float64), (2, -1))
         many = len(x) > 1
         ax.plot(x, y, "." if many else marker, color=colour, markersize=3 if many else 8, label=name)
-    if points:
-        ax.legend(loc="lower left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "lower left") if points else ax
 
 
 def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17, ax: Axes | None = None) -> Axes:
@@ -101,8 +88,7 @@ def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17, ax: Axes | 
         ax.plot(np.arange(1, len(share) + 1), decades, marker, color=colour, markersize=3, label=name)
     ax.set(xlabel="number k of the singular value", ylabel="log10 of its share of the largest")
     ax.set_ylim(np.log10(least) - 0.5, 0.5)
-    ax.legend(loc="lower left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "lower left")
 
 
 def _plane(reach: float, across: str, up: str) -> Axes:

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.calibration.blends import Blend, InverseResponse, difference
 from hdrlab.core.types import F64
-from hdrlab.show.plots import SAMPLES, axes
+from hdrlab.show.plots import SAMPLES, axes, with_legend
 from hdrlab.show.plots.curves import LINES
 
 
@@ -46,9 +46,7 @@ def samples(
     if scale == "log":
         ax.minorticks_off()
         ax.xaxis.set_major_formatter("{x:g}")
-    if names or joined is not None:
-        ax.legend(loc="lower right", framealpha=0.9)
-    return ax
+    return with_legend(ax, "lower right") if names or joined is not None else ax
 
 
 def deviations(
@@ -71,5 +69,4 @@ def deviations(
         ax.plot(255 * one.M, 100 * off, linestyle=style, color=colour, linewidth=1.6, label=name)
     ax.set(xlabel="pixel level, 255 M", ylabel="found less true, % of the range")
     ax.set(xlim=(0, 255), ylim=(-limit, limit))
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")

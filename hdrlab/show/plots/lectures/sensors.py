@@ -20,7 +20,7 @@ from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
 from hdrlab.capture.ranges import ExposedLevels
 from hdrlab.core.arrays import as_picture, describe
-from hdrlab.show.plots import axes, fix_limits, picture_axes
+from hdrlab.show.plots import axes, fix_limits, picture_axes, with_legend
 from hdrlab.show.plots.nearest import show
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
@@ -57,8 +57,7 @@ def window(
         ax.fill_between(edges, below, above, step="post", label=f"{label}: {mask.mean():.0%}", **style)
         below = above
     ax.set(xlabel="luminance, cd/m²", ylabel="pixels, %", xlim=(low, high), ylim=(0, None))
-    ax.legend(loc="upper right", framealpha=0.9)
-    return _logarithmic(ax)
+    return _logarithmic(with_legend(ax, "upper right"))
 
 
 def staircase(L: ArrayLike, held: ExposedLevels, *, ax: Axes | None = None) -> Axes:
@@ -73,7 +72,7 @@ def staircase(L: ArrayLike, held: ExposedLevels, *, ax: Axes | None = None) -> A
             ax.axvspan(L[mask][0], L[mask][-1], **span)
     ax.set(xlabel="luminance, any unit", ylabel="level of the converter", xlim=(L[0], L[-1]))
     if held.noise.any() or held.full.any():
-        ax.legend(loc="upper left", framealpha=0.9)
+        with_legend(ax, "upper left")
     return _logarithmic(ax)
 
 
@@ -104,8 +103,7 @@ def transfer(
     ax.plot(line, V[0] + line / found.gain, "-", color="#1A1A1A", label=f"slope 1 / {found.gain:.3g}")
     ax.set(xlabel="signal S, levels above black", ylabel="variance V, levels squared")
     fix_limits(ax, span, limits)
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def coverage(plan: Plan, low: float, high: float) -> Axes:
@@ -118,8 +116,7 @@ def coverage(plan: Plan, low: float, high: float) -> Axes:
     count = len(plan.names)
     ax.set(xlabel="luminance, cd/m²", ylabel="photograph", yticks=range(count), ylim=(count - 0.5, -0.8))
     ax.set(xlim=(low / 200, high * 200), yticklabels=range(1, count + 1))
-    ax.legend(loc="lower right", framealpha=0.9)
-    return _logarithmic(ax)
+    return _logarithmic(with_legend(ax, "lower right"))
 
 
 def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None) -> Axes:

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.enhance import skin
-from hdrlab.show.plots import axes
+from hdrlab.show.plots import axes, with_legend
 
 MOST = 2000  # pixels: more dots hide one another
 PALE, DARK, RUST = "#56B4E9", "#1A1A1A", "#D55E00"
@@ -33,8 +33,7 @@ def chrominance(Z: ArrayLike, known: skin.Skin, *, reach: float = skin.REACH) ->
     ax.plot(*edge.T, color=RUST, linewidth=2, label=f"Mahalanobis {reach:g}")
     ax.plot(*known.mu, "+", color=DARK, markersize=10, label="mean of skin")
     ax.set(xlabel="Cb at level 128", ylabel="Cr at level 128", xlim=(-60, 60), ylim=(-40, 80))
-    ax.legend(loc="lower left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "lower left")
 
 
 def locus(Z: ArrayLike) -> Axes:
@@ -46,5 +45,4 @@ def locus(Z: ArrayLike) -> Axes:
     ax.plot(across, np.polyval(skin.UPPER, across), "-", color=RUST, linewidth=2, label="above: no skin")
     ax.plot(across, np.polyval(skin.LOWER, across), "--", color=DARK, linewidth=2, label="below: no skin")
     ax.set(xlabel="share of red, r", ylabel="share of green, g", xlim=(0.2, 0.65), ylim=(0.1, 0.5))
-    ax.legend(loc="upper right", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper right")

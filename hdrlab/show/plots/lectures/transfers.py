@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.show.plots import SAMPLES, axes, fix_limits
+from hdrlab.show.plots import SAMPLES, axes, fix_limits, with_legend
 from hdrlab.show.plots.curves import LINES
 
 
@@ -44,14 +44,12 @@ def comparagram(
     counted = np.where(J > 0, J, np.nan).T
     shown = ax.imshow(counted, norm=scale, origin="lower", interpolation="nearest", zorder=1)  # upon the grid
     counts = [count for count in 10.0 ** np.arange(15) if scale.vmin <= count <= scale.vmax]
-    swatches: list[Artist] = [
-        Patch(facecolor=shown.cmap(scale(count)), label=f"{count:,.0f}") for count in counts
-    ]
+    named = {f"{count:,.0f}": shown.cmap(scale(count)) for count in counts}
+    swatches: list[Artist] = [Patch(facecolor=colour, label=name) for name, colour in named.items()]
     if T is not None:
-        ax.plot(np.arange(len(J)), T, color="#FFFFFF", linewidth=3.2)
-        swatches += ax.plot(
-            np.arange(len(J)), T, color="#D55E00", linewidth=1.6, label="T, from the histograms"
-        )
+        m = np.arange(len(J))
+        ax.plot(m, T, color="#FFFFFF", linewidth=3.2)
+        swatches += ax.plot(m, T, color="#D55E00", linewidth=1.6, label="T, from the histograms")
     if swatches:
         brighter = np.triu(J).sum() >= np.tril(J).sum()
         loc: Literal["lower right", "upper left"] = "lower right" if brighter else "upper left"
@@ -71,8 +69,7 @@ def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike, *, ax: Axes | No
     way = ([m, m, z, z], np.array([0, rank, rank, 0]) * 100) if np.isfinite(z) else ([m, m], [0, 100 * rank])
     ax.plot(*way, color="#1A1A1A", linewidth=1.2, marker="o", markersize=4, label=label)
     ax.set(xlabel="pixel level", ylabel="pixels at this level or below, %", xlim=(0, 255), ylim=(0, 102))
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def staircase(T: ArrayLike, s: ArrayLike) -> Axes:
@@ -84,8 +81,7 @@ def staircase(T: ArrayLike, s: ArrayLike) -> Axes:
     x, y = np.repeat(s, 2)[:-1], np.repeat(s, 2)[1:]
     ax.plot(x, y, color="#0072B2", linewidth=1, marker="s", markersize=3.5, label=f"{len(s)} levels")
     ax.set(xlabel="level in the bright frame", ylabel="level in the dark frame", xlim=(0, n), ylim=(0, n))
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
 
 
 def ladders(found: Mapping[str, tuple[ArrayLike, float]], *, ax: Axes | None = None) -> Axes:
@@ -100,8 +96,7 @@ def ladders(found: Mapping[str, tuple[ArrayLike, float]], *, ax: Axes | None = N
     ax.set(xlabel="exposure, stops below the first level's", ylabel="level", yscale="log", ylim=(10, 400))
     ax.set_yticks([10, 20, 50, 100, 200], ["10", "20", "50", "100", "200"])
     ax.minorticks_off()
-    ax.legend(loc="lower right", framealpha=0.9)
-    return ax
+    return with_legend(ax, "lower right")
 
 
 def equations(
@@ -120,15 +115,12 @@ def equations(
     `span` and `limits` fix the axes, so that a slider moves the equations and nothing else.
     """
     x, y, used, ax = np.asarray(x), np.asarray(y), np.asarray(used, bool), ax or axes()
-    off = y - against * x
-    ax.plot(
-        x[~used], off[~used], "x", color="#999999", markersize=4, label=f"{int(np.sum(~used))} thrown out"
-    )
-    ax.plot(x[used], off[used], ".", color="#0072B2", markersize=5, label=f"{int(np.sum(used))} in use")
+    off, out = y - against * x, ~used
+    ax.plot(x[out], off[out], "x", color="#999999", markersize=4, label=f"{out.sum()} thrown out")
+    ax.plot(x[used], off[used], ".", color="#0072B2", markersize=5, label=f"{used.sum()} in use")
     ends = np.array([0, x.max(initial=1)])
     ax.plot(ends, (k - against) * ends, color="#D55E00", linewidth=1.8, label=f"k = {k:.4f}")
     less = f" less {against:g} times that of A" if against else ""
     ax.set(xlabel="level in the darker frame A", ylabel=f"level in B{less}")
     fix_limits(ax, span or (0, ends[1] * 1.02), limits)
-    ax.legend(loc="upper left", framealpha=0.9)
-    return ax
+    return with_legend(ax, "upper left")
