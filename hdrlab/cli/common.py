@@ -9,6 +9,8 @@ from typing import Any, TypeVar
 
 import click
 
+from hdrlab.pipeline import catalogue
+
 Item = TypeVar("Item")
 FILE = click.Path(path_type=Path)
 OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the same command reads
@@ -18,6 +20,18 @@ CLEAN = click.option(
     is_flag=True,
     help="Repair even a map of which most is NaN, infinite or below 0; without it, a part is repaired.",
 )
+
+
+def choice(name: str, values: Sequence[str], default: str | None = None, help: str | None = None) -> Any:
+    """Return the option that takes one of some values, by default the first."""
+    return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
+
+
+def operator(name: str) -> Any:
+    """Return the option that names a tone mapping operator."""
+    values = ["photograph", *catalogue.names("tonemap")]
+    said = "photograph chooses its settings by the map; the others have their papers'."
+    return choice(name, values, help=said)
 
 
 class Command(click.Command):
@@ -120,10 +134,9 @@ def size(E: Any) -> str:
 
 def agreement(spread: float) -> str:
     """Return how far the frames of a map agree, in words; a spread of NaN stops could not be measured."""
-    known = spread == spread
-    return (
-        f"frames agree to {spread:.3f} stops" if known else "how far the frames agree could not be measured"
-    )
+    if spread != spread:
+        return "how far the frames agree could not be measured"
+    return f"frames agree to {spread:.3f} stops"
 
 
 def colour(text: str | None) -> tuple[int, int, int] | None:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from hdrlab.pipeline.assembly import Assembly
 
 METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
+TIMES = "exif|estimate|FILE"
 SUFFIXES = ".csv, .npz or .m (pfstools)"
 
 
@@ -46,16 +47,11 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
 @click.option("-o", "--out", multiple=True, type=common.OUT, help=f"Curve to write: {SUFFIXES}. Repeatable.")
-@click.option(
-    "--times",
-    metavar="exif|estimate|FILE",
-    default="exif",
-    help="Exposure times: EXIF, corrected, or a list.",
-)
+@click.option("--times", metavar=TIMES, default="exif", help="Exposure times: EXIF, corrected, or a list.")
 @click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
-@click.option("--align", type=click.Choice(["auto", *catalogue.names("align"), "none"]), default="mtb")
-@click.option("--response", type=click.Choice([*METHODS, "all"]), default="debevec")
+@common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
+@common.choice("--response", [*METHODS, "all"], "debevec")
 @click.option("--plot", type=common.OUT, help="Picture of curve, band and residuals: .png or .svg.")
 @click.option("--rounds", type=click.IntRange(0), default=50, help="Of the bootstrap; 0 for no band.")
 @click.option("--seed", default=1, help="Of the bootstrap.")

@@ -39,11 +39,8 @@ def plan(low: float | None, high: float | None, source: Path | None, thirds: boo
     click.echo(
         f"scene: {low:.3g} to {high:.3g} cd/m^2, {scene:.1f} stops; one photograph holds {camera['usable']:g}"
     )
-    shots = (
-        "1 photograph"
-        if len(made.times) == 1
-        else f"{len(made.times)} photographs, {made.step:.3g} stops apart"
-    )
+    count = len(made.times)
+    shots = "1 photograph" if count == 1 else f"{count} photographs, {made.step:.3g} stops apart"
     click.echo(f"{shots}, f/{camera['aperture']:g}, ISO {camera['iso']:g}:")
     for name, time, (dark, bright) in zip(made.names, made.times, made.holds, strict=True):
         click.echo(f"  {name:>7} s  (really {time:.6g} s) holds {dark:.3g} to {bright:.3g} cd/m^2")
@@ -51,7 +48,7 @@ def plan(low: float | None, high: float | None, source: Path | None, thirds: boo
 
 @common.command()
 @click.argument("photo", type=common.FILE)
-@click.option("--mode", type=click.Choice(MODES), default="centre", help="Whom the meter asks.")
+@common.choice("--mode", MODES, "centre", help="Whom the meter asks.")
 @click.option(
     "--at", metavar="DOWN,RIGHT", default="0.5,0.5", help="Place of the spot, in parts of the picture."
 )
@@ -89,12 +86,8 @@ def meter(photo: Path, mode: str, at: str) -> None:
 @common.command()
 @click.argument("photo", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
-@click.option(
-    "--by", type=click.Choice(["auto", "skin", "blocks"]), default="auto", help="What matters, see below."
-)
-@click.option(
-    "--way", type=click.Choice(["chrominance", "locus"]), default="chrominance", help="How skin is found."
-)
+@common.choice("--by", ["auto", "skin", "blocks"], help="What matters, see below.")
+@common.choice("--way", ["chrominance", "locus"], help="How skin is found.")
 @click.option("--target", default=128.0, help="Mean level of what matters, 1 to 254.")
 def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     """Correct the exposure of PHOTO by what matters in it, and write it to OUT.

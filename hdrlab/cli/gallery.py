@@ -32,9 +32,8 @@ def init(folder: Path, title: str, closes: str, marks: int) -> None:
     try:
         end = datetime.fromisoformat(closes)
     except ValueError:
-        raise ValueError(
-            f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
-        ) from None
+        said = f"--closes: expected a time such as 2026-12-01T23:59+01:00, got {closes!r}"
+        raise ValueError(said) from None
     store.create(folder, plain(title, 80), end, marks)
     click.echo(f"{folder}: a gallery, open until {store.format_time(end)}, {marks} votes on a ballot")
 

@@ -59,12 +59,7 @@ def check(
 @common.command()
 @click.argument("submission", type=click.Path(path_type=Path))
 @HOMEWORK
-@click.option(
-    "--tier",
-    type=click.Choice(["strict", "container", "practice"]),
-    default="strict",
-    help="How its code is kept apart; see doctor.",
-)
+@common.choice("--tier", ["strict", "container", "practice"], help="How its code is kept apart; see doctor.")
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py.")
 @click.option("-o", "--out", type=common.OUT, default="results", help="Folder for the results.")
 @click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")

@@ -8,18 +8,13 @@ from hdrlab.cli import common
 from hdrlab.cli.terminal import visible
 from hdrlab.pipeline import catalogue
 
-WAY = click.option("--way", type=click.Choice(["hue", "ratio"]), default="hue", help="Of colour, see below.")
+WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
 
 
 @common.command()
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
-@click.option(
-    "--operator",
-    type=click.Choice(["photograph", *catalogue.names("tonemap")]),
-    default="photograph",
-    help="photograph chooses its settings by the map; the others have their papers'.",
-)
+@common.operator("--operator")
 @click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
 @click.option(
     "--saturation", type=float, help="1 keeps the colours' ratios, 0 is gray.  [default: the operator's]"

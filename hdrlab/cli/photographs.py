@@ -33,39 +33,28 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @click.option(
     "--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture (borders of scans)."
 )
-@click.option(
+@common.choice(
     "--align",
-    type=click.Choice(["auto", *catalogue.names("align"), "none"]),
-    default="auto",
+    ["auto", *catalogue.names("align"), "none"],
     help="mtb shifts; cerman rotates, too; homography tilts; auto: mtb, and more where that is too little.",
 )
 @click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
-@click.option("--weight", type=click.Choice(["gaussian", "hat", "flat", "snr"]), default="gaussian")
-@click.option("--merge", type=click.Choice(["log", "likelihood", "mean", "shot"]), default="log")
-@click.option(
+@common.choice("--weight", ["gaussian", "hat", "flat", "snr"])
+@common.choice("--merge", ["log", "likelihood", "mean", "shot"])
+@common.choice(
     "--ghosts",
-    type=click.Choice(["none", "auto", "regions", "reference"]),
-    default="auto",
+    ["none", "auto", "regions", "reference"],
+    "auto",
     help="What moved: as it is; each region by its best exposure, if much moved (auto) or always; "
     "all of them by the middle photograph.",
 )
-@click.option(
-    "--flare",
-    type=click.Choice(["none", "glare"]),
-    default="none",
-    help="Remove veiling glare, the light that the lens scattered.",
-)
+@common.choice("--flare", ["none", "glare"], help="Remove veiling glare, the light that the lens scattered.")
 @click.option(
     "--calibrate",
     metavar="X,Y=CD",
     help="A meter read CD cd/m^2 at this pixel of the map: the map's unit becomes cd/m^2.",
 )
-@click.option(
-    "--tonemap",
-    type=click.Choice(["photograph", *catalogue.names("tonemap")]),
-    default="photograph",
-    help="photograph chooses its settings by the map; the others have their papers'.",
-)
+@common.operator("--tonemap")
 @click.option("--picture", type=common.OUT, help="Picture to write as well, tone-mapped: .png, .jpg or .tif.")
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
 @click.option("--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too.")

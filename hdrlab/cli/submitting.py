@@ -57,10 +57,8 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     found = found._replace(files=tuple(one for one in found.files if one.resolve() != out.resolve()))
     findings = review.review(found)
     for part, good, said in findings:
-        click.echo(
-            f"{'  ok     ' if good else '  MISSING'}  {part:<12} "
-            + said.replace("\n", "\n" + " " * 24).rstrip()
-        )
+        indented = said.replace("\n", "\n" + " " * 24).rstrip()
+        click.echo(f"{'  ok     ' if good else '  MISSING'}  {part:<12} {indented}")
     missing = sum(not one.good for one in findings)
     if missing and not (force and found.artifact):
         raise ValueError(f"{missing} to mend; nothing was written (--force makes the archive as it is)")

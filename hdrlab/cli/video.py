@@ -38,9 +38,8 @@ def video(
     from hdrlab.io import sequence
 
     turn = seconds(times)
-    sequence.require_writable(out) if out.suffix else sequence.require_new(
-        out
-    )  # better known before the work
+    require = sequence.require_writable if out.suffix else sequence.require_new
+    require(out)  # better known before the work
     count = sequence.count(frames)
     film = sequence.read(frames)
     begun = list(islice(film, len(turn)))
@@ -77,9 +76,8 @@ def recovered(response: str | Path, frames: list[Any], turn: list[float]) -> Any
     if len(frames) < len(turn):
         raise ValueError(f"expected at least a turn of {len(turn)} frames, got {len(frames)}")
     taken = bracket(np.stack(frames), turn)
-    return recovery.find_validated_method("space" if response == "auto" else response)(
-        taken.images, taken.times
-    )
+    method = recovery.find_validated_method("space" if response == "auto" else response)
+    return method(taken.images, taken.times)
 
 
 def pictures(maps: Iterator[Any], *, key: float, span: int) -> Iterator[Any]:
