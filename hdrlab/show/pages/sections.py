@@ -58,9 +58,7 @@ def response(g: Float, truth: Truth | None) -> dict[str, Any]:
         plots.response(truth.g, label="true", ax=ax)
     plots.response(g, label="found" if truth is not None else "", ax=ax)
     curves = g.reshape(len(g), -1)
-    low, high = curves[
-        [round(level / 255 * (len(g) - 1)) for level in (metrics.LOW_LEVEL, metrics.HIGH_LEVEL)]
-    ]
+    low, high = (curves[round(z / 255 * (len(g) - 1))] for z in (metrics.LOW_LEVEL, metrics.HIGH_LEVEL))
     reach = ", ".join(f"{one:.1f}" for one in (high - low) / np.log(2))
     alt = f"Response, pixel level over ln exposure: from level 10 to level 250 it rises over {reach} stops"
     return {"plot": figures.plot(ax, alt), "reach": reach, "coloured": curves.shape[1] == 3}

@@ -43,22 +43,14 @@ class Gallery(Front):
         set_up, hung = store.settings(self.db), store.artifacts(self.db)
         when, chosen = ballots.read_ballot(self.db, voter.id)
         order = tokens.shuffled(list(hung), set_up.secret, voter.id)
-        may = set_up.is_open(self.clock())
-        return self.page(
-            "wall.html",
-            cards=[
-                Markup(
-                    self.card(one=hung[id], own=hung[id].team == voter.team, chosen=id in chosen, open=may)
-                )
-                for id in order
-            ],
-            marks=set_up.marks,
-            chosen=len(chosen),
-            when=None
-            if when is None
-            else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo)),
-            key=tokens.form_key(shown),
-        )
+        may, key = set_up.is_open(self.clock()), tokens.form_key(shown)
+        cards = []
+        for id in order:
+            own = hung[id].team == voter.team
+            cards.append(Markup(self.card(one=hung[id], own=own, chosen=id in chosen, open=may)))
+        at = None if when is None else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo))
+        marks, count = set_up.marks, len(chosen)
+        return self.page("wall.html", cards=cards, marks=marks, chosen=count, when=at, key=key)
 
     async def ballot(self, request: Request) -> Response:
         """Take a ballot, which replaces the one before, and answer when it is on the disk."""
