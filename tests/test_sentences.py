@@ -303,10 +303,34 @@ SENTENCES = {
     },
     "21": {
         "so bright that a fifth of the picture is full": lambda n: round(np.mean(n.L >= 1), 1) == 0.2,
-        "the first reflects 8 % and lets 92 % through": lambda n: share_of_light(n)[0] == 92,
         "112 waves in 256 pixels come back as 16, coarse and at full strength": lambda n: (
             np.argmax(np.abs(np.fft.rfft(n.wave()[1] - n.wave()[1].mean()))) == 16 // 4
         ),
+        "17.6 times with the code": lambda n: round(n.flutter.amplification(n.CODE), 1) == 17.6,
+        "The noise grows 52 times with one chop": lambda n: round(n.flutter.amplification(n.ONE), 1) == 52,
+        "averaged short pictures meets the coded one's at nine": lambda n: (
+            1 + np.argmin(np.abs(n.short["mean of short pictures"] - n.short["one coded picture"])) == 9
+        ),
+        "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
+        "a quarter of a decade": lambda n: 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.3,
+    },
+    "22": {
+        "has used up its sixteen digits, and the other still has some nine": lambda n: (
+            n.errors[0][-1] > -1 and round(-n.errors[1][-1]) in (9, 10)
+        ),
+        "In between lies the smallest condition number": lambda n: (
+            min(condition(n, 0.1), condition(n, 1000)) > 2 * condition(n, 1)
+        ),
+        "there are as many zeros as groups less one": lambda n: (
+            np.sum(n.stiff(0) < 1e-12 * n.stiff(0)[0]) == n.islands - 1
+        ),
+        "Exactly one is 0, but for rounding": lambda n: np.sum(np.linalg.svd(n.free)[1] < 1e-9) == 1,
+        "one line is about twice as steep as the other": lambda n: (
+            round(np.divide(*(np.polyfit(n.digits[4:13], one[4:13], 1)[0] for one in n.errors))) == 2
+        ),
+    },
+    "23": {
+        "the first reflects 8 % and lets 92 % through": lambda n: share_of_light(n)[0] == 92,
         "which reflects 6 % of that and lets the rest through: 7.52 %": lambda n: (
             share_of_light(n)[1] == 7.52
         ),
@@ -322,30 +346,10 @@ SENTENCES = {
         "the brightest sensor keeps 92 %, an eighth of a stop less than all": lambda n: (
             round(-8 * np.log2(n.shares[0])) == 1
         ),
-        "17.6 times with the code": lambda n: round(n.flutter.amplification(n.CODE), 1) == 17.6,
-        "The noise grows 52 times with one chop": lambda n: round(n.flutter.amplification(n.ONE), 1) == 52,
-        "averaged short pictures meets the coded one's at nine": lambda n: (
-            1 + np.argmin(np.abs(n.short["mean of short pictures"] - n.short["one coded picture"])) == 9
-        ),
-        "$\\log_{10} 64 = 1.8$ decades": lambda n: round(n.assorted.added_decades(n.e), 1) == 1.8,
-        "a quarter of a decade": lambda n: 0.15 < n.good["assorted"][0] - n.good["plain"][0] < 0.3,
+    },
+    "24": {
         "`ghosts` is about as good here": lambda n: (
             abs(np.diff([n.decibels(n.E3[way], n.taken.moments[1]) for way in ("patches", "ghosts")])[0]) < 1
-        ),
-    },
-    "22": {
-        "has used up its sixteen digits, and the other still has some nine": lambda n: (
-            n.errors[0][-1] > -1 and round(-n.errors[1][-1]) in (9, 10)
-        ),
-        "In between lies the smallest condition number": lambda n: (
-            min(condition(n, 0.1), condition(n, 1000)) > 2 * condition(n, 1)
-        ),
-        "there are as many zeros as groups less one": lambda n: (
-            np.sum(n.stiff(0) < 1e-12 * n.stiff(0)[0]) == n.islands - 1
-        ),
-        "Exactly one is 0, but for rounding": lambda n: np.sum(np.linalg.svd(n.free)[1] < 1e-9) == 1,
-        "one line is about twice as steep as the other": lambda n: (
-            round(np.divide(*(np.polyfit(n.digits[4:13], one[4:13], 1)[0] for one in n.errors))) == 2
         ),
     },
 }

@@ -37,6 +37,8 @@ TIERS = {
         "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[18",
         "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[20",
         "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[21",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[23",
+        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[24",
         "tests/cli/test_faults.py::test_a_disk_that_refuses_is_told_in_a_line[site",
         "tests/cli/test_faults.py::test_a_site",
         "tests/course/test_handouts.py::test_building_writes_both",
