@@ -89,7 +89,7 @@ def test_a_ballot_is_cast_with_the_keyboard_alone(served, page):
         page.keyboard.press("Space")
     tab_to(page, lambda on: on[3] == "Compare two")
     page.keyboard.press("Enter")
-    page.locator(".panes.n2").wait_for()
+    page.get_by_role("group", name="Zoom").wait_for()  # shown by the script that reads the keys
     page.keyboard.press("+")
     page.get_by_text("125 %").wait_for()
     page.keyboard.press("0")
@@ -151,9 +151,20 @@ def test_a_full_ballot_takes_no_more_and_says_why(served, page):
 def test_a_vote_that_is_not_saved_is_taken_back_on_the_page(served, page):
     enter(page, served, "ann6")
     page.route("**/ballot", lambda route: route.abort())
-    page.locator("input[name=mark]").first.check(force=True)
+    page.locator("input[name=mark]").first.click(force=True)
     page.get_by_text("Not saved").wait_for()
     assert page.locator("input[name=mark]:checked").count() == 0 and saved(served, "ann6") == set()
+
+
+def test_a_vote_given_before_the_script_has_come_is_saved_too(served, page):
+    held = []
+    page.route("**/wall.js", lambda route: held.append(route))
+    page.goto(fresh_link(served, "ben6"))
+    page.get_by_role("button", name="Open the gallery").click(no_wait_after=True)
+    page.locator("input[name=mark]").first.check(force=True)
+    held[0].continue_()
+    page.get_by_text("1 of 2 votes saved at").wait_for()
+    assert len(saved(served, "ben6")) == 1
 
 
 def test_without_scripts_a_ballot_is_saved_by_its_button(served, browser):

@@ -7,7 +7,7 @@ const picks = [...document.querySelectorAll("input[name=with]")];
 const state = document.getElementById("state");
 const side = document.getElementById("side");
 const most = Number(ballot.dataset.marks);
-let saved = votes.filter((one) => one.checked);
+let saved = votes.filter((one) => one.defaultChecked);
 let turn = 0;
 
 const marked = () => votes.filter((one) => one.checked);
@@ -59,4 +59,5 @@ function pick() {
 for (const one of votes) one.addEventListener("change", save);
 for (const one of picks) one.addEventListener("change", pick);
 document.getElementById("save")?.remove(); // there is nothing left to save by hand
+if (votes.some((one) => one.checked !== one.defaultChecked)) save(); // given before this was here
 addEventListener("pageshow", () => { show(); pick(); });
