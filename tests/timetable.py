@@ -92,8 +92,9 @@ def with_minutes(text):
         minutes = sum(time for title, time in books.values() if title[:2] in row[2].split(", "))
         sheet = row[4][:3]
         share = sum(one[3].startswith(sheet) for one in weeks)
-        hours = math.ceil(sum(one[2] for one in each.values() if one[0] == sheet) / 60 / share) or row[5]
-        return f"| {row[1]} | {row[2]} | {minutes} | {row[4]} | {hours} |"
+        hours = math.ceil(sum(one[2] for one in each.values() if one[0] == sheet) / 60 / share)
+        also = sum(map(int, re.findall(r"(\d+) hours", row[4])))  # of what is no task
+        return f"| {row[1]} | {row[2]} | {minutes} | {row[4]} | {hours + also or row[5]} |"
 
     text = re.sub(WEEK, week, text, flags=re.M)
     text = re.sub(NOTEBOOK, book, text, flags=re.M)
