@@ -10,7 +10,7 @@ The response by least squares          response.debevec.gsolve, response.debevec
 ... without exact times                response.mitsunaga.recover
 ... from histograms, from a series     response.grossberg.recover, response.mann.recover
 The radiance map                       radiance.merge.merge
-Its files: PFM, RGBE, OpenEXR          io.maps.pfm, io.maps.rgbe, io.maps.exr
+Its files: PFM, RGBE, OpenEXR, TIFF    io.maps.pfm, io.maps.rgbe, io.maps.exr, io.maps.tiff
 One curve for all pixels               tonemap.ward.tonemap, tonemap.curves
 Local scaling, and its halo            tonemap.chiu.tonemap
 Base and detail                        tonemap.durand.tonemap, core.filters.bilateral

@@ -163,6 +163,7 @@ ALL: Sequence[Reader] = (
     Reader("rgbe", ".hdr", seeds.maps, read_map, damaged="rgbe"),
     Reader("exr", ".exr", seeds.maps, read_exr, damaged="exr", needs="OpenEXR"),
     Reader("pfm", ".pfm", seeds.maps, read_map, damaged="pfm"),
+    Reader("float-tiff", ".tif", seeds.maps, read_map),
     Reader("jpeg", ".jpg", seeds.photographs, read_photo),
     Reader("png", ".png", seeds.photographs, read_photo),
     Reader("tiff", ".tif", seeds.photographs, read_photo, damaged="tiff"),

@@ -48,6 +48,8 @@ def maps(folder: Path) -> None:
         radiance.write_radiance(folder / f"gray{suffix}", E[..., 1])
     plain = b"#?RADIANCE\nEXPOSURE=2\nFORMAT=32-bit_rle_rgbe\n\n-Y 12 +X 17\n" + rgbe.to_pixels(E).tobytes()
     (folder / "plain.hdr").write_bytes(plain)
+    tifffile.imwrite(folder / "tiled.tif", E.astype(">f8"), photometric="rgb", tile=(16, 16), byteorder=">")
+    tifffile.imwrite(folder / "deflated.tif", E.astype(np.float16), photometric="rgb", compression="deflate")
     if OpenEXR:
         for kind in ("NO", "RLE", "PIZ", "PXR24", "B44", "DWAA"):
             header = {"type": OpenEXR.scanlineimage, "compression": getattr(OpenEXR, f"{kind}_COMPRESSION")}

@@ -14,7 +14,7 @@ from hdrlab.pipeline import catalogue
 Item = TypeVar("Item")
 FILE = click.Path(path_type=Path)
 OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the same command reads
-SUFFIXES = ".hdr, .exr or .pfm"
+SUFFIXES = ".hdr, .exr, .pfm or .tif"
 CLEAN = click.option(
     "--clean",
     is_flag=True,

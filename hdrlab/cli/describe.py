@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from hdrlab.io import radiance
-from hdrlab.io.decode import look
-from hdrlab.io.maps import exr, pfm, rgbe
+from hdrlab.io.decode import look, tiff_page
+from hdrlab.io.maps import exr, pfm, rgbe, tiff
 
 
 def describe_file(path: str | Path) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def describe_file(path: str | Path) -> dict[str, Any]:
     2
     """
     form = radiance.SUFFIXES.get(Path(path).suffix.lower())
-    about = {rgbe: _rgbe, pfm: _pfm, exr: _exr, None: _photo}[form]
+    about = {rgbe: _rgbe, pfm: _pfm, exr: _exr, tiff: _tiff, None: _photo}[form]
     return {"file": str(path), **about(path)}
 
 
@@ -47,6 +47,17 @@ def _photo(path: str | Path) -> dict[str, Any]:
         **_size(height, width, channels, np.dtype(header.dtype).name),
         "orientation": header.orientation,
         **{key: value for key, value in header.exposure._asdict().items() if value is not None},
+    }
+
+
+def _tiff(path: str | Path) -> dict[str, Any]:
+    if tiff_page(path).dtype.kind != "f":
+        return _photo(path)
+    page = tiff.read_header(path)
+    return {
+        "format": "TIFF",
+        **_size(page.height, page.width, page.channels, page.dtype.name),
+        **({"comments": page.description.splitlines()} if page.description else {}),
     }
 
 

@@ -80,7 +80,7 @@ def compare(source: Path, out: Path, operators: str | None, size: int, way: str,
 @click.option("--half", is_flag=True, help="Half floats in .exr: half the size, values up to 65504.")
 @common.CLEAN
 def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
-    """Write the radiance map SOURCE in the format of TARGET: .hdr, .exr or .pfm."""
+    """Write the radiance map SOURCE in the format of TARGET: .hdr, .exr, .pfm or .tif."""
     from hdrlab.io import radiance
 
     E = common.read_map(source, clean)

@@ -80,20 +80,25 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
     if header.kind == "RAW":
         pixels = raw.decode(header.path, balance)
     else:
-        data = header.path.read_bytes()
-        target = out if header.orientation == 1 else None
-        try:
-            pixels = UPRIGHT[header.orientation](DECODERS[header.kind](data, target))
-        except ModuleNotFoundError:  # no codec: the file may be good
-            raise
-        except Exception as error:  # on damaged files the codecs raise what they like
-            why = str(error) or type(error).__name__
-            raise ValueError(f"{header.path}: it is cut short or damaged ({why})") from None
+        stored = stored_pixels(header.path, header.kind, out if header.orientation == 1 else None)
+        pixels = UPRIGHT[header.orientation](stored)
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
         got = f"{pixels.shape} {pixels.dtype}"
         raise ValueError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")
     if pixels is not out:
         out[...] = pixels
+
+
+def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
+    """Return the pixels of a file of that kind as they are stored, or raise a ValueError if it is damaged."""
+    data = path.read_bytes()
+    try:
+        return DECODERS[kind](data, out)
+    except ModuleNotFoundError:  # no codec: the file may be good
+        raise
+    except Exception as error:  # on damaged files the codecs raise what they like
+        why = str(error)[:200] or type(error).__name__
+        raise ValueError(f"{path}: it is cut short or damaged ({why})") from None
 
 
 def _jpeg(data: bytes, out: Array | None) -> Array:
@@ -150,24 +155,47 @@ def _look_pillow(path: Path, head: bytes) -> Looks:
     return "PNG" if kind == "PNG" else "JPEG", shape, np.dtype(f"u{depth // 8}"), exif
 
 
-def _look_tiff(path: Path) -> Looks:
-    """Return what is stated by the first page of a TIFF file."""
+class TiffPage(NamedTuple):
+    """What the first page of a TIFF file says of its pixels; `alpha` of the `channels` are no colours."""
+
+    height: int
+    width: int
+    depth: int
+    channels: int
+    alpha: int
+    dtype: np.dtype[Any]
+    kind: str
+    description: str
+
+
+def tiff_page(path: str | Path) -> TiffPage:
+    """Return the TiffPage of the file at `path`, or raise a ValueError."""
     open_tiff = tifffile.TiffFile
     try:
         with open_tiff(path) as file:
             page = file.pages.first
-            shape, dtype = (int(page.imagelength), int(page.imagewidth)), page.dtype
-            kind = str(getattr(page.photometric, "name", page.photometric))
-            samples, extra, depth = page.samplesperpixel, page.extrasamples, page.imagedepth
+            kind = str(getattr(page.photometric, "name", page.photometric))[:40]
+            size = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
+            channels = int(page.samplesperpixel), len(page.extrasamples)
+            return TiffPage(*size, *channels, np.dtype(page.dtype), kind, page.description)
     except Exception as error:  # on damaged files tifffile raises what it likes
-        raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
-    if extra:
-        kind = "an alpha channel"
-    if (kind, samples) not in (("MINISBLACK", 1), ("RGB", 3)) or dtype not in ("u1", "u2") or depth != 1:
-        raise ValueError(f"{path}: expected gray or RGB of 8 or 16 bits, got {samples} x {dtype}, {kind}")
+        raise ValueError(
+            f"{path}: expected a photograph, its header is damaged ({str(error)[:200]})"
+        ) from None
+
+
+def _look_tiff(path: Path) -> Looks:
+    """Return what is stated by the first page of a TIFF file."""
+    page = tiff_page(path)
+    kind = "an alpha channel" if page.alpha else page.kind
+    if (kind, page.channels) not in (("MINISBLACK", 1), ("RGB", 3)) or page.dtype not in ("u1", "u2"):
+        what = f"{page.channels} x {page.dtype}, {kind}"
+        raise ValueError(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
+    if page.depth != 1:
+        raise ValueError(f"{path}: expected one picture, got {page.depth} on one another")
     with open(path, "rb") as stream:
         exif = _exif(lambda exif: exif.load_from_fp(stream))
-    return "TIFF", (*shape, 3) if samples == 3 else shape, np.dtype(dtype), exif
+    return "TIFF", (page.height, page.width, 3)[: 2 + (page.channels == 3)], page.dtype, exif
 
 
 def _exif(load: Callable[[Image.Exif], None]) -> Exif:

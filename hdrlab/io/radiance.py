@@ -1,4 +1,4 @@
-"""Radiance files by their suffix: .hdr, .pic and .rad are Radiance RGBE, .pfm float maps, .exr OpenEXR."""
+"""Radiance files by their suffix: .hdr, .pic, .rad are RGBE, .pfm float maps, .exr OpenEXR, .tif(f) TIFF."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -11,9 +11,10 @@ from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.types import F32
 from hdrlab.io.files import require_suffix
-from hdrlab.io.maps import exr, pfm, rgbe
+from hdrlab.io.maps import exr, pfm, rgbe, tiff
 
 SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
+SUFFIXES |= {".tif": tiff, ".tiff": tiff}
 
 
 def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
@@ -21,7 +22,7 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
 
     Parameters
     ----------
-    path : a .hdr, .pic, .rad, .pfm or .exr file
+    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file
     clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the mean of its
         neighbours, infinity the largest finite value, and a negative channel makes its pixel less colourful
 
@@ -69,8 +70,8 @@ def read_valid(path: str | Path) -> F32:
 def primaries_of(path: str | Path) -> tuple[float, ...] | None:
     """Return the primaries and the white that an .exr file names, where they are not those of sRGB.
 
-    Two files of one photograph in different primaries so give one picture. .hdr and .pfm files are taken to
-    hold those of sRGB, as nearly all do.
+    Two files of one photograph in different primaries so give one picture. Files of other
+    kinds are taken to hold those of sRGB, as nearly all do.
     """
     if format_of(path) is not exr:
         return None
@@ -88,10 +89,10 @@ def write_radiance(
 
     Parameters
     ----------
-    path : a .hdr, .pic, .rad, .pfm or .exr file; what it held is replaced
+    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file; what it held is replaced
     E : (H, W, 3) or (H, W) radiance, finite and not negative
     half : True for 16-bit floats, in .exr alone
-    comments : sentences for the header of .hdr and .exr files; .pfm has no place for them
+    comments : sentences for the header of the file; .pfm has no place for them
 
     Raises
     ------

@@ -81,13 +81,15 @@ def test_a_missing_file_or_folder_is_missing(tmp_path, suffix):
         (".png", {"format": "PNG", "channels": 3, "values": "uint8", "orientation": 1}),
         (".jpg", {"format": "JPEG", "channels": 3, "values": "uint8", "orientation": 1}),
         (".tif", {"format": "TIFF", "channels": 3, "values": "uint8", "orientation": 1}),
+        (".tiff", {"format": "TIFF", "channels": 3, "values": "float32"}),
     ],
 )
 def test_a_file_describes_itself(tmp_path, suffix, says):
     path = tmp_path / f"x{suffix}"
-    (write_radiance if suffix in SUFFIXES else write_picture)(
-        path, E if suffix in SUFFIXES else E.astype(np.uint8)
-    )
+    if "orientation" in says:
+        write_picture(path, E.astype(np.uint8))
+    else:
+        write_radiance(path, E)
     said = describe_file(path)
     assert said["file"] == str(path) and (said["width"], said["height"]) == (9, 7)
     assert {key: said[key] for key in says} == says

@@ -1,0 +1,76 @@
+"""Floating-point TIFF, against OpenCV's reader and writer."""
+
+import cv2
+import numpy as np
+import pytest
+import tifffile
+
+from hdrlab.cli.describe import describe_file
+from hdrlab.io.maps import tiff
+from hdrlab.io.photos import write_picture
+from hdrlab.io.radiance import read_radiance, write_radiance
+
+RNG = np.random.default_rng(0)
+RGB = np.exp(4 * RNG.standard_normal((13, 17, 3))).astype(np.float32)
+GRAY = RGB[..., 0].copy()
+each = pytest.mark.parametrize("E", [RGB, GRAY], ids=["RGB", "gray"])
+
+
+@each
+def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
+    ours, theirs = tmp_path / "ours.tif", tmp_path / "theirs.tiff"
+    write_radiance(ours, E)
+    found = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
+    assert found.dtype == np.float32 and np.array_equal(found if E.ndim == 2 else found[..., ::-1], E)
+    assert cv2.imwrite(str(theirs), E if E.ndim == 2 else np.ascontiguousarray(E[..., ::-1]))
+    read = read_radiance(theirs)
+    assert read.dtype == np.float32 and np.array_equal(read, E)
+
+
+@each
+@pytest.mark.parametrize("dtype", ["<f2", ">f4", "<f8"])
+@pytest.mark.parametrize(
+    "form", [{}, {"compression": "zlib", "predictor": True}, {"tile": (16, 16)}], ids=str
+)
+def test_halves_doubles_other_byte_orders_tiles_and_compression_are_read(tmp_path, E, dtype, form):
+    E = np.minimum(E, 60_000)
+    kind = "rgb" if E.ndim == 3 else "minisblack"
+    order = ">" if dtype[0] == ">" else "<"
+    tifffile.imwrite(tmp_path / "a.tif", E.astype(dtype), photometric=kind, byteorder=order, **form)
+    assert np.allclose(tiff.read(tmp_path / "a.tif"), E, rtol=1e-3 if dtype == "<f2" else 1e-7, atol=1e-7)
+
+
+@pytest.mark.parametrize("planar", ["contig", "separate"])
+def test_alpha_is_left_out_and_planes_become_pixels(tmp_path, planar):
+    pixels = np.dstack([RGB, np.full(GRAY.shape, 0.5, np.float32)])
+    pixels = pixels if planar == "contig" else np.moveaxis(pixels, -1, 0)
+    tifffile.imwrite(
+        tmp_path / "a.tif", pixels, photometric="rgb", planarconfig=planar, extrasamples=["unassalpha"]
+    )
+    assert np.array_equal(tiff.read(tmp_path / "a.tif"), RGB)
+
+
+def test_levels_of_a_photograph_are_no_radiance_and_info_knows_both(tmp_path):
+    photo, radiance = tmp_path / "photo.tif", tmp_path / "map.tif"
+    write_picture(photo, np.zeros((4, 5, 3), np.uint8))
+    with pytest.raises(ValueError, match=r"photo.tif: expected .*floating-point samples, got 3 x uint8"):
+        read_radiance(photo)
+    write_radiance(radiance, RGB, comments=["two frames of seven", "unit: cd/m²"])
+    assert describe_file(photo)["values"] == "uint8"
+    about = describe_file(radiance)
+    assert about["values"] == "float32" and about["comments"] == ["two frames of seven", "unit: cd/m²"]
+
+
+@pytest.mark.parametrize("kept", [0.3, 0.9])
+def test_a_file_that_is_cut_short_is_told(tmp_path, kept):
+    write_radiance(tmp_path / "a.tif", RGB)
+    data = (tmp_path / "a.tif").read_bytes()
+    (tmp_path / "b.tif").write_bytes(data[: int(kept * len(data))])
+    with pytest.raises(ValueError, match=r"b.tif: .*damaged"):
+        read_radiance(tmp_path / "b.tif")
+
+
+def test_doubles_too_large_for_32_bits_are_told_as_infinite(tmp_path):
+    tifffile.imwrite(tmp_path / "a.tif", np.array([[1e300, 1.0]]), photometric="minisblack")
+    with pytest.raises(ValueError, match=r"a.tif: .*1 infinite"):
+        read_radiance(tmp_path / "a.tif")
