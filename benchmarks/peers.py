@@ -12,7 +12,9 @@ from benchmarks.rows import Run, Usage
 from hdrlab.core.bracket import Bracket
 
 OPENCV, COLOUR, PFS, OPENEXR = "OpenCV", "colour-hdri", "pfstools", "OpenEXR"
-PACKAGES = {OPENCV: "opencv-python-headless", COLOUR: "colour-hdri", OPENEXR: "OpenEXR"}
+HALIDE = "Halide"
+PACKAGES = {OPENCV: "opencv-contrib-python-headless", COLOUR: "colour-hdri", OPENEXR: "OpenEXR"}
+PACKAGES |= {HALIDE: "halide"}
 
 
 class Missing(Exception):
@@ -32,9 +34,19 @@ def colour_hdri() -> ModuleType:
     return _module("colour_hdri", COLOUR)
 
 
+def colour_science() -> ModuleType:
+    """Return colour.models of colour-science, which colour-hdri brings."""
+    return _module("colour.models", COLOUR)
+
+
 def openexr() -> ModuleType:
     """Return OpenEXR."""
     return _module("OpenEXR", OPENEXR)
+
+
+def halide() -> ModuleType:
+    """Return halide."""
+    return _module("halide", HALIDE)
 
 
 def pfstools(program: str) -> str:

@@ -276,5 +276,5 @@ def test_a_peer_that_is_missing_says_what_to_install(monkeypatch):
         {"there": lambda: print, "cv2": lambda: peers.opencv(True), "pfs": lambda: peers.pfstools("pfsin")}
     )
     assert list(runs) == ["there"]
-    assert "pip install opencv-python-headless" in missing["cv2"]
+    assert "pip install opencv-contrib-python-headless" in missing["cv2"]
     assert "no pfsin" in missing["pfs"]

@@ -103,3 +103,13 @@ def test_the_edge_of_another_guide_is_taken_over(rng):
 def test_what_has_no_line_is_refused(I, p, knobs):  # noqa: E741
     with pytest.raises(ValueError, match="expected"):
         guided.guided(I, p, **{"radius": 2, "epsilon": 0.1} | knobs)
+
+
+def test_opencv_finds_the_same_inside_where_no_window_is_cut():
+    cv2 = pytest.importorskip("cv2")
+    if not hasattr(cv2, "ximgproc"):
+        pytest.skip("this OpenCV has no ximgproc (opencv-contrib-python-headless)")
+    rng = np.random.default_rng(3)
+    I, p = rng.random((2, 60, 70)).astype(np.float32)  # noqa: E741
+    theirs = cv2.ximgproc.guidedFilter(I, p, 5, 0.01)
+    assert np.abs(guided.guided(I, p, radius=5, epsilon=0.01) - theirs)[10:-10, 10:-10].max() < 1e-4
