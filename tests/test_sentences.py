@@ -89,6 +89,9 @@ SENTENCES = {
         "with our $P = 7$ for 43": lambda n: n.debevec.samples_needed(7) == 43,
         "For $P = 11$ this asks for $N = 26$": lambda n: n.debevec.samples_needed(11) == 26,
         "$g(127)$ is a little less": lambda n: -0.05 < n.g[127] < 0 and abs(n.g[128]) < 1e-9,
+        "half of the points between the levels 64 and 192 lie within a hundredth of a stop": lambda n: (
+            np.median(np.abs(n.g[n.Z] - n.lE[:, None] - n.B)[(n.Z >= 64) & (n.Z <= 192)]) < 0.01 * np.log(2)
+        ),
     },
     "05": {
         "it is 4 % of the full exposure after the first iteration, and stays there": lambda n: (
