@@ -196,6 +196,11 @@ SENTENCES = {
         "at 0.05 it is already pulled off by a percent": lambda n: round(off(*n.believed(0.05, "mix"))) == 1,
     },
     "10": {
+        "Fifteen. The last photograph reaches twelve stops further down than the first": lambda n: (
+            round(float(np.log2(n.light.max() / n.light.min()))) == 15
+            and round(float(np.log2(n.inside.times.max() / n.inside.times.min()))) == 12
+        ),
+        "and the scene has eighteen": lambda n: round(float(np.log2(n.true_L.max() / n.true_L.min()))) == 18,
         "The frames agree to a fiftieth of a stop": lambda n: round(n.real.spread, 2) == 0.02,
         "six stops below the windows": lambda n: round(n.scenes.decades(n.real.E) / np.log10(2)) == 6,
         "film reaches level 128 with a seventh of the light that fills it": lambda n: (
@@ -240,6 +245,16 @@ SENTENCES = {
             round(np.mean((n.L >= np.quantile(n.L, 0.9))[n.index == 0]), 1) == 0.7
         ),
         "which fill less than a thousandth of the picture": lambda n: lamps(n) < 0.001,
+        "$L_d = 0.15$ is level 109": lambda n: round(255 * float(n.colour.encode_srgb(0.18 / 1.18))) == 109,
+        "nearly straight from a stop below middle gray to three stops above it": lambda n: (
+            [-1, 3] == [round(n.ev[steep(n)][k]) for k in (0, -1)]
+        ),
+        "10 pixels beside it at $s = 10.5$, 20 beside it at 26.8": lambda n: (
+            [light_arrives(n, away) for away in (10, 20)] == ["10.5", "26.8"]
+        ),
+        "it leaves the band at 10.5 pixels, and is back at 16.8": lambda n: (
+            np.flatnonzero(np.abs(n.three["95 %"]) < 0.05).tolist() == [0, 1, 2, 3, 4, 6]
+        ),
     },
     "15": {
         "A lonely pixel is its own base: its detail is zero": lambda n: (
@@ -460,6 +475,19 @@ def lamps(n):
     """Return the share of the brightest pixels that hold half of the light."""
     each = np.sort(n.L, axis=None)[::-1]
     return np.searchsorted(np.cumsum(each), each.sum() / 2) / each.size
+
+
+def steep(n):
+    """Return where a stop brings at least four fifths of what it brings at most, as indices."""
+    slope = np.gradient(n.levels)
+    return np.flatnonzero(slope >= 0.8 * slope.max())
+
+
+def light_arrives(n, away):
+    """Return the first width whose blur doubles the light so many pixels right of the brightest lamp."""
+    y, x = np.unravel_index(np.argmax(n.L), n.L.shape)
+    beside = [blur[y, x + away] for blur in n.blurs]
+    return f"{n.reinhard.WIDTHS[int(np.argmax(np.greater(beside, 2 * beside[0])))]:.3g}"
 
 
 def recall(n, way, tone):
