@@ -21,6 +21,7 @@ from numpy.typing import ArrayLike, NDArray
 from benchmarks.experiments import Experiment, at_least, at_most
 from hdrlab.beyond import patches, splitter, steady, video
 from hdrlab.capture import camera, movers
+from hdrlab.capture.hand_motion import views
 from hdrlab.capture.responses import true_g
 from hdrlab.core import colour
 from hdrlab.fast import reinhard
@@ -81,7 +82,7 @@ def film(name: str, step: int, *, pan: int = 1) -> Film:
     rng, frames, truth, hidden = np.random.default_rng(0), [], [], []
     for j, at in enumerate(movers.path(count, (0, step))):
         seen, mask = (
-            camera.views(one, offsets)[j] for one in movers.compose_moment(place.radiance, figure(place), at)
+            views(one, offsets)[j] for one in movers.compose_moment(place.radiance, figure(place), at)
         )
         truth.append(seen)
         hidden.append(mask > 0)

@@ -206,7 +206,9 @@ def judged(room: Path, seen: Voted) -> dict[str, Any]:
     with closing(store.connect(room)) as db:
         kept = ballots.every(db)
         rows = db.execute("SELECT count(*) FROM ballots").fetchone()[0]
-    lost = sum(kept.get(who) not in (set(last), set(seen.sent[who])) for who, last in seen.last.items())
+    lost = sum(
+        kept.get(who) not in (frozenset(last), frozenset(seen.sent[who])) for who, last in seen.last.items()
+    )
     found: dict[str, Any] = {
         "ballots lost": lost,
         "ballots double": rows - len(kept),

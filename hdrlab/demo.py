@@ -12,6 +12,7 @@ import numpy as np
 from hdrlab import pipeline, scenes
 from hdrlab.align.shift import crop
 from hdrlab.capture import camera, responses
+from hdrlab.capture.hand_motion import views
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import Truth
 from hdrlab.io.photos import write_picture
@@ -33,7 +34,7 @@ def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     bracket = camera.shoot(scene, times, CAMERA, offsets=shaken, rng=rng)
     yield f"bracket    {len(times)} photographs, {times[0]:.2g} s to {times[-1]:.2g} s, hand-held"
     assembly, (picture, settings) = yield from _assemble_steps(out, bracket)
-    light = camera.views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
+    light = views(scene, shaken)[len(times) // 2][crop(assembly.offsets, bracket.images.shape[1:3])]
     truth = Truth(light, responses.true_g(CAMERA.response), shaken)
     noise = {name: getattr(CAMERA, name) for name in ("full_well", "read_noise", "hot")}
     recipe = {"tonemap": settings, "seed": seed, "camera": CAMERA.response, **noise}

@@ -19,8 +19,8 @@ from skimage.registration import phase_cross_correlation
 from benchmarks import peers
 from hdrlab.align import homography
 from hdrlab.capture.responses import true_g
-from hdrlab.core.arrays import Array
 from hdrlab.core.filters import warp
+from hdrlab.core.types import Array
 from hdrlab.pipeline.alignment import register
 
 Float = NDArray[np.float64]

@@ -9,8 +9,8 @@ from PIL import Image
 from benchmarks import data, peers
 from benchmarks.measure import ROOT, process
 from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
-from hdrlab.capture.camera import views
-from hdrlab.core.arrays import Array
+from hdrlab.capture.hand_motion import views
+from hdrlab.core.types import Array
 from hdrlab.io.maps import rgbe
 
 RADIUS = 16

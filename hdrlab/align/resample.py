@@ -17,9 +17,10 @@ from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
 from hdrlab.align.light import BRIGHT
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_table, levels
+from hdrlab.core.arrays import as_mask, as_stack, as_table, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
+from hdrlab.core.types import Array
 
 
 def photographs(

@@ -18,6 +18,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.capture import camera, exposure
 from hdrlab.capture.metering import MIDDLE_GRAY, At, correction, reading, weights
+from hdrlab.capture.sensor import Seed
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
 from hdrlab.core.types import F32, F64
@@ -44,7 +45,7 @@ def measure_brightness(
     iso: float = 100.0,
     full_well: float = np.inf,
     read_noise: float = 0.0,
-    rng: camera.Seed = 0,
+    rng: Seed = 0,
 ) -> F32:
     """Return B (H, W), the luminance of one linear photograph with T = F^2 / 2^EV, where 1 is full."""
     s = 1 / float(exposure.saturating_luminance(1.0, F=aperture, S=iso))

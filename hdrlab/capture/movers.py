@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture import camera
+from hdrlab.capture.hand_motion import views
+from hdrlab.capture.sensor import Seed
 from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
 from hdrlab.core.types import F32, Mask
@@ -129,7 +131,7 @@ def shoot(
     model: camera.Camera = camera.Camera(),  # noqa: B008  it is frozen
     *,
     offsets: ArrayLike | None = None,
-    rng: camera.Seed = 0,
+    rng: Seed = 0,
 ) -> Moving:
     """Photograph a scene once per exposure time, with a figure that stands elsewhere each time.
 
@@ -173,10 +175,10 @@ def shoot(
         raise ValueError(f"expected offsets from a photograph at (0, 0), got {moves.tolist()}")
     if model.hot:
         raise ValueError("expected no hot pixels: here each photograph would have others")
-    rng, still = np.random.default_rng(rng), camera.views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
+    rng, still = np.random.default_rng(rng), views(E, moves)[int(np.argmin(np.abs(moves).sum(axis=1)))]
     moments, masks, shots = [], [], []
     for j in np.argsort(seconds, kind="stable"):
-        E_j, mask = (camera.views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
+        E_j, mask = (views(one, moves)[j] for one in compose_moment(E, figure, places[j]))
         shots.append(camera.shoot(E_j, seconds[j], model, rng=rng))
         moments.append(E_j)
         masks.append(mask)

@@ -2,7 +2,7 @@
 
 import os
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
@@ -12,6 +12,7 @@ import click
 from hdrlab.pipeline import catalogue
 
 Item = TypeVar("Item")
+Option = Callable[[Callable[..., Any]], Callable[..., Any]]
 FILE = click.Path(path_type=Path)
 OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the same command reads
 SUFFIXES = ".hdr, .exr, .pfm or .tif"
@@ -22,12 +23,12 @@ CLEAN = click.option(
 )
 
 
-def choice(name: str, values: Sequence[str], default: str | None = None, help: str | None = None) -> Any:
+def choice(name: str, values: Sequence[str], default: str | None = None, help: str | None = None) -> Option:
     """Return the option that takes one of some values, by default the first."""
     return click.option(name, type=click.Choice(values), default=default or values[0], help=help)
 
 
-def operator(name: str) -> Any:
+def operator(name: str) -> Option:
     """Return the option that names a tone mapping operator."""
     values = ["photograph", *catalogue.names("tonemap")]
     said = "photograph chooses its settings by the map; the others have their papers'."

@@ -17,7 +17,7 @@ TIMES = "exif|estimate|FILE"
 SUFFIXES = ".csv, .npz or .m (pfstools)"
 
 
-class Response(click.ParamType):
+class Response(click.ParamType):  # type: ignore[type-arg]  # it takes arguments since click 8.4
     """The name of a response method, or a file with a curve."""
 
     name = "NAME|FILE"

@@ -7,7 +7,7 @@ import numpy as np
 
 from hdrlab.io import radiance
 from hdrlab.io.decode import look, tiff_page
-from hdrlab.io.maps import exr, pfm, rgbe, tiff
+from hdrlab.io.maps import exr, pfm, rgbe, rgbe_header, tiff
 
 
 def describe_file(path: str | Path) -> dict[str, Any]:
@@ -62,7 +62,7 @@ def _tiff(path: str | Path) -> dict[str, Any]:
 
 
 def _rgbe(path: str | Path) -> dict[str, Any]:
-    header = rgbe.read_header(path)
+    header = rgbe_header.read_header(path)
     return {
         "format": "Radiance RGBE",
         **_size(header.height, header.width, 3, "8-bit mantissas, shared exponent"),

@@ -7,7 +7,8 @@ from zlib import crc32
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_times
+from hdrlab.core.arrays import as_mask, as_stack, as_times
+from hdrlab.core.types import Array
 
 
 class Bracket(NamedTuple):

@@ -16,8 +16,8 @@ level, though the count belongs to the step's upper edge: so m + 1/2 is paired w
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_mask, as_stack, describe, levels
-from hdrlab.core.types import F64
+from hdrlab.core.arrays import as_mask, as_stack, describe, levels
+from hdrlab.core.types import F64, Array
 
 
 def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> Array:

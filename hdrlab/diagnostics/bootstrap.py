@@ -19,9 +19,9 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_mask, as_stack, as_times
+from hdrlab.core.arrays import as_mask, as_stack, as_times
 from hdrlab.core.metrics import RELIABLE_LEVELS
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, Array
 
 # Share of the rounds that must find a response.
 MIN_SUCCESS = 0.8

@@ -18,10 +18,11 @@ that there is no such thing.
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array, as_mask, as_response, as_stack, as_times
+from hdrlab.core.arrays import as_mask, as_response, as_stack, as_times
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
+from hdrlab.core.types import Array
 
 Float = NDArray[np.float64]
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8

@@ -23,10 +23,10 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, as_stack
+from hdrlab.core.arrays import as_stack
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
-from hdrlab.core.types import F64, Mask
+from hdrlab.core.types import F64, Array, Mask
 
 # of the top level: above, noise hides clipped pixels
 SATURATED = 0.98

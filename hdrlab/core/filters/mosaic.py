@@ -12,8 +12,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import correlate
 
-from hdrlab.core.arrays import Array, describe
-from hdrlab.core.types import Indices
+from hdrlab.core.arrays import describe
+from hdrlab.core.types import Array, Indices
 
 # channels, R G / G B
 BAYER = np.array([[0, 1], [1, 2]])

@@ -102,7 +102,7 @@ class Subject:
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
-    ):
+    ) -> None:
         self._drop()
         if self._running is not None:
             self._running.close()

@@ -9,7 +9,7 @@ The time is that of the operator alone: luminance in, display luminance out. `sh
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from time import perf_counter
 
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab import pipeline
 from hdrlab.core import colour
@@ -69,7 +69,9 @@ def entry_steps(
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
-def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str, Callable[..., NDArray]]:
+def _methods(
+    operators: Sequence[str] | Mapping[str, Method] | None,
+) -> dict[str, Callable[..., ArrayLike]]:
     """Return label -> function, or raise a ValueError, before the first operator has run."""
     if operators is None:
         operators = catalogue.names("tonemap")

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 import hdrlab
 from hdrlab.core import colour, metrics
-from hdrlab.core.arrays import Array, to_256
+from hdrlab.core.arrays import to_256
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import Truth
+from hdrlab.core.types import Array
 from hdrlab.diagnostics import consistency
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots

@@ -9,7 +9,7 @@ Light goes over more than a screen can show: an image whose range is wide is dra
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import Array
+from hdrlab.core.types import Array
 from hdrlab.show import pictures, plots
 from hdrlab.show.pictures import Picture
 from hdrlab.show.plots import figures

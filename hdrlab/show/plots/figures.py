@@ -19,8 +19,8 @@ from matplotlib.ticker import MaxNLocator
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
-from hdrlab.core.arrays import Array
 from hdrlab.core.colour import luminance
+from hdrlab.core.types import Array
 from hdrlab.io import web
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages.wording import signed

@@ -14,7 +14,8 @@ import numpy as np
 import traitlets
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import Array, describe
+from hdrlab.core.arrays import describe
+from hdrlab.core.types import Array
 from hdrlab.io import web
 from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit

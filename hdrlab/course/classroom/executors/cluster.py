@@ -14,7 +14,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
-from typing import NamedTuple, Self
+from typing import Any, NamedTuple, Self
 
 import dask
 import distributed
@@ -116,7 +116,7 @@ class Cluster:
         patience: float = PATIENCE,
     ) -> None:
         self._address, self._work, self._ready, self._patience = address, work, ready, patience
-        self._running: dict[Future, tuple[Piece, Seat]] = {}
+        self._running: dict[Future[Any], tuple[Piece, Seat]] = {}
         self._taken: set[str] = set()  # workers that one piece has to itself
         self._met = time.monotonic()  # when there was a worker, last
 
@@ -195,13 +195,13 @@ class Cluster:
             raise ValueError(f"the cluster at {self._address} has had no worker for {LONELY:.0f} s")
         return [Seat(address, threads) for address, threads in known.items()]
 
-    def _sent(self, piece: Piece, seat: Seat) -> Future:
+    def _sent(self, piece: Piece, seat: Seat) -> "Future[Any]":
         task = Task(self._work, self._ready, piece, piece.path.read_bytes(), self._patience, version())
         key = f"hdrlab-grade-{secrets.token_hex(8)}"
         with self._talking(), dask.config.set(WARNING):
             return self._client.submit(do, task, key=key, workers=[seat.address], pure=False)
 
-    def _ending(self, future: Future) -> Ending | None:
+    def _ending(self, future: "Future[Any]") -> Ending | None:
         """Return how a piece has ended, if it has; that its worker is lost shows elsewhere, as a rule."""
         piece, seat = self._running[future]
         if future.status == "finished":
@@ -217,7 +217,7 @@ class Cluster:
             return Ending(piece, None, "it was cancelled", blamed=False)
         return None
 
-    def _answer(self, future: Future, piece: Piece) -> Ending | None:
+    def _answer(self, future: "Future[Any]", piece: Piece) -> Ending | None:
         """Return what a worker answered, unless that was lost with it."""
         with self._talking():
             try:
@@ -228,11 +228,11 @@ class Cluster:
         whole = answer[:1] == b"+"
         return Ending(piece, answer[1:]) if whole else Ending(piece, None, answer[1:].decode())
 
-    def _forget(self, future: Future) -> None:
+    def _forget(self, future: "Future[Any]") -> None:
         _, seat = self._running.pop(future)
         self._taken.discard(seat.address)
 
-    def _lost(self, gone: set[str], only: Future | None = None) -> list[Ending]:
+    def _lost(self, gone: set[str], only: "Future[Any] | None" = None) -> list[Ending]:
         """Return the endings of pieces whose worker is gone: one that was alone there is to blame."""
         company = Counter(seat.address for _, seat in self._running.values())
         lost = [
@@ -242,7 +242,7 @@ class Cluster:
             self._client.cancel(lost, force=True)
         return [self._without(one, company) for one in lost]
 
-    def _without(self, future: Future, company: Mapping[str, int]) -> Ending:
+    def _without(self, future: "Future[Any]", company: Mapping[str, int]) -> Ending:
         piece, seat = self._running[future]
         self._forget(future)
         return Ending(piece, None, f"its worker {seat.address} was lost", blamed=company[seat.address] == 1)
