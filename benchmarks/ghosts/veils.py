@@ -100,8 +100,7 @@ def clear(_: Path) -> Mapping[str, ArrayLike]:
     changes = []
     for place in STILL:
         E = resample(radiance(place), SHAPE)
-        for F in (E, through(E)[0]):
-            changes.append(float(np.abs(flare.remove_glare(F).E / F - 1).max()))
+        changes += [float(np.abs(flare.remove_glare(F).E / F - 1).max()) for F in (E, through(E)[0])]
     return {"maps looked at": len(changes), "most change": max(changes)}
 
 

@@ -139,7 +139,7 @@ def doctor() -> None:
 
 @click.group(cls=common.Group)
 def course() -> None:
-    """The course: its handouts, and other systems' forms of it."""
+    """Make the course: its handouts, and other systems' forms of it."""
 
 
 @course.command()

@@ -12,12 +12,12 @@ LONGEST_MESSAGE = 2000
 
 
 def visible(text: object) -> str:
-    """Return text of any origin as a terminal may show it: controls are written out, and it is not too long.
+    r"""Return text of any origin as a terminal may show it: controls are written out, and it is not too long.
 
     Examples
     --------
-    >>> print(visible("a \\x1b[2J of a title"))
-    a \\x1b[2J of a title
+    >>> print(visible("a \x1b[2J of a title"))
+    a \x1b[2J of a title
     """
     letters = str(text)[: LONGEST_MESSAGE + 1]
     shown = "".join(one if one.isprintable() or one in "\n\t" else ascii(one)[1:-1] for one in letters)

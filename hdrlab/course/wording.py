@@ -16,11 +16,11 @@ CODES = re.compile(r"\x1b\[[0-?]*[ -/]*[@-~]")  # which colour a terminal, or mo
 
 
 def plain(text: str, most: int) -> str:
-    """Return text as one line of at most `most` characters, composed (NFC).
+    r"""Return text as one line of at most `most` characters, composed (NFC).
 
     Examples
     --------
-    >>> plain("  Dusk\\u202e at\\n the  sea ", 40)
+    >>> plain("  Dusk\u202e at\n the  sea ", 40)
     'Dusk at the sea'
     >>> plain("a" * 10, 4)
     'aaa…'
@@ -31,12 +31,12 @@ def plain(text: str, most: int) -> str:
 
 
 def lines(text: str, most: int) -> str:
-    """Return text of at most `most` characters, in lines as it came.
+    r"""Return text of at most `most` characters, in lines as it came.
 
     Examples
     --------
-    >>> lines("\\x1b[31mred\\x1b[0m\\n\\ud800 and \\u202eplain", 40)
-    'red\\n and plain'
+    >>> lines("\x1b[31mred\x1b[0m\n\ud800 and \u202eplain", 40)
+    'red\n and plain'
     """
     text = CODES.sub("", text[:most])
     kept, accents, marks = [], 0, 0

@@ -52,8 +52,9 @@ def build_ladders(
         top = min(MAX_LEVEL, float(np.max(np.flatnonzero(np.isfinite(T)), initial=0)))
         if times[a] < times[b] and top >= low:
             second = descend(T, top, low=low)[:2][-1]
-            for start in np.linspace(top, second, starts, endpoint=False):
-                ladders.append((descend(T, start, low=low), float(times[a] / times[b])))
+            R = float(times[a] / times[b])
+            tops = np.linspace(top, second, starts, endpoint=False)
+            ladders += [(descend(T, start, low=low), R) for start in tops]
     return ladders
 
 

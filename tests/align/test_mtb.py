@@ -128,7 +128,7 @@ def test_the_range_is_two_to_the_bits_minus_one(offset):
     assert (offsets[0] - offsets[1]).tolist() == list(offset)
 
 
-@pytest.mark.parametrize("bits, offset", [(1, (1, -1)), (3, (7, 7)), (4, (-15, 11))])
+@pytest.mark.parametrize(("bits", "offset"), [(1, (1, -1)), (3, (7, 7)), (4, (-15, 11))])
 def test_fewer_bits_reach_less_far(bits, offset):
     images = bracket([offset, (0, 0)], [1, 4])
     assert mtb.align(images, bits=bits).tolist() == [list(offset), [0, 0]]
@@ -197,7 +197,7 @@ def test_frames_without_any_texture_stay(levels):
 
 
 @pytest.mark.parametrize(
-    "images, bits",
+    ("images", "bits"),
     [
         (np.zeros((2, 8, 8)), 6),
         (np.zeros((8, 8), np.uint8), 6),

@@ -31,7 +31,7 @@ def test_equivalent_exposures_have_one_ev_and_one_saturating_luminance(F, T, oth
 
 
 @pytest.mark.parametrize(
-    "name, really",
+    ("name", "really"),
     [("1/60", 64), ("1/125", 128), ("1/250", 256), ("1/500", 512), ("1/1000", 1024), ("1/15", 16)],
 )
 def test_a_shutter_marked_so_opens_for_a_power_of_two(name, really):

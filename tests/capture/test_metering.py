@@ -33,7 +33,7 @@ def test_an_even_picture_reads_the_same_in_every_mode(mode):
     assert metering.reading(B, metering.weights(B, mode)) == pytest.approx(0.3)
 
 
-@pytest.mark.parametrize("mode, low, high", [("spot", 0.01, 0.05), ("partial", 0.10, 0.15)])
+@pytest.mark.parametrize(("mode", "low", "high"), [("spot", 0.01, 0.05), ("partial", 0.10, 0.15)])
 def test_spot_asks_1_to_5_percent_and_partial_10_to_15(mode, low, high):
     assert low <= (metering.weights(np.ones(SHAPE), mode) > 0).mean() <= high
 

@@ -50,7 +50,7 @@ def test_four_times_the_speed_takes_a_quarter_of_the_time():
     assert fast.times == pytest.approx(slow.times / 4)
 
 
-@pytest.mark.parametrize("low, high", [(0, 1), (2, 1), (-1, 1), (1, np.inf), (np.nan, 1)])
+@pytest.mark.parametrize(("low", "high"), [(0, 1), (2, 1), (-1, 1), (1, np.inf), (np.nan, 1)])
 def test_luminances_that_mean_nothing_are_refused(low, high):
     with pytest.raises(ValueError, match="expected luminances"):
         planning.plan(low, high)

@@ -227,7 +227,7 @@ def test_photographs_that_tell_nothing_are_refused(Z):
 
 
 @pytest.mark.parametrize(
-    "knobs, said",
+    ("knobs", "said"),
     [
         (dict(vignetting=1.5), "vignetting"),
         (dict(bayer=True), "expected a sensor"),

@@ -115,7 +115,7 @@ def test_every_attack_of_the_list_is_there():
     assert set(siege.NAMES) == set(ENDS)
 
 
-@pytest.mark.parametrize("tier, name", CASES)
+@pytest.mark.parametrize(("tier", "name"), CASES)
 def test_an_attack_gains_nothing_and_leaves_nothing(tier, name, honest, tmp_path, port):
     place, other = siege.furnish(tmp_path), honest(tier)
     files, processes = siege.listing(place), system.children()

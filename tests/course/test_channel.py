@@ -85,7 +85,7 @@ def test_a_large_array_passes_while_the_other_end_reads(pair):
 
 
 @pytest.mark.parametrize(
-    "value, reason",
+    ("value", "reason"),
     [
         (object(), "class object"),
         (len, "class builtin_function_or_method"),

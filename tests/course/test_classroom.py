@@ -128,7 +128,7 @@ def test_what_a_result_rests_on_is_in_its_key(tmp_path):
 
 
 @pytest.mark.parametrize(
-    "members, said",
+    ("members", "said"),
     [
         ({"../hw2.py": b""}, "refused"),
         ({"a.py": b"", "b.py": b""}, "one notebook"),
@@ -226,7 +226,7 @@ def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, gr
 
 
 @pytest.mark.parametrize(
-    "more, said",
+    ("more", "said"),
     [
         (["--only", "b4"], "expected names that have handed in, got b4"),
         (["--only", "b9"], "expected a student of the roster, got 'b9'"),

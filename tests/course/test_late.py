@@ -98,7 +98,7 @@ def test_times_without_a_zone_are_refused():
 
 
 @pytest.mark.parametrize(
-    "handed, said",
+    ("handed", "said"),
     [
         ([Handed("hw1", -1, (ANNA,), 9)], "late days"),
         ([Handed("hw1", 0, (ANNA, ANNA), 9)], "twice"),

@@ -28,7 +28,7 @@ def test_students_and_teams_are_recognised(listed):
 
 
 @pytest.mark.parametrize(
-    "text, said",
+    ("text", "said"),
     [
         ("name\nAda\n", "column student"),
         ("student\nb1\nB1\n", "lines 2 and 3: expected each name once"),

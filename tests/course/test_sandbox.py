@@ -121,7 +121,7 @@ def test_answers_come_as_plain_arrays(subject):
 
 
 @pytest.mark.parametrize(
-    "task, kind, says",
+    ("task", "kind", "says"),
     [
         ("wrong", "raised", r"wrong raised ZeroDivisionError: division by zero \(line \d+: y = 1 / 0\)"),
         ("absent", "raised", "No module named 'cv2' .numpy, scipy and Python's own modules are here"),
@@ -328,7 +328,7 @@ def test_an_ordinary_user_has_no_container_tier(without):
 
 
 @pytest.mark.parametrize(
-    "script, says",
+    ("script", "says"),
     [
         ("echo usage", "needs bubblewrap 0.8 or later"),
         (
@@ -491,7 +491,7 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
     assert not doctor.examine("strict").works and "apt install bubblewrap" in doctor.examine("strict").remedy
 
 
-@pytest.mark.parametrize("ended, works", [(doctor.TRIES - 1, True), (doctor.TRIES, False)])
+@pytest.mark.parametrize(("ended", "works"), [(doctor.TRIES - 1, True), (doctor.TRIES, False)])
 def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, ended, works):
     starts = itertools.count()
 

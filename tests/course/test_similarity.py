@@ -159,7 +159,7 @@ def test_a_passage_that_stands_twice_counts_twice():
 
 
 @pytest.mark.parametrize(
-    "said, text",
+    ("said", "text"),
     [
         ("none of the tasks can be read", "def gsolve(Z, B:\n"),
         ("none of the tasks can be read", "def gsolve():\n    return '\0'\n"),

@@ -163,7 +163,7 @@ def spoil(home, how):
 
 
 @pytest.mark.parametrize(
-    "gone, part, said",
+    ("gone", "part", "said"),
     [
         ("project.toml", "students", "Write a file project.toml"),
         ("source/hdr.py source/helpers.py", "source", "no source"),

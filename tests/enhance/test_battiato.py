@@ -207,7 +207,7 @@ FOUND = {  # (way, dark): recall in the face, and share of flag, rocket and wall
 }
 
 
-@pytest.mark.parametrize("way, dark", FOUND)
+@pytest.mark.parametrize(("way", "dark"), FOUND)
 def test_skin_is_found_in_light_and_dark_faces_alike(way, dark):
     Z, face, elsewhere = portrait(dark)
     found = skin.FINDERS[way](battiato.brighten(Z))

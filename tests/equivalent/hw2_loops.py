@@ -7,10 +7,7 @@ import numpy as np
 
 
 def hat(n=256):
-    w = []
-    for z in range(n):
-        w.append(z if z <= (n - 1) / 2 else n - 1 - z)
-    return np.array(w)
+    return np.array([z if z <= (n - 1) / 2 else n - 1 - z for z in range(n)])
 
 
 # %% task="gsolve"

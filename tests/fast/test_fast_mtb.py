@@ -57,7 +57,7 @@ def test_a_bracket_of_ordinary_size_is_aligned_as_the_lesson_does(dtype, knobs):
 
 
 @pytest.mark.parametrize(
-    "images, bits",
+    ("images", "bits"),
     [
         (np.zeros((2, 8, 8)), 6),
         (np.zeros((8, 8), np.uint8), 6),

@@ -157,7 +157,7 @@ def test_a_full_disk_names_the_file_whatever_was_to_be_written(tmp_path, monkeyp
     def full(*_, **__):
         raise OSError(28, "No space left on device")
 
-    with pytest.raises(OSError) as stop, files.replacing(tmp_path / "room.pfm"):
+    with pytest.raises(OSError, match="No space left") as stop, files.replacing(tmp_path / "room.pfm"):
         full()
     assert stop.value.filename == str(tmp_path / "room.pfm")
     monkeypatch.setattr(OpenEXR.File, "write", lambda *_: (_ for _ in ()).throw(RuntimeError("disk")))

@@ -35,7 +35,7 @@ def test_the_four_colours_part_in_gray_too():
     assert np.diff(np.sort(gray)).min() > 40
 
 
-@pytest.mark.parametrize("b, compared", [(np.zeros((2, 3)), None), (np.zeros((2, 2)), np.ones((2, 3)))])
+@pytest.mark.parametrize(("b", "compared"), [(np.zeros((2, 3)), None), (np.zeros((2, 2)), np.ones((2, 3)))])
 def test_bitmaps_of_two_sizes_are_refused(b, compared):
     with pytest.raises(ValueError, match="expected two bitmaps"):
         drawn.overlay(np.zeros((2, 2)), b, compared)

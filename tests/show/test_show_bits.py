@@ -41,7 +41,7 @@ def test_what_is_no_pixel_of_four_bytes_is_refused(pixel):
         bits.rgbe(pixel)
 
 
-@pytest.mark.parametrize("size, kind, word", [(16, np.float16, np.uint16), (32, np.float32, np.uint32)])
+@pytest.mark.parametrize(("size", "kind", "word"), [(16, np.float16, np.uint16), (32, np.float32, np.uint32)])
 @pytest.mark.parametrize("value", [0.7, -3.0, 1e-6, 0.0, 12345.0])
 def test_a_number_is_drawn_as_it_is_stored(size, kind, word, value):
     wanted = f"{int(kind(value).view(word)):0{size}b}"
@@ -74,7 +74,9 @@ def test_a_scanline_shows_as_many_bytes_as_are_known():
     assert shown == [planes[0].tolist(), planes[1].tolist(), planes[2, :3].tolist(), []]
 
 
-@pytest.mark.parametrize("planes, done", [(np.zeros((3, 5)), 0), (np.zeros((4, 5)), 21), (np.zeros(20), 0)])
+@pytest.mark.parametrize(
+    ("planes", "done"), [(np.zeros((3, 5)), 0), (np.zeros((4, 5)), 21), (np.zeros(20), 0)]
+)
 def test_what_is_no_scanline_is_refused(planes, done):
     with pytest.raises(ValueError, match="expected planes"):
         bits.scanline(planes, done)

@@ -88,7 +88,7 @@ class Checking:
 
     @pytest.fixture
     def rng(self, request: pytest.FixtureRequest) -> np.random.Generator:
-        """What this student's inputs to this task are drawn from."""
+        """Return what this student's inputs to this task are drawn from."""
         return plan.generator(int(self.job["seeds"].get(_task(request.node), 0)))
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:

@@ -217,12 +217,12 @@ def _changed(node: ast.AST) -> Iterable[str]:
 
 
 def plain(text: str) -> str:
-    """Return a cell without what only a notebook understands: magics, shell lines, questions.
+    r"""Return a cell without what only a notebook understands: magics, shell lines, questions.
 
     Examples
     --------
-    >>> plain("%matplotlib inline\\nx = 1")
-    'pass\\nx = 1'
+    >>> plain("%matplotlib inline\nx = 1")
+    'pass\nx = 1'
     """
     text = textwrap.dedent(text)
     head = text.lstrip()

@@ -67,12 +67,12 @@ def module(dotted: str) -> Module:
 
 
 def on_the_board(text: str) -> str:
-    """Return a module's text without types and guards; a field that is no plain number is an array.
+    r"""Return a module's text without types and guards; a field that is no plain number is an array.
 
     Examples
     --------
     >>> lines = ("def gain(E: F32, *, k: float = 2) -> F32:", "    if k < 0:", "        raise ValueError(k)")
-    >>> print(on_the_board("\\n".join([*lines, "    n: int = 3", "    return k * n * E"])))
+    >>> print(on_the_board("\n".join([*lines, "    n: int = 3", "    return k * n * E"])))
     def gain(E, *, k=2):
         n = 3
         return k * n * E

@@ -120,12 +120,12 @@ def rows(found: Likeness, pair: Pair) -> list[Row]:
 
 
 def pieces(text: str, places: np.ndarray) -> tuple[Piece, ...]:
-    """Return a text in pieces that are alike and others; of a long one, what begins with the first alike.
+    r"""Return a text in pieces that are alike and others; of a long one, what begins with the first alike.
 
     Examples
     --------
-    >>> pieces("a = 1\\nb = 2\\nc = 3\\n", np.array([[6], [12]]))
-    (('a = 1\\n', False), ('b = 2', True), ('\\nc = 3\\n', False))
+    >>> pieces("a = 1\nb = 2\nc = 3\n", np.array([[6], [12]]))
+    (('a = 1\n', False), ('b = 2', True), ('\nc = 3\n', False))
     """
     first = int(places[0].min()) if places.size else 0
     ends = [0 if len(text) <= TEXT else text.rfind("\n", 0, first) + 1]

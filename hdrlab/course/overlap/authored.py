@@ -30,7 +30,7 @@ class Work(NamedTuple):
 
 
 def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
-    """Return what a team wrote of these tasks, out of a notebook or a Python file.
+    r"""Return what a team wrote of these tasks, out of a notebook or a Python file.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
     --------
     >>> import tempfile
     >>> path = Path(tempfile.mkdtemp()) / "hw2.py"
-    >>> _ = path.write_text("import numpy as np\\ndef hat(n=256):\\n    return tent(n)\\ntent = np.hanning")
+    >>> _ = path.write_text("import numpy as np\ndef hat(n=256):\n    return tent(n)\ntent = np.hanning")
     >>> print(read("t7", path, "hw2", ["hat"]).texts["hat"])
     tent = np.hanning
     def hat(n=256):

@@ -66,11 +66,11 @@ class Likeness(NamedTuple):
 
 
 def fingerprint(text: str) -> CodeFingerprint:
-    """Return the fingerprints of a text of Python.
+    r"""Return the fingerprints of a text of Python.
 
     Examples
     --------
-    >>> text = "def f(Z):\\n    return [2 * Z[k] for k in Z]  # twice"
+    >>> text = "def f(Z):\n    return [2 * Z[k] for k in Z]  # twice"
     >>> one, other = fingerprint(text), fingerprint(text.replace("Z", "pixels"))
     >>> one.filtered_code, one.hashes == other.hashes
     ('defF(V):return[2*V[V]forVinV]', True)
@@ -101,7 +101,7 @@ def printed_steps(works: Iterable[Work]) -> Iterator[Printed]:
 
 
 def compare(each: Sequence[Printed], given: Sequence[str] = (), library: str = "") -> Likeness:
-    """Return how alike works are; those of one team are not compared with each other.
+    r"""Return how alike works are; those of one team are not compared with each other.
 
     Parameters
     ----------
@@ -111,7 +111,7 @@ def compare(each: Sequence[Printed], given: Sequence[str] = (), library: str = "
 
     Examples
     --------
-    >>> text = "def f(Z):\\n    total = 0\\n" + "".join(f"    total += {k} * Z[{k}]\\n" for k in range(30))
+    >>> text = "def f(Z):\n    total = 0\n" + "".join(f"    total += {k} * Z[{k}]\n" for k in range(30))
     >>> works = [Work("a", {"f": text}), Work("b", {"f": text.replace("Z", "levels")})]
     >>> compare(list(printed_steps(works))).pairs
     [Pair(one=0, other=1, share=1.0, forth=1.0, back=1.0)]

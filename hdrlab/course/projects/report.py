@@ -61,7 +61,7 @@ def write_report(project: Project) -> Written:
         raise ValueError(f"{project.folder}: expected words for the report, in {' or '.join(WORDS)}")
     said = words.read(project.words)
     notes = list(said.notes)
-    found = {name: figure for name, figure in _figures(project, notes)}
+    found = dict(_figures(project, notes))
     parts = tuple(_parts(said, {name: found[name] for name in AFTER if name in found}))
     notes += [f"the words have no section about: {name}" for name in said.missing()]
     title = said.title or project.about.title or project.folder.resolve().name

@@ -20,12 +20,12 @@ CONTROLS = re.compile(r"[\x00-\x1f\x7f-\x9f\u2028\u2029]+")
 
 
 def safe(cell: Cell) -> str:
-    """Return a cell as text on one line that no spreadsheet takes for a formula.
+    r"""Return a cell as text on one line that no spreadsheet takes for a formula.
 
     Examples
     --------
     >>> safe('=HYPERLINK("http://a")'), safe("-2"), safe(-2), safe(None)
-    ('\\'=HYPERLINK("http://a")', '-2', '-2', '')
+    ('\'=HYPERLINK("http://a")', '-2', '-2', '')
     """
     if cell is None:
         return ""

@@ -112,12 +112,12 @@ def _module(word: str, names: Sequence[str]) -> str:
 
 
 def escaped(line: str) -> str:
-    """Return a line of a docstring with the signs that Sphinx would read as markup made plain.
+    r"""Return a line of a docstring with the signs that Sphinx would read as markup made plain.
 
     Examples
     --------
     >>> print(escaped("2 * |a| of `b`, and *knobs"))
-    2 \\* \\|a\\| of `b`, and \\*knobs
+    2 \* \|a\| of `b`, and \*knobs
     """
     parts = line.split("`")
     for k in range(0, len(parts), 2):

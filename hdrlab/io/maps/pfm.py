@@ -36,12 +36,12 @@ def from_bytes(data: bytes) -> F32:
 
 
 def to_bytes(E: ArrayLike) -> bytes:
-    """Return the PFM file of radiance (H, W[, 3]), as bytes.
+    r"""Return the PFM file of radiance (H, W[, 3]), as bytes.
 
     Examples
     --------
     >>> to_bytes([[0.0], [1.0]])  # the lower row first
-    b'Pf\\n1 2\\n-1.0\\n\\x00\\x00\\x80?\\x00\\x00\\x00\\x00'
+    b'Pf\n1 2\n-1.0\n\x00\x00\x80?\x00\x00\x00\x00'
     """
     E = np.asarray(E)
     return header_of(E) + E[::-1].astype("<f4").tobytes()

@@ -76,11 +76,11 @@ def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | No
 
 
 def matrix(names: Sequence[str], values: Mapping[tuple[str, str], float], digits: int = 2) -> list[str]:
-    """Return a triangle of numbers, one for each pair of names, as lines of text.
+    r"""Return a triangle of numbers, one for each pair of names, as lines of text.
 
     Examples
     --------
-    >>> print("\\n".join(matrix(["mann", "space"], {("mann", "space"): 1.234})[1:]))
+    >>> print("\n".join(matrix(["mann", "space"], {("mann", "space"): 1.234})[1:]))
     space     1.23
     """
     wide = max(map(len, names)) + 2

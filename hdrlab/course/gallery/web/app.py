@@ -179,6 +179,6 @@ def application(gallery: Gallery) -> ASGIApp:
         Route("/results", gallery.results),
         Route("/static/{name}", gallery.static),
     ]
-    handlers: Mapping[Any, Any] = {kind: gallery.refused for kind in (Refusal, HTTPException, sqlite3.Error)}
+    handlers: Mapping[Any, Any] = dict.fromkeys((Refusal, HTTPException, sqlite3.Error), gallery.refused)
     app = Starlette(routes=routes, exception_handlers=handlers, lifespan=life)
     return Guard(app, host=gallery.host, secure=gallery.secure)
