@@ -245,6 +245,8 @@ SENTENCES = {
             round(np.mean((n.L >= np.quantile(n.L, 0.9))[n.index == 0]), 1) == 0.7
         ),
         "which fill less than a thousandth of the picture": lambda n: lamps(n) < 0.001,
+        "One pixel nearly doubles the mean": lambda n: 1.8 < n.hot.mean() / n.L.mean() < 2,
+        "would show the street five stops too dark": lambda n: round(np.log2(n.hot.max() / n.L.max())) == 5,
         "$L_d = 0.15$ is level 109": lambda n: round(255 * float(n.colour.encode_srgb(0.18 / 1.18))) == 109,
         "nearly straight from a stop below middle gray to three stops above it": lambda n: (
             [-1, 3] == [round(n.ev[steep(n)][k]) for k in (0, -1)]
