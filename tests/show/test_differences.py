@@ -13,7 +13,8 @@ def test_three_pictures_and_the_worst_pixel_is_named_and_ringed():
     came = IMAGE.copy()
     came[4, 5] += 0.5
     shown = differences.image(IMAGE, came, what="the map")
-    assert shown.captions == ("expected", "yours", "difference: worst at row 4, column 5")
+    scale = "difference from -0.5 (purple) to 0.5 (orange)"
+    assert shown.captions == ("expected", "yours", f"{scale}: worst at row 4, column 5")
     assert "off by 0.5" in shown.alts[2] and all(alt.startswith("the map") for alt in shown.alts)
     dark = np.argwhere(web.decode_picture(shown.frames[2]).max(axis=-1) < 40)  # the ring is black
     height, width = web.decode_picture(shown.frames[2]).shape[:2]
@@ -64,6 +65,15 @@ def test_an_even_picture_and_nothing_but_nan_are_drawn_too():
 def test_a_large_picture_is_made_small():
     shown = differences.image(np.zeros((900, 1200)), np.ones((900, 1200)))
     assert max(web.decode_picture(shown.frames[0]).shape) <= differences.MOST
+
+
+def test_two_curves_that_coincide_to_the_eye_are_told_apart_below_them():
+    g = np.log((np.arange(256) + 1) / 128)
+    alike, apart = (differences.curve(g, g + off, what="g").frames[0] for off in (0, 0.01 * np.sin(g)))
+    alike, apart = (web.decode_picture(one).astype(int) for one in (alike, apart))
+    lower = 2 * len(alike) // 3
+    changed = (np.abs(alike - apart).max(axis=-1) > 60).sum(axis=1)
+    assert changed[lower:].sum() > 2 * changed[:lower].sum()  # above, only the ring has moved
 
 
 @pytest.mark.parametrize("came", [np.zeros((5, 8)), np.zeros(48)])

@@ -7,6 +7,7 @@ Light goes over more than a screen can show: an image whose range is wide is dra
 """
 
 import numpy as np
+from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.types import Array
@@ -19,6 +20,8 @@ LEAST = 200  # pixels: a smaller picture is shown with larger pixels
 MOST = 480
 WIDE = 300.0  # expected's largest over its smallest: beyond this logarithms are drawn
 MISSING = 128
+LEVELS = 256
+LONGEST = 28  # letters beside an axis
 
 
 def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
@@ -36,7 +39,8 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     reach = float(np.nanmax(np.abs(np.where(np.isfinite(off), off, np.nan)), initial=0)) or 1.0
     colours = figures.false_colour(np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r")
     frames = [pictures.encode(_large(one)) for one in shown] + [pictures.encode(_ringed(colours, place))]
-    captions = ("expected", "yours", f"difference: worst at row {place[0]}, column {place[1]}")
+    span = f"from {-reach:.2g} (purple) to {reach:.2g} (orange)"
+    captions = ("expected", "yours", f"difference {span}: worst at row {place[0]}, column {place[1]}")
     alts = (
         ", ".join(filter(None, (f"{what}, expected", label, _range(truth)))),
         ", ".join(filter(None, (f"{what}, yours", label, _range(answer)))),
@@ -46,7 +50,10 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
 
 
 def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
-    """Return both curves in one plot, expected as a broad gray line; a ring where they are furthest apart."""
+    """Return both curves in one plot, with a ring where they are furthest apart, and their difference below.
+
+    What was expected is a broad gray line.
+    """
     truth, answer = np.asarray(expected, np.float64), np.asarray(came, np.float64)
     if truth.ndim != 1 or truth.shape != answer.shape:
         raise ValueError(f"expected two curves of one length, got {truth.shape} and {answer.shape}")
@@ -54,14 +61,18 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     seen = np.where(np.isfinite(answer), answer, np.nan)
     reach = 4 * (np.nanmax(truth, initial=-np.inf) - np.nanmin(truth, initial=np.inf) + 1e-9)
     seen = np.clip(seen, np.nanmin(truth) - reach, np.nanmax(truth) + reach)  # else one spike hides all else
-    ax, x = plots.axes(), np.arange(len(truth))
+    figure, x = Figure(figsize=(5.4, 4.6), dpi=100, layout="constrained"), np.arange(len(truth))
+    ax, below = figure.subplots(2, sharex=True, height_ratios=(5, 2))
     ax.plot(x, truth, "-", color="#B0B0B0", linewidth=5, label="expected")
     ax.plot(x, seen, "-", color="#0072B2", linewidth=1.6, label="yours")
     ax.plot(k, seen[k], "o", color="#D55E00", markersize=9, markerfacecolor="none", label="furthest apart")
-    ax.set(xlabel="index", ylabel="value")
-    plots.with_legend(ax, "best")
+    plots.with_legend(ax, "best").set(ylabel=what if len(what) < LONGEST else "value")
+    below.axhline(0, color="#B0B0B0", linewidth=1)
+    below.plot(x, seen - truth, "-", color="#D55E00", linewidth=1.6)
+    below.set(xlabel="level z" if len(truth) == LEVELS else "index", ylabel="yours - expected")
     alt = f"{what}, expected {_range(truth)} and yours {_range(answer)}; at {k} they differ by {error:.4g}"
-    return Picture((pictures.encode(ax),), (alt,), (f"expected and yours, furthest apart at {k}",))
+    caption = f"expected and yours, and below their difference; furthest apart at {k}"
+    return Picture((pictures.encode(figure),), (alt,), (caption,))
 
 
 def _worst_channel(off: Array) -> Array:
