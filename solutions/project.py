@@ -7,6 +7,8 @@
 # Photograph it, assemble its radiance, and make a picture that shows what you saw there. One part is
 # checked here; the rest is looked at by people.
 #
+# You work in teams of two, and hand in once.
+#
 # What people look at:
 #
 # {hand}

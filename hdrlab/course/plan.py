@@ -22,11 +22,15 @@ PLAN = Path(__file__).with_name("plan.toml")
 
 
 class Task(NamedTuple):
-    """One function to write: what it is called in the checks, where the library has it, and its points."""
+    """One function to write: what it is called in the checks, where the library has it, and its points.
+
+    `minimum` marks what everybody is to write, also those who write little.
+    """
 
     id: str
     function: str
     points: float
+    minimum: bool = False
 
     @property
     def name(self) -> str:
@@ -35,10 +39,11 @@ class Task(NamedTuple):
 
 
 class ByHand(NamedTuple):
-    """What a person judges."""
+    """What a person judges, and a line for each number of points that says what earns them."""
 
     title: str
     points: float
+    rubric: tuple[str, ...] = ()
 
 
 class Homework(NamedTuple):
@@ -118,8 +123,14 @@ def _late(table: dict[str, Any], path: Path) -> Late:
 def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     here = f"[{name:.80}]"
     try:
-        tasks = tuple(Task(one["id"], one["function"], float(one["points"])) for one in sheet["tasks"])
-        by_hand = tuple(ByHand(one["title"], float(one["points"])) for one in sheet.get("by_hand", ()))
+        tasks = tuple(
+            Task(one["id"], one["function"], float(one["points"]), one.get("minimum") is True)
+            for one in sheet["tasks"]
+        )
+        by_hand = tuple(
+            ByHand(one["title"], float(one["points"]), tuple(map(str, one.get("rubric", ()))))
+            for one in sheet.get("by_hand", ())
+        )
         made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{path}: expected title, due and tasks in {here}, {error!r:.200}") from None

@@ -119,7 +119,7 @@ def test_every_task_of_the_plan_has_its_cell_its_check_and_its_points(made, name
     prose = "\n".join(cell["source"] for cell in cells.values() if cell["cell_type"] == "markdown")
     for task in PLAN.homeworks[name].tasks:
         assert f"task-{task.id}" in cells and cells[f"check-{task.id}"]["source"] == f'check("{task.id}")'
-        assert f"({task.points:g} points)" in prose
+        assert f"({task.points:g} points{', the minimum' * task.minimum})" in prose
     assert not re.search(r"\{(points|due|total|late|hand)\}", prose)
     assert PLAN.homeworks[name].due.strftime("%d %B %Y") in prose
 
@@ -156,6 +156,22 @@ title = "The radiance map and its files"
 due = 2026-11-06T23:59:00Z
 tasks = [{ id = "to_radiance", function = "io.maps.rgbe.to_radiance", points = 10 }]
 """
+
+
+def test_a_sheet_marks_the_tasks_that_are_the_minimum(made):
+    tasks = [task for homework in PLAN.homeworks.values() for task in homework.tasks]
+    assert [task.id for task in tasks if task.minimum] == ["align", "gsolve", "merge", "display"]
+    for name in ("hw1", "hw2", "hw3", "hw4"):
+        heads = [cell["source"].partition("\n")[0] for cell in made(name).assignment["cells"]]
+        assert sum(head.endswith(" points, the minimum)") for head in heads) == 1, name
+
+
+def test_the_projects_sheet_says_what_earns_how_many_points_by_hand(made):
+    text = "".join(made("project").assignment["cells"][0]["source"])
+    for one in PLAN.homeworks["project"].by_hand:
+        assert f"- **{one.title}** ({one.points:g} points)\n  - {one.points:g}: " in text
+        earned = [float(line.partition(":")[0]) for line in one.rubric]
+        assert len(earned) > 1 and earned == sorted(earned, reverse=True) and earned[0] == one.points
 
 
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)

@@ -22,7 +22,7 @@ from typing import Any, NamedTuple
 from hdrlab.course.code import inline
 from hdrlab.course.code.closure import Cell
 from hdrlab.course.material import materials, stubs
-from hdrlab.course.plan import Homework, Plan, Task
+from hdrlab.course.plan import ByHand, Homework, Plan, Task
 from hdrlab.course.submission import cells_of
 from hdrlab.io.files import replacing
 
@@ -100,15 +100,20 @@ def _planned(text: str, homework: Homework) -> str:
 def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
     """Return prose with what the plan says in place of its names in braces."""
     said = {
-        "points": f"{task.points:g} points" if task else "",
+        "points": f"{task.points:g} points{', the minimum' * task.minimum}" if task else "",
         "total": f"{homework.points + sum(one.points for one in homework.by_hand):g}",
         "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
         "late": late,
-        "hand": "\n".join(f"- {one.title}: {one.points:g} points" for one in homework.by_hand),
+        "hand": "\n".join(_judged(one) for one in homework.by_hand),
     }
     for name, value in said.items():
         text = text.replace(f"{{{name}}}", value)
     return text
+
+
+def _judged(one: ByHand) -> str:
+    """Return what a person judges as an item of a list, and what earns how many points below it."""
+    return "\n  - ".join([f"- **{one.title}** ({one.points:g} points)", *one.rubric])
 
 
 def lateness(plan: Plan) -> str:
