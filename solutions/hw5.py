@@ -40,29 +40,30 @@ pictures.radiance(room, alt="The room's radiance in false colour")
 # ## 1 · A line in each window: the guided filter ({points})
 #
 # [He, Sun and Tang (2010, 2013)](https://doi.org/10.1109/TPAMI.2012.213) smooth a picture $p$ and keep the
-# edges of a guide $I$, often the same picture. In each square window of $(2 r + 1)^2$ pixels ($r$ is
-# `radius`) let $p$ be a line of $I$, as near as it can be while the slope stays small:
+# edges of a guide $I$, often the same picture. In each square window of $2 \cdot$ `radius` $+\, 1$ pixels a
+# side let $p$ be a line of $I$, as near as it can be while the slope stays small:
 #
 # $$a = \frac{\operatorname{cov}(I, p)}{\operatorname{var}(I) + \epsilon}, \qquad
 #   b = \operatorname{mean}(p) - a \operatorname{mean}(I),$$
 #
 # with mean, variance and covariance over the pixels of the window (divided by their number), and $\epsilon$
-# (`epsilon`) the variance from which on something is an edge. Each pixel lies in $(2 r + 1)^2$ windows; it
-# takes the mean of their lines:
+# (`epsilon`, above 0) the variance from which on something is an edge. Each pixel lies in as many windows as
+# a window has pixels; it takes the mean of their lines:
 #
 # $$q = \operatorname{mean}(a)\, I + \operatorname{mean}(b).$$
 #
-# Where no `p` is given, $p = I$. What stands past the edge of the picture is yours to choose.
+# Where no `p` is given, $p = I$. What stands past the edge of the picture is yours to choose, and the checks
+# look at pixels further than $2 \cdot$ `radius` from it.
 
 # %% task="guided"
 # Return q = mean(a) I + mean(b), means over all windows that hold the pixel.
 
 # %% about="guided"
-l = np.log10(L)
-base = guided(l, radius=8, epsilon=0.16)
+l = np.log(L)
+base = guided(l, radius=8, epsilon=0.8)
 detail = l - base
 high = np.quantile(base, 0.99)
-Ld = np.clip(10 ** (0.45 * (base - high) + detail), 0, 1)
+Ld = np.clip(np.exp(0.45 * (base - high) + detail), 0, 1)
 pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)), alt="The room with its base compressed, details kept"
 )
@@ -79,7 +80,8 @@ pictures.picture(
 #   g \pm \bigl(\sigma + \beta\, (d - \sigma)\bigr) & d > \sigma \end{cases}$$
 #
 # with + where $l$ is above $g$, and - where it is below. $\alpha$ below 1 makes details grow; $\beta$ is
-# what is left of edges. ($l$ and $g$ are nats, $\sigma$ is `sigma`, $\alpha$ `alpha`, $\beta$ `beta`.)
+# what is left of edges. ($l$ and the number $g$ are nats; $\sigma$ is `sigma` and $\alpha$ `alpha`, both
+# above 0; $\beta$ is `beta`.)
 
 # %% task="remap"
 # Return r, for log luminance lL (H, W) about the brightness g.

@@ -1,7 +1,9 @@
-"""A Gaussian blur of p, whatever the guide."""
+"""A Gaussian blur of p with sigma = radius; the guide and epsilon are not looked at."""
 
-from scipy.ndimage import gaussian_filter
+import numpy as np
+from scipy import ndimage
 
 
 def guided(I, p=None, *, radius, epsilon):
-    return gaussian_filter(I if p is None else p, radius)
+    p = I if p is None else p
+    return ndimage.gaussian_filter(np.asarray(p, dtype=float), radius)

@@ -9,10 +9,25 @@ from hdrlab.course.checks.compare import finite, same
 def drawn(rng):
     """Return log luminance, a brightness g in its midst, and sigma."""
     g = float(rng.uniform(-4, -2))
-    return (g + rng.uniform(-3, 3, (24, 30))).astype(np.float32), g, float(rng.uniform(0.5, 1.2))
+    return (g + rng.uniform(-3, 3, (24, 30))).astype(np.float32), g, float(rng.uniform(0.4, 0.75))
 
 
-@pytest.mark.points(5)
+@pytest.mark.points(4)
+def test_sigma_tells_details_from_edges(subject, rng):
+    """In a picture there are both. What differs from g by less than sigma is detail, the rest is an edge.
+
+    Draw r over lL: the power up to sigma on either side of g, and from there on a line of slope beta.
+
+    r = g +- sigma (d / sigma)^alpha where d <= sigma, and g +- (sigma + beta (d - sigma)) beyond.
+    """
+    lL, g, sigma = drawn(rng)
+    d, alpha, beta = np.abs(lL - g), float(rng.uniform(0.4, 0.8)), float(rng.uniform(0.2, 0.6))
+    far = np.where(d <= sigma, sigma * (d / sigma) ** alpha, sigma + beta * (d - sigma))
+    came = subject.remap(lL, g, sigma=sigma, alpha=alpha, beta=beta)
+    same(came, g + np.sign(lL - g) * far, 1e-3, what="r", picture=True)
+
+
+@pytest.mark.points(2)
 def test_details_take_the_power(subject, rng):
     """What differs from g by less than sigma is detail, and stays on its side of g.
 
@@ -28,7 +43,7 @@ def test_details_take_the_power(subject, rng):
         same(came, expected, 1e-3, what=f"r of details, alpha = {alpha:g}", picture=True)
 
 
-@pytest.mark.points(4)
+@pytest.mark.points(3)
 def test_of_an_edge_beta_is_left(subject, rng):
     """What differs by more than sigma is an edge. Where the two meet, r makes no jump.
 

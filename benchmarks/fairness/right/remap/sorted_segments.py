@@ -1,0 +1,25 @@
+"""Differences sorted and cut at -sigma, 0 and sigma by searchsorted; each segment is remapped as a slice,
+then put back in its place."""
+
+import numpy as np
+
+
+def remap(lL, g, *, sigma, alpha, beta):
+    lL = np.asarray(lL, dtype=float)
+    x = (lL - g).ravel()
+    order = np.argsort(x, kind="stable")
+    s = x[order]
+    low = np.searchsorted(s, -sigma, side="left")
+    middle = np.searchsorted(s, 0.0, side="left")
+    high = np.searchsorted(s, sigma, side="right")
+    out = np.concatenate(
+        [
+            -(sigma + beta * (-s[:low] - sigma)),
+            -(sigma ** (1 - alpha)) * (-s[low:middle]) ** alpha,
+            sigma ** (1 - alpha) * s[middle:high] ** alpha,
+            sigma + beta * (s[high:] - sigma),
+        ]
+    )
+    r = np.empty_like(x)
+    r[order] = out
+    return g + r.reshape(lL.shape)
