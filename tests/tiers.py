@@ -151,6 +151,7 @@ TIERS = {
         "tests/show/test_widgets.py::test_a_plot_on_ground",
         "tests/test_fuzz.py::test_a_reader_that_waits",
         "tests/test_fuzz.py::test_whatever_is_neither",
+        "tests/test_mutation.py::test_a_mutant_is_killed",
         "tests/tonemap/test_quality.py::test_structural_fidelity",
     ),
     "scenes": ("tests/scenes/",),

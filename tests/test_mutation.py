@@ -1,0 +1,95 @@
+"""What `python -m benchmarks mutation` changes in a file, and how it learns whether a test sees it."""
+
+import ast
+import tomllib
+
+import pytest
+
+from benchmarks import mutation
+from benchmarks.measure import ROOT
+from benchmarks.mutation.mutants import mutants
+
+SOURCE = '''"""Sums of 3 numbers."""
+
+
+def total(x: int, *, most: float = 2.5) -> int:
+    """Return x + 1, at most 2.5."""
+    if x < 0 and not most:
+        raise ValueError(f"expected at least {0 + 0}, got {x}")
+    print(x)
+    return -x if x is None else x * 2
+'''
+TURNED_ROUND = "-x if x is None else x * 2 -> (x * 2 if x is None else -x)"
+CHANGES = {
+    "2.5 -> 5.0",
+    "x < 0 and not most -> (x < 0 or not most)",
+    "x < 0 -> (x <= 0)",
+    "x < 0 -> (x >= 0)",
+    "0 -> 1",
+    "not most -> (most)",
+    "print(x) -> pass",
+    TURNED_ROUND,
+    "-x -> (x)",
+    "x is None -> (x is not None)",
+    "x * 2 -> (x / 2)",
+    "2 -> 3",
+}
+TEST = """import toy
+
+
+def test_it_doubles():
+    assert toy.total(4) == 8
+"""
+
+
+def test_every_operator_number_and_condition_is_changed_but_words_types_and_refusals_are_not():
+    said = {one.said.partition(": ")[2] for one in mutants("toy.py", SOURCE)}
+    assert said == CHANGES
+
+
+@pytest.mark.parametrize("file", ["hdrlab/radiance/merge.py", "hdrlab/course/plan.py"])
+def test_a_mutant_is_python_and_differs_in_one_place(file):
+    text = (ROOT / file).read_text(encoding="utf8")
+    found = mutants(file, text)
+    assert len(found) > 20
+    for one in found:
+        changed = one.applied(text)
+        assert ast.dump(ast.parse(changed)) != ast.dump(ast.parse(text))
+        assert changed.replace(one.new, "", 1) != changed
+        assert len(changed) - len(text) == len(one.new) - len(one.old)
+
+
+@pytest.fixture
+def forked(tmp_path):
+    """The process that runs tests, in a tree of one module and its test."""
+    tree = tmp_path / "tree"
+    tree.mkdir()
+    (tree / "toy.py").write_text(SOURCE)
+    (tree / "test_toy.py").write_text(TEST)
+    started = mutation.Forked(tree)
+    yield started
+    started.end()
+
+
+def test_a_mutant_is_killed_by_a_test_that_fails_or_hangs_and_survives_one_that_does_not_see_it(forked):
+    tests = ["test_toy.py::test_it_doubles"]
+    assert forked.run(tests, 60) == 0
+    codes = {}
+    for one in mutants("toy.py", SOURCE)[3:]:
+        with forked.changed(one):
+            codes[one.said.partition(": ")[2]] = forked.run(tests, 60)
+    seen = {said for said, code in codes.items() if code}
+    assert seen == {"x * 2 -> (x / 2)", "2 -> 3", "x is None -> (x is not None)", TURNED_ROUND}
+    assert (forked.tree / "toy.py").read_text() == SOURCE
+    (forked.tree / "toy.py").write_text("while True:\n    pass\n")
+    assert forked.run(tests, 1) != 0
+
+
+def test_what_is_listed_as_changing_nothing_stands_in_its_file_and_has_a_reason():
+    listed = tomllib.loads((mutation.HERE / "equivalent.toml").read_text(encoding="utf8"))["equivalent"]
+    for one in listed:
+        text = (ROOT / one["file"]).read_text(encoding="utf8")
+        assert any((each.old, each.new) == (one["old"], one["new"]) for each in mutants(one["file"], text)), (
+            one
+        )
+        assert len(one["why"]) > 10
