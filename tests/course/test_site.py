@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -218,7 +219,8 @@ def test_a_notebook_that_fails_is_named_with_its_cell(tmp_path):
     assert not (tmp_path / "site" / "index.html").exists()
 
 
-def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(tmp_path):
+def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(made, tmp_path):
+    shutil.copytree(made[1], tmp_path / "site", symlinks=True)  # another site's reference is the same one
     plain = notebook(tmp_path / "plain.ipynb", "Plain", "%matplotlib inline", "1 + 1")
     text = plain.read_text("utf-8").replace("# Plain", "Plain & simple")
     plain.write_text(text, "utf-8")
