@@ -21,6 +21,8 @@ from pathlib import Path
 from statistics import median
 from typing import Any
 
+import numpy as np
+
 from benchmarks.rows import Case, Figures, Results, Row, Run, Usage
 
 ROOT = Path(__file__).parents[1]
@@ -45,7 +47,8 @@ def measured(subject: str, row: Row, folder: Path) -> tuple[Results, dict[str, s
     results = {}
     for who, seconds in one["seconds"].items():
         memory = child(subject, row, folder, "memory", who)["megabytes"]
-        results[who] = Figures(median(seconds), median(default["seconds"][who]), memory, one["errors"][who])
+        times = median(seconds), median(default["seconds"][who])
+        results[who] = Figures(*times, memory, one["errors"][who], one["floors"][who])
     return results, one["missing"]
 
 
@@ -74,8 +77,13 @@ def main(subject: str, name: str, folder: str, what: str, who: str = "") -> None
 
 
 def timed(case: Case) -> dict[str, Any]:
-    """Return the seconds of every round and the errors of everyone, after a round to warm up."""
-    errors = {who: case.error(who, run()) for who, run in case.runs.items()}
+    """Return the seconds of every round, the errors and the floors of everyone, after a round to warm up."""
+    errors, floors, rate = {}, {}, bandwidth()
+    for who, run in case.runs.items():
+        result = run()
+        errors[who] = case.error(who, result)
+        reads = case.reads if isinstance(case.reads, int) else case.reads[who]
+        floors[who] = (reads + size(result)) / rate if reads else None
     seconds: dict[str, list[float]] = {who: [] for who in case.runs}
     start = time.perf_counter()
     for done in range(MOST_ROUNDS):
@@ -83,7 +91,22 @@ def timed(case: Case) -> dict[str, Any]:
             break
         for who, run in case.runs.items():
             seconds[who].append(clocked(run))
-    return {"seconds": seconds, "errors": errors, "missing": case.missing}
+    return {"seconds": seconds, "errors": errors, "missing": case.missing, "floors": floors}
+
+
+def bandwidth() -> float:
+    """Return the bytes a second that go through memory when an array is copied, read and written."""
+    source = np.ones(2**24)  # 128 MiB, more than any cache holds
+    target = np.empty_like(source)
+    times = [clocked(lambda: np.copyto(target, source)) for _ in range(5)]
+    return 2 * source.nbytes / min(times)
+
+
+def size(result: Any) -> int:
+    """Return the bytes of a result: of its arrays, and of files that it leaves none."""
+    if isinstance(result, np.ndarray):
+        return result.nbytes
+    return sum(map(size, result)) if isinstance(result, (tuple, list)) else 0
 
 
 def clocked(run: Run) -> float:

@@ -33,20 +33,26 @@ class Case(NamedTuple):
     runs : who -> a function without arguments that does the work; hdrlab first
     missing : peer -> why it is not there
     error : how far a result is from the truth, given who made it; None where nothing can be said
+    reads : bytes of the input, which have to be read at least once; by who where they differ
     """
 
     runs: dict[str, Run]
     missing: dict[str, str]
     error: Callable[[str, Any], float | None] = lambda who, result: None
+    reads: int | Mapping[str, int] = 0
 
 
 class Figures(NamedTuple):
-    """Of one who did it: median seconds in one thread and by default, peak MB beyond the input, error."""
+    """Of one who did it: median seconds in one thread and by default, peak MB beyond the input, error.
+
+    `floor` is the seconds that the machine takes to read the input and write the result, and nothing else.
+    """
 
     seconds: float
     default: float
     megabytes: float | None = None
     error: float | None = None
+    floor: float | None = None
 
 
 Results = dict[str, Figures]

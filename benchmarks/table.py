@@ -1,9 +1,13 @@
-"""The figures as text: a block per row, who did the work line by line, then what it must hold."""
+"""The figures as text: a block per row, who did the work line by line, then what it must hold.
+
+The floor is the time in which the machine reads the input and writes the result, and does nothing else: bytes
+over the bandwidth of a copy, measured in the same process.
+"""
 
 from benchmarks.experiments import Experiment, Found, listed
 from benchmarks.rows import Figures, Outcome, Results, Row, best_peer, verdicts
 
-COLUMNS = ("one thread", "by default", "peak memory")
+COLUMNS = ("one thread", "by default", "peak memory", "x the floor")
 
 
 def block(row: Row, results: Results, missing: dict[str, str]) -> str:
@@ -53,8 +57,9 @@ def summary(outcomes: list[Outcome]) -> str:
 def _cells(figures: Figures) -> tuple[str, ...]:
     times = [f"{1e3 * seconds:.3g} ms" if seconds < 1 else f"{seconds:.2f} s" for seconds in figures[:2]]
     memory = "-" if figures.megabytes is None else f"{figures.megabytes:.0f} MB"
-    return (*times, memory, "-" if figures.error is None else f"{figures.error:.3g}")
+    floor = "-" if not figures.floor else f"{figures.seconds / figures.floor:.3g}"
+    return (*times, memory, floor, "-" if figures.error is None else f"{figures.error:.3g}")
 
 
 def _line(who: str, cells: tuple[str, ...]) -> str:
-    return f"  {who:<16}" + "".join(f"{cell:>14}" for cell in cells[:3]) + f"   {cells[3]}"
+    return f"  {who:<16}" + "".join(f"{cell:>14}" for cell in cells[:4]) + f"   {cells[4]}"

@@ -239,6 +239,21 @@ def test_everyone_runs_once_to_warm_up_and_once_in_each_of_at_least_five_rounds(
     assert found["errors"] == {"a": 97, "b": 98}
 
 
+def test_the_floor_is_the_time_to_read_the_input_and_to_write_the_result(monkeypatch):
+    monkeypatch.setattr(measure, "ENOUGH", 0)
+    monkeypatch.setattr(measure, "bandwidth", lambda: 1000.0)
+    runs = {"a": lambda: np.zeros(25, np.float32), "b": lambda: (np.zeros(2), [np.zeros(3)])}
+    assert measure.timed(Case(runs, {}, reads=400))["floors"] == {"a": 0.5, "b": 0.44}
+    assert measure.timed(Case(runs, {}, reads={"a": 900, "b": 60}))["floors"] == {"a": 1, "b": 0.1}
+    assert measure.timed(Case(runs, {}))["floors"] == {"a": None, "b": None}
+    text = table.block(row(), {OURS: Figures(0.5, 0.5, None, None, floor=0.02)}, {})
+    assert text.splitlines()[2].split()[-2:] == ["25", "-"]
+
+
+def test_the_machine_copies_at_least_a_hundred_megabytes_a_second():
+    assert measure.bandwidth() > 1e8
+
+
 def test_a_run_of_processes_reports_its_own_time():
     assert measure.clocked(lambda: Usage(1234.5, 1)) == 1234.5
     assert 0.01 <= measure.clocked(lambda: time.sleep(0.01)) < 10

@@ -26,7 +26,7 @@ def case(folder: Path, one: bool) -> Case:
         found = offsets(images) if who == OURS else opencv_offsets(images, one)
         return float(np.sum(np.abs(found - data.moves(RADIUS)).max(axis=1) > 1))
 
-    return Case({OURS: ours} | theirs, missing, lost)
+    return Case({OURS: ours} | theirs, missing, lost, images.nbytes)
 
 
 def offsets(images: Array) -> Array:

@@ -40,7 +40,7 @@ def case(N: int, folder: Path, one: bool) -> Case:
     else:
         makers[peers.COLOUR] = lambda: colour_hdri(each_channel, B)
     theirs, missing = peers.present(makers)
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, 3 * N * data.FRAMES)
 
 
 def error(who: str, g: Any) -> float:

@@ -34,7 +34,8 @@ def case(folder: Path, one: bool) -> Case:
         return lambda: run(script, peers.OPENCV)
 
     theirs, missing = peers.present({peers.OPENCV: opencv})
-    return Case({OURS: lambda: run(ours, OURS)} | theirs, missing, lambda who, _: error(folder, who))
+    frames = data.photographs(folder, data.LARGE, radius=RADIUS).images.nbytes  # decoded
+    return Case({OURS: lambda: run(ours, OURS)} | theirs, missing, lambda who, _: error(folder, who), frames)
 
 
 def write_photographs(photographs: Path, folder: Path) -> None:

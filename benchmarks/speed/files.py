@@ -26,7 +26,7 @@ def reading(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, 
     def error(who: str, result: Any) -> float | None:
         return None if same is None else float(np.abs(upright(who, result) - same).max())
 
-    return Case({OURS: lambda: form.read(path)} | theirs, missing, error)
+    return Case({OURS: lambda: form.read(path)} | theirs, missing, error, path.stat().st_size)
 
 
 def writing(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, one: bool) -> Case:
@@ -39,7 +39,7 @@ def writing(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, 
     def error(who: str, result: Any) -> float | None:
         return abs(paths[who].stat().st_size / paths[peer].stat().st_size - 1) if theirs else None
 
-    return Case({OURS: lambda: form.write(paths[OURS], E)} | theirs, missing, error)
+    return Case({OURS: lambda: form.write(paths[OURS], E)} | theirs, missing, error, E.nbytes)
 
 
 def upright(who: str, E: Array) -> Array:

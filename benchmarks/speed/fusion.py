@@ -30,7 +30,7 @@ def case(folder: Path, one: bool) -> Case:
             return None
         return float(np.quantile(np.abs(fused - theirs[peers.OPENCV]()).max(axis=-1), 0.999))
 
-    return Case({OURS: lambda: mertens.fuse(images)} | theirs, missing, error)
+    return Case({OURS: lambda: mertens.fuse(images)} | theirs, missing, error, images.nbytes)
 
 
 ROWS = (

@@ -30,6 +30,7 @@ def accurate(folder: Path, one: bool) -> Case:
         {OURS: lambda: recovery.find_method("robertson")(bracket.images, bracket.times)} | theirs,
         missing,
         error,
+        bracket.images.nbytes,
     )
 
 
@@ -53,7 +54,7 @@ def all_pixels(folder: Path, one: bool) -> Case:
     def error(who: str, found: Any) -> float:
         return data.curve_error(np.log(np.maximum(found, 1e-30)) if who == peers.OPENCV else found)
 
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, bracket.images.nbytes)
 
 
 def opencv(bracket: Bracket, one: bool) -> Run:

@@ -35,7 +35,7 @@ def case(folder: Path, one: bool) -> Case:
             return None
         return data.log_error(E[..., ::-1] if who == peers.OPENCV else E, truth, bracket.images)
 
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, bracket.images.nbytes)
 
 
 def opencv(bracket: Bracket, g: Array, one: bool) -> Run:

@@ -46,7 +46,7 @@ def guided_case(folder: Path, one: bool) -> Case:
         return None if who == OURS else float(np.abs(q - ours())[inside].max())
 
     theirs, missing = peers.present({peers.OPENCV: opencv})
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, lL.nbytes)
 
 
 def laplacian_case(folder: Path, one: bool) -> Case:
@@ -65,7 +65,7 @@ def laplacian_case(folder: Path, one: bool) -> Case:
         return None if who == OURS else float(np.abs(answer - ours()).max())
 
     theirs, missing = peers.present({peers.HALIDE: halide})
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, lL.nbytes)
 
 
 def codes_case(folder: Path, one: bool) -> Case:
@@ -88,7 +88,7 @@ def codes_case(folder: Path, one: bool) -> Case:
         )
 
     theirs, missing = peers.present({COLOUR: colour_science})
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, FD.nbytes + E.nbytes)
 
 
 AWAY = "largest difference from hdrlab"

@@ -45,7 +45,7 @@ def bilateral_case(folder: Path, one: bool) -> Case:
         exact, fast = by_definition(lL, **sigmas).mean, bilateral.bilateral(lL, **sigmas).mean
         return float(np.sqrt(np.mean((fast - exact) ** 2)))
 
-    return Case({OURS: lambda: durand.tonemap(L)} | theirs, missing, error)
+    return Case({OURS: lambda: durand.tonemap(L)} | theirs, missing, error, L.nbytes)
 
 
 def gradient_case(folder: Path, one: bool) -> Case:
@@ -65,13 +65,13 @@ def gradient_case(folder: Path, one: bool) -> Case:
         f = poisson.laplacian(log_luminance(L))
         return float(np.abs(poisson.laplacian(poisson.solve(f)) - f).max() / np.abs(f).max())
 
-    return Case({OURS: lambda: fattal.tonemap(L)} | theirs, missing, error)
+    return Case({OURS: lambda: fattal.tonemap(L)} | theirs, missing, error, L.nbytes)
 
 
 def histogram_case(folder: Path, one: bool) -> Case:
     """Return the work of Ward's operator beside our own global Reinhard, both on luminance."""
     L = luminance(data.scene(folder))
-    return Case({OURS: lambda: ward.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {})
+    return Case({OURS: lambda: ward.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes)
 
 
 def blur_case(folder: Path, one: bool) -> Case:
@@ -88,19 +88,19 @@ def blur_case(folder: Path, one: bool) -> Case:
     def error(who: str, blurred: Any) -> float:
         return float(np.abs(blurred / gaussian_filter(L.astype(np.float64), sigma, truncate=6) - 1).max())
 
-    return Case({OURS: lambda: blur.gaussian(L, sigma)} | theirs, missing, error)
+    return Case({OURS: lambda: blur.gaussian(L, sigma)} | theirs, missing, error, L.nbytes)
 
 
 def scale_case(folder: Path, one: bool) -> Case:
     """Return the work of Chiu's whole operator, smoothing passes included, beside our own global Reinhard."""
     L = luminance(data.scene(folder))
-    return Case({OURS: lambda: chiu.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {})
+    return Case({OURS: lambda: chiu.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes)
 
 
 def brush_case(folder: Path, one: bool) -> Case:
     """Return the work of the Detail Brush over a whole picture, beside our own global Reinhard."""
     L = luminance(data.scene(folder))
-    return Case({OURS: lambda: brush.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {})
+    return Case({OURS: lambda: brush.tonemap(L), REINHARD: lambda: reinhard.tonemap(L)}, {}, reads=L.nbytes)
 
 
 def than(peer: str, limit: float, goal: float | None = None) -> Hold:

@@ -16,12 +16,17 @@ from hdrlab.pipeline import catalogue
 SIZES = {"2 MP": data.SMALL, "12 MP": data.LARGE}
 
 
-def case(make: Callable[[Path, data.Size, bool], Run], folder: Path, one: bool) -> Case:
+Work = tuple[Run, int]  # and the bytes of its input
+
+
+def case(make: Callable[[Path, data.Size, bool], Work], folder: Path, one: bool) -> Case:
     """Return the same work at both sizes."""
-    return Case({name: make(folder, size, one) for name, size in SIZES.items()}, {})
+    made = {name: make(folder, size, one) for name, size in SIZES.items()}
+    reads = {name: read for name, (_, read) in made.items()}
+    return Case({name: run for name, (run, _) in made.items()}, {}, reads=reads)
 
 
-def merging(folder: Path, size: data.Size, one: bool) -> Run:
+def merging(folder: Path, size: data.Size, one: bool) -> Work:
     """Return the merge of seven photographs."""
     bracket, g = data.photographs(folder, size), data.response()
 
@@ -29,25 +34,25 @@ def merging(folder: Path, size: data.Size, one: bool) -> Run:
         with patch.object(merge, "THREADS", 1 if one else merge.THREADS):
             return merge.merge_with_quality(bracket.images, bracket.times, g)
 
-    return work
+    return work, bracket.images.nbytes
 
 
-def developing(folder: Path, size: data.Size, one: bool) -> Run:
+def developing(folder: Path, size: data.Size, one: bool) -> Work:
     """Return Reinhard's global operator to 8 bits."""
     E = data.scene(folder, size)
-    return lambda: pipeline.develop(E, "reinhard")
+    return lambda: pipeline.develop(E, "reinhard"), E.nbytes
 
 
-def tonemapping(name: str, folder: Path, size: data.Size, one: bool) -> Run:
+def tonemapping(name: str, folder: Path, size: data.Size, one: bool) -> Work:
     """Return an operator, luminance to luminance."""
     L, tonemap = luminance(data.scene(folder, size)), catalogue.method("tonemap", name)
-    return lambda: tonemap(L)
+    return lambda: tonemap(L), L.nbytes
 
 
-def fusing(folder: Path, size: data.Size, one: bool) -> Run:
+def fusing(folder: Path, size: data.Size, one: bool) -> Work:
     """Return the fusion of seven photographs."""
     images = data.photographs(folder, size).images
-    return lambda: mertens.fuse(images)
+    return lambda: mertens.fuse(images), images.nbytes
 
 
 def operator(name: str) -> Row:

@@ -36,6 +36,7 @@ def case(folder: Path, one: bool, order: int | None) -> Case:
         {OURS: lambda: self_calibration.find_response(bracket.images, bracket.times, order=order)} | theirs,
         missing,
         error,
+        bracket.images.nbytes,
     )
 
 

@@ -31,7 +31,7 @@ def develop(folder: Path, one: bool) -> Case:
             float(np.abs(picture - plain).max()) if who == OURS else None
         )  # the others' formulas are not this one
 
-    return Case({OURS: lambda: pipeline.develop(E, "reinhard")} | theirs, missing, error)
+    return Case({OURS: lambda: pipeline.develop(E, "reinhard")} | theirs, missing, error, E.nbytes)
 
 
 def plain_picture(E: Array) -> Array:
@@ -71,7 +71,7 @@ def dodge(folder: Path, one: bool) -> Case:
         V1 = fast.local_adaptation(fast.scale_to_key(luminance(E)))
         return float(np.quantile(np.abs(V1 / truth - 1), 0.999))
 
-    return Case({OURS: ours} | theirs, missing, error)
+    return Case({OURS: ours} | theirs, missing, error, E.nbytes)
 
 
 def true_gaussians(L: Array) -> Array:
