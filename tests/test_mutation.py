@@ -89,7 +89,8 @@ def test_what_is_listed_as_changing_nothing_stands_in_its_file_and_has_a_reason(
     listed = tomllib.loads((mutation.HERE / "equivalent.toml").read_text(encoding="utf8"))["equivalent"]
     for one in listed:
         text = (ROOT / one["file"]).read_text(encoding="utf8")
-        assert any((each.old, each.new) == (one["old"], one["new"]) for each in mutants(one["file"], text)), (
-            one
-        )
+        assert any(
+            (each.text, each.old, each.new) == (one["text"], one["old"], one["new"])
+            for each in mutants(one["file"], text)
+        ), one
         assert len(one["why"]) > 10

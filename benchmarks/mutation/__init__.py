@@ -168,10 +168,10 @@ def fates(files: Sequence[str]) -> list[Fate]:
                 one.end()
 
 
-def equivalent() -> dict[tuple[str, str, str], str]:
-    """Return the mutants that a person has found to change no result: (file, old, new) -> why."""
+def equivalent() -> dict[tuple[str, ...], str]:
+    """Return the mutants that a person has found to change no result: (file, text, old, new) -> why."""
     listed = tomllib.loads((HERE / "equivalent.toml").read_text(encoding="utf8"))
-    return {(one["file"], one["old"], one["new"]): one["why"] for one in listed["equivalent"]}
+    return {(one["file"], one["text"], one["old"], one["new"]): one["why"] for one in listed["equivalent"]}
 
 
 def table(found: list[Fate]) -> str:
@@ -193,8 +193,8 @@ def table(found: list[Fate]) -> str:
     return "\n".join(lines)
 
 
-def _key(one: Fate) -> tuple[str, str, str]:
-    return one.mutant.file, one.mutant.old, one.mutant.new
+def _key(one: Fate) -> tuple[str, ...]:
+    return one.mutant.file, one.mutant.text, one.mutant.old, one.mutant.new
 
 
 def figures(files: Sequence[str]) -> dict[str, Any]:

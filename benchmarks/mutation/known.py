@@ -12,6 +12,9 @@ import coverage
 
 from benchmarks.measure import THREADS
 
+# it looks at every file, as it is imported
+EVERYWHERE = "tests/test_knobs.py::test_every_knob_stands_where_its_list_says"
+
 
 class Known(NamedTuple):
     """`lines`: file -> line -> tests that run it; `seconds`: of each test, with what it sets up."""
@@ -26,7 +29,7 @@ class Known(NamedTuple):
     def far(self, file: str, line: int) -> list[str]:
         """Return the other tests that run the file: a line may be run as it is imported."""
         own = set().union(*self.lines.get(file, {}).values()) if self.lines.get(file) else set[str]()
-        return sorted(own - set(self.near(file, line)), key=self._taken)
+        return sorted({*own, EVERYWHERE} - set(self.near(file, line)), key=self._taken)
 
     def _taken(self, test: str) -> tuple[float, str]:
         return self.seconds.get(test, 0.0), test
@@ -56,7 +59,7 @@ def known(tree: Path, folder: Path) -> Known:
             own[line] |= {name.rpartition("|")[0] for name in names if "|" in name}
         lines[Path(file).relative_to(tree).as_posix()] = dict(own)
     every = set().union(*(tests for own in lines.values() for tests in own.values()))
-    return Known(lines, {test: seconds.get(_junit(test), 0.0) for test in every})
+    return Known(lines, {test: seconds.get(_junit(test), 0.0) for test in {*every, EVERYWHERE}})
 
 
 def _junit(address: str) -> str:

@@ -35,10 +35,15 @@ SILENT = (ast.Raise, ast.Assert, ast.JoinedStr, ast.Import, ast.ImportFrom)
 
 
 class Mutant(NamedTuple):
-    """A file in which `old`, at these places of its text, has become `new`; `line` counts from 1."""
+    """A file in which `old`, from `start` to `end` of its bytes, has become `new`.
+
+    `line` counts from 1 and `column` from 0; `text` is what stands in that line.
+    """
 
     file: str
     line: int
+    column: int
+    text: str
     start: int
     end: int
     old: str
@@ -48,7 +53,7 @@ class Mutant(NamedTuple):
     def said(self) -> str:
         """Return the change in a line."""
         old, new = (" ".join(text.split()) for text in (self.old, self.new))
-        return f"{self.file}:{self.line}: {old} -> {new}"
+        return f"{self.file}:{self.line}:{self.column}: {old} -> {new}"
 
     def applied(self, text: str) -> str:
         """Return the file's text with the change."""
@@ -58,7 +63,8 @@ class Mutant(NamedTuple):
 
 def mutants(file: str, text: str) -> list[Mutant]:
     """Return all mutants of a file that Python can compile, in the order of their places."""
-    lines = [len(line.encode()) for line in text.splitlines(keepends=True)]
+    words = text.splitlines(keepends=True)
+    lines = [len(line.encode()) for line in words]
     begin = [0, *(sum(lines[:k]) for k in range(1, len(lines) + 1))]
     raw, found = text.encode(), []
     for node, new in changes(ast.parse(text)):
@@ -66,7 +72,16 @@ def mutants(file: str, text: str) -> list[Mutant]:
             begin[node.lineno - 1] + node.col_offset,
             begin[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0),
         )
-        one = Mutant(file, node.lineno, start, end, raw[start:end].decode(), new)
+        one = Mutant(
+            file,
+            node.lineno,
+            node.col_offset,
+            words[node.lineno - 1].strip(),
+            start,
+            end,
+            raw[start:end].decode(),
+            new,
+        )
         if one.old != one.new and compiles(one.applied(text)):
             found.append(one)
     return sorted(set(found), key=lambda one: (one.start, one.end, one.new))

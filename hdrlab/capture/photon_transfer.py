@@ -69,7 +69,7 @@ def calibrate(Z: ArrayLike) -> Transfer:
     Parameters
     ----------
     Z : (M, 2, H, W) RAW levels, whole numbers, from dark to bright: Z[0] with the lens cap on, the others of
-        an evenly lit surface. At least two brighter pairs; with ten, up to a full well, that too.
+        an evenly lit surface. At least three brighter pairs; with ten, up to a full well, that too.
         Of a sensor with filters, the pixels of one colour.
 
     Returns
@@ -95,8 +95,8 @@ def calibrate(Z: ArrayLike) -> Transfer:
     (2.0, 6, 100)
     """
     Z = np.asarray(Z)
-    if Z.ndim != 4 or Z.shape[1] != 2 or Z.dtype.kind not in "iu" or len(Z) < 3 or Z[0, 0].size < 100:
-        raise ValueError(f"expected levels (M, 2, H, W), a dark pair and two more or more, got {describe(Z)}")
+    if Z.ndim != 4 or Z.shape[1] != 2 or Z.dtype.kind not in "iu" or len(Z) < 4 or Z[0, 0].size < 100:
+        raise ValueError(f"expected levels (M, 2, H, W), a dark pair and three more or more, got {describe(Z)}")
     mean = Z.mean(axis=(1, 2, 3))
     S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
     used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)

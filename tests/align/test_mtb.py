@@ -209,3 +209,9 @@ def test_what_is_not_a_stack_of_photographs_is_refused(images, bits):
     for verb in (mtb.align, lambda *a, **k: list(mtb.align_steps(*a, **k))):
         with pytest.raises(ValueError, match="expected"):
             verb(images, bits=bits)
+
+
+def test_the_search_goes_through_as_many_levels_as_it_is_told_bits():
+    Y = np.random.default_rng(0).integers(0, 256, (512, 640), dtype=np.uint8)
+    assert [state.level for state in mtb.search(Y, Y)] == [5, 4, 3, 2, 1, 0]
+    assert [state.level for state in mtb.search(Y, Y, bits=2)] == [1, 0]

@@ -148,3 +148,12 @@ def test_where_the_light_is_strong_a_fine_wave_becomes_a_coarse_one():
 def test_what_does_not_fit_together_is_refused(call):
     with pytest.raises(ValueError, match="expected"):
         call()
+
+
+def test_a_weight_is_one_over_the_variance_of_rounding_photons_and_reading():
+    Z, e = np.array([51, 255], np.uint8), np.array([2.0, 2.0])
+    assert assorted.weight(Z, e) == pytest.approx([4 * 12 * 255**2, 0])
+    noise = 0.2 / 1000 + (5 / 1000) ** 2 + 1 / (12 * 255**2)
+    assert assorted.weight(Z, e, full_well=1000, read_noise=5)[0] == pytest.approx(4 / noise)
+    quiet = 0.2 / 1000 + 1 / (12 * 255**2)
+    assert assorted.weight(Z, e, full_well=1000)[0] == pytest.approx(4 / quiet)

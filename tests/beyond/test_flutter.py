@@ -130,3 +130,8 @@ def test_pictures_with_different_gains_are_joined_without_those_that_are_full():
 def test_what_means_nothing_is_refused(call):
     with pytest.raises(ValueError, match="expected"):
         call()
+
+
+def test_photographs_of_several_gains_count_by_their_squares_and_not_where_they_are_full():
+    found = flutter.combine([[[0.1, 0.4, 1.0]], [[0.6, 1.0, 1.0]]], [1, 4])
+    assert found[0] == pytest.approx([(0.1 + 16 * 0.6 / 4) / 17, 0.4, 1.0])

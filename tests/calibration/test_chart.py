@@ -136,3 +136,18 @@ def test_what_is_no_chart_is_refused():
     ):
         with pytest.raises(ValueError, match="expected"):
             call()
+
+
+def test_patches_touch_each_other_unless_a_gap_is_named():
+    image = np.kron([[0, 51, 102], [153, 204, 255]], np.ones((12, 12))).astype(np.uint8)
+    corners = np.array([[-0.5, -0.5], [35.5, -0.5], [35.5, 23.5], [-0.5, 23.5]])
+    expected = [[0, 0.2, 0.4], [0.6, 0.8, 1]]
+    np.testing.assert_allclose(chart.read_patches(image, corners, 2, 3), expected, atol=1e-9)
+    np.testing.assert_allclose(chart.read_patches(image, corners, 2, 3, gap=0), expected, atol=1e-9)
+
+
+def test_a_curve_goes_on_beyond_what_was_measured_with_its_last_slope():
+    M = np.linspace(0.1, 0.6, 256)
+    g = ln_exposure(InverseResponse(M, 2 * (M - 0.1), np.ones(1), np.zeros(1)), black=-0.2)
+    z = np.arange(1, 256)
+    np.testing.assert_allclose(np.exp(g[1:]), z / 128, rtol=1e-6)

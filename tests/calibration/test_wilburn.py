@@ -267,3 +267,11 @@ def test_what_is_no_blend_is_refused(tmp_path):
     ):
         with pytest.raises(ValueError, match="expected"):
             call()
+
+
+def test_the_whole_range_may_be_bright_and_one_side_alone_is_refused():
+    row = np.r_[np.zeros(20), np.arange(3, 255, 6), np.full(20, 255)].astype(np.uint8)
+    found = motion_blur.find_ramps(np.stack([row] * 4), low=0.0, high=1.0)
+    assert len(found) == 4 and all(one.rises for one in found)
+    with pytest.raises(ValueError, match="0 down and 4 up"):
+        motion_blur.compare_edges(np.stack([row] * 4), found)

@@ -311,3 +311,8 @@ def test_a_hand_without_frames_and_a_scene_without_light_are_refused():
         camera.times_around(ramp(), stops=0)
     with pytest.raises(ValueError, match="zeros"):
         camera.times_around(np.zeros((3, 3)))
+
+
+def test_a_hand_shakes_as_far_as_the_radius_and_no_farther():
+    assert np.abs(camera.shake(2000)).max() == 8
+    assert np.abs(camera.shake(2000, radius=3)).max() == 3

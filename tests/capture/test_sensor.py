@@ -260,3 +260,35 @@ def test_figures_that_mean_nothing_are_refused():
     ):
         with pytest.raises(ValueError, match="expected"):
             call()
+
+
+def test_a_converter_has_no_level_beyond_its_last_and_none_below_0():
+    small = Sensor(full_well=50_000, gain=1, bits=12, black=64)
+    assert sensor.digitise(np.float32([-1000, 0, 3000, 5000, 50_000]), small).tolist() == [
+        0,
+        64,
+        3064,
+        4095,
+        4095,
+    ]
+
+
+def test_what_just_fills_a_sensor_is_lost():
+    full = Sensor(full_well=1000, gain=1, bits=12, black=0, read_noise=1)
+    found = ranges.expose_levels([0.5, 1.0, 2.0], 1.0, full)
+    assert found[2].tolist() == [False, True, True]
+
+
+@pytest.mark.parametrize("sensitivity", [0, -1, np.inf, np.nan])
+def test_a_sensitivity_is_a_positive_number(sensitivity):
+    with pytest.raises(ValueError, match="positive sensitivity"):
+        sensor.raw(np.ones((2, 2)), 1.0, sensitivity=sensitivity)
+
+
+def test_photon_transfer_needs_a_pair_beyond_those_that_it_draws_its_line_through():
+    rng = np.random.default_rng(0)
+    N = np.array([0, 1000, 3000, 6000])[:, None, None, None] * np.ones((4, 2, 64, 64))
+    Z = np.round(rng.poisson(N) / 2 + rng.normal(100, 3, N.shape)).astype(np.uint16)
+    assert photon_transfer.calibrate(Z).gain == pytest.approx(2, rel=0.1)
+    with pytest.raises(ValueError, match="a dark pair and three more or more"):
+        photon_transfer.calibrate(Z[:3])

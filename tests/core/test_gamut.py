@@ -206,3 +206,11 @@ def test_the_dark_of_a_real_photograph_is_no_longer_magenta(shared):
     assert np.array_equal(found.E[~below], raw[~below])
     trusted = lit & (raw @ LUMINANCE > 0.51 * (raw.clip(0) @ LUMINANCE))
     assert np.allclose(luminance(found.E)[trusted], (raw @ LUMINANCE)[trusted], rtol=1e-3)
+
+
+def test_between_two_whites_bradford_adapts_as_published():
+    d50 = (*gamut.SRGB[:6], 0.34567, 0.35850)
+    matrix = gamut.xyz_matrix(gamut.SRGB) @ gamut.conversion_matrix(d50)  # XYZ of D65 from RGB of D50
+    to_d65 = matrix @ np.linalg.inv(gamut.xyz_matrix(d50))
+    published = [[0.9556, -0.0230, 0.0632], [-0.0283, 1.0099, 0.0210], [0.0123, -0.0205, 1.3299]]
+    assert np.allclose(to_d65, published, atol=5e-4)

@@ -73,3 +73,12 @@ def test_the_weight_below_the_top_knows_how_steep_the_response_is_up_to_the_top(
     share = {z: z**2 / across for z, across in slope.items()}
     assert w[254] / w[128] == pytest.approx(share[254] / share[128], rel=1e-5)
     assert w[253] / w[128] == pytest.approx(share[253] / share[128], rel=1e-5)
+
+
+def test_the_weights_of_a_straight_response_grow_with_the_level():
+    straight = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    w = weights.snr(straight)
+    np.testing.assert_allclose(w[5:250], np.arange(5, 250) / 128, rtol=0.01)
+    step = np.maximum.accumulate(np.log(np.where(np.arange(256) < 128, np.maximum(np.arange(256), 1), 128)))
+    least = weights.snr(step, span=1, least=0.5)  # a flat piece counts as half as steep as the mean
+    assert least[200] / least[100] == pytest.approx(128 / 100 * (255 / 127) / 0.5, rel=0.01)

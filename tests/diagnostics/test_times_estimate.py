@@ -451,3 +451,18 @@ def test_the_phone_has_wrong_times_and_not_a_response_that_differs_by_place(phot
     assert "contradict their exposure times" in warn_of_contradictions(found, taken.names)
     other = estimate_times(taken.images, taken.times)
     assert other.accepted and other.bias_after < 0.1 * other.bias_before
+
+
+def test_a_fit_to_half_of_the_patches_is_asked_of_the_other_half():
+    half = flat_patches.checkerboard((24, 24))
+    light = np.random.default_rng(0).uniform(12, 30, (24, 24))
+    ratio = np.where(half, 2.0, 2.0**1.3)  # the stated times are true of one half alone
+    Z = np.stack([light, ratio * light, ratio**2 * light]).round().astype(np.uint8)[:, None]
+    found = flat_patches.FlatPatches(Z, np.ones((3, 24, 24), bool))
+    linear_g = np.log(np.maximum(np.arange(256), 0.5) / 128)[None]
+    nothing = np.zeros((3, 0))
+    B = np.log([1.0, 2.0, 4.0])
+    apart = exposure_times.cross_validate(found, B, nothing, g=linear_g, sd=0.1)
+    assert apart == pytest.approx(0.15, abs=0.03)
+    alike = flat_patches.FlatPatches(np.where(half, Z, Z[..., ::-1, :]), found.flat)
+    assert exposure_times.cross_validate(alike, B, nothing, g=linear_g, sd=0.1) != pytest.approx(apart)

@@ -261,3 +261,11 @@ def test_training_sets_without_a_covariance_are_refused():
     for bad in (np.full((10, 3), 7.0), np.zeros((2, 3)), np.zeros((5, 2))):
         with pytest.raises(ValueError, match="training pixels"):
             skin.fit(bad)
+
+
+def test_a_mosaic_of_odd_size_loses_its_last_row_and_column():
+    mosaic = np.arange(35, dtype=np.uint8).reshape(5, 7)
+    found = battiato.quarter_size(mosaic)
+    assert found.shape == (2, 3, 3)
+    assert np.array_equal(found, battiato.quarter_size(mosaic[:4, :6]))
+    assert found[1, 2].tolist() == [18, (19 + 25 + 1) // 2, 26]

@@ -70,3 +70,17 @@ def test_a_bracket_of_ordinary_size_is_aligned_as_the_lesson_does(dtype, knobs):
 def test_what_is_not_a_stack_of_photographs_is_refused(images, bits):
     with pytest.raises(ValueError, match="expected"):
         mtb.align(images, bits=bits)
+
+
+def test_one_bit_finds_a_shift_of_one_pixel():
+    Y = camera()
+    frames = np.stack([Y, np.roll(Y, 1, axis=1)])
+    assert np.abs(mtb.align(frames, bits=1)).max() == 1
+    with pytest.raises(ValueError, match="at least 1 bit"):
+        mtb.align(frames, bits=0)
+
+
+@pytest.mark.parametrize("shape", [(mtb.BAND + 6, 20), (3 * mtb.BAND + 11, 33)])
+def test_a_picture_of_several_bands_is_halved_like_the_lesson_s(shape):
+    Y = np.random.default_rng(1).integers(0, 256, shape, dtype=np.uint8)
+    assert np.array_equal(mtb._shrink(Y), lesson.shrink(Y))

@@ -81,3 +81,8 @@ def test_a_verdict_is_the_same_at_every_size():
         )
         (one,) = register(np.clip(large, 0, 255).astype(np.uint8), "mtb").pairs
         assert one.known and not one.apart and one.confidence > 0.9
+
+
+def test_a_single_photograph_stays_where_it_is():
+    found = register(np.full((1, 40, 50), 90, np.uint8), "mtb")
+    assert np.array_equal(found.homographies, [np.eye(3)]) and len(found.pairs) == 0

@@ -53,3 +53,8 @@ def test_linear_and_a_function_are_taken_as_they_are():
 def test_a_validated_response_is_the_method_s_own(taken):
     g = recovery.find_validated_method("debevec")(taken.images, taken.times)
     assert np.array_equal(g, debevec.recover(taken.images, taken.times))
+
+
+def test_a_level_that_one_frame_shows_alone_bridges_no_gap():
+    assert recovery.find_widest_gap([[100, 200], [101, 201], [20, 255]]) == 99
+    assert recovery.find_widest_gap([[100, 200], [101, 201], [150, 255], [150, 0]]) == 99

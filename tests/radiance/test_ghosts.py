@@ -279,3 +279,14 @@ def test_the_mask_grows_over_a_textured_part_of_what_moved_whose_edges_would_exc
     assert (score[15:25, 20:30] < 1).all() and mask[15:25, 10:30].all()
     beside = deviation.Deviation(np.where(r > 0, v, 0), found.s2, r)
     assert not ghosts.detect_motion(beside, tau=0.1, edge=0.35, margin=3)[1].any()
+
+
+def test_a_black_pixel_is_at_most_level_1_and_a_full_one_at_least_the_first_clipped_level():
+    images = np.array([[[0, 100, 255]], [[0, 200, 255]]], np.uint8)
+    E = np.full((1, 3), 100 / 128, np.float32)
+    g = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    taken = frames.calibrate_frames(images, [1, 2], g, E)
+    found = reference.read_frame(taken, 1, np.s_[:, :])
+    assert found.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1])) and found.high[0, 1, 0] == np.inf
+    assert found.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top])) and found.low[0, 1, 0] == 0
+    assert found.measured[0, :, 0].tolist() == [False, True, False]

@@ -419,3 +419,10 @@ def test_what_does_not_fit_together_is_refused(given, said):
     knobs = {"images": np.zeros((2, 4, 5, 3), np.uint8), "times": [1, 2], "g": FILM} | given
     with pytest.raises(ValueError, match=said):
         merge_with_quality(**knobs)
+
+
+@pytest.mark.parametrize("verb", [lesson.merge, quick.merge], ids=["lesson", "fast"])
+def test_a_response_that_ends_where_it_began_is_refused_though_it_dips_between(verb):
+    g = np.r_[0.0, -np.ones(254), 0.0]
+    with pytest.raises(ValueError, match="rise"):
+        verb(np.full((2, 2, 2), 9, np.uint8), [1, 2], g)

@@ -160,3 +160,20 @@ def test_a_level_without_pixels_is_no_equation():
     found = ratios.collect_equations(*h)
     assert found.x[:30].tolist() == list(range(20, 50)) and found.y[30:].tolist() == list(range(80, 200, 4))
     assert np.allclose(found.y, 4 * found.x)
+
+
+def test_rounds_end_where_the_ratio_no_longer_changes():
+    x = np.linspace(1, 100, 200)
+    exact = ratios.Equations(x, 3 * x, np.ones_like(x))
+    steps = list(ratios.ratio_steps(exact))
+    assert len(steps) == 2 and steps[-1].k == pytest.approx(3)
+
+
+def test_the_paper_takes_every_level_but_the_first_and_the_middle_scheme_leaves_the_dark_ones_out():
+    h = np.ones(256)
+    least = {
+        name: (found.x.min(), found.y.min())
+        for name in ratios.SCHEMES
+        for found in [ratios.collect_equations(h, h, name)]
+    }
+    assert least["paper"] == pytest.approx((1, 1), abs=0.51) and least["mid-step"][1] >= 64

@@ -115,3 +115,7 @@ def test_one_reading_of_a_meter_gives_the_unit_back(k, x, y):
 def test_a_reading_that_cannot_be_is_refused(x, y, reading):
     with pytest.raises(ValueError, match="cd/m"):
         scales.fit_unit(np.ones((40, 60)), x, y, reading)
+
+
+def test_a_dim_place_may_have_less_than_a_candela_per_square_metre():
+    assert scales.fit_unit(np.full((20, 30), 0.5), 10, 5, 0.25) == 0.5

@@ -97,3 +97,9 @@ def test_black_is_a_quarter_of_a_level_and_no_light_at_all_is_none():
     """Pixels of level 0 had from none to half a level of light: the middle of that is what they mean."""
     for gamma in (1.0, 0.45):
         assert mann.power_law(gamma)[0] == pytest.approx(np.log(0.25 / 128) / gamma)
+
+
+@pytest.mark.parametrize("knobs", [{"alpha": -1}, {"alpha": 65}, {"starts": 0}])
+def test_each_knob_is_judged_by_itself(knobs):
+    with pytest.raises(ValueError, match="alpha from 0 to 64 and at least one start"):
+        mann.recover(np.zeros((2, 4, 4), np.uint8), [1, 2], **knobs)

@@ -117,3 +117,10 @@ def test_the_circle_ends_where_vignetting_begins(edge, seed):
 @pytest.mark.parametrize("seed", range(5))
 def test_without_vignetting_the_circle_is_the_whole_picture(seed):
     assert selection.circle(*apertures(1e9, seed=seed)) == selection.radius((240, 320)).max()
+
+
+def test_frames_may_have_a_single_pixel():
+    found = selection.temporal_average(np.array([[[0.2]], [[0.4]]]))
+    assert found.mean == pytest.approx(np.array([[0.3]])) and found.variance == pytest.approx(
+        np.array([[0.02]])
+    )

@@ -187,3 +187,8 @@ def test_notebook_09_says_which_is_better_on_two_noisy_photographs():
     assert min(ours["wig", n] / gsolve["wig", n] for n in (100, 4000)) > 5
     assert gsolve["film", 4000] > gsolve["film", 100]
     assert all(gsolve[name, 4000] < gsolve[name, 100] for name in ("srgb", "wig"))
+
+
+def test_noise_of_nothing_is_refused():
+    with pytest.raises(ValueError, match="noise > 0"):
+        space.recover(np.zeros((2, 4, 4), np.uint8), [1, 2], noise=0)

@@ -121,3 +121,10 @@ def test_a_histogram_counts_every_pixel_once():
     plain = [np.maximum(1 - np.abs(t - j), 0).sum() / t.size for j in range(bins)]
     h = brush.histogram(brush.bin_position(L, 0.01, 100, bins), bins)
     assert np.allclose(h, plain, atol=1e-4) and h.sum() == pytest.approx(1)
+
+
+def test_bins_span_a_stop_at_least_and_what_is_wider_as_it_is():
+    low, high = brush.find_range(np.full((20, 20), 3.0, np.float32))
+    assert high / low == pytest.approx(2) and low * high == pytest.approx(9)
+    wide = np.repeat(np.float32([1, 5, 50]), 200).reshape(20, 30)
+    assert brush.find_range(wide) == pytest.approx((1, 50), rel=0.01)

@@ -227,3 +227,11 @@ def test_a_real_place_comes_out_well_exposed(shared):
     L = luminance(rgbe.read(shared("memorial") / "memorial.hdr"))
     Ld = fattal.tonemap(L)
     assert 0.05 < np.median(Ld) < 0.4 and np.mean(Ld == 1) < 0.006
+
+
+@pytest.mark.parametrize(
+    "knobs", [{"noise": np.inf}, {"noise": 0}, {"alpha": np.inf}, {"beta": 1.1}, {"white": 0.5}]
+)
+def test_a_knob_beyond_its_range_is_refused(knobs):
+    with pytest.raises(ValueError, match="expected"):
+        fattal.tonemap(np.ones((16, 16)), **knobs)
