@@ -84,18 +84,36 @@ def move(page, widget):
     slider.press("Home" if at_end else "End")
 
 
+def assert_it_fits(page, axe):
+    """Look at a page on a wide and on a narrow screen, and leave it wide."""
+    for width in (400, 1280):
+        page.set_viewport_size({"width": width, "height": 900})
+        assert page.evaluate("document.documentElement.scrollWidth") <= width
+        found = [each for each in axe(page, "html") if not each.startswith(MINOR)]
+        assert found == [], width
+
+
 @pytest.mark.parametrize("name", NOTEBOOKS)
-def test_every_widget_of_a_notebook_page_answers_with_no_kernel(opened, name):
+def test_the_widgets_of_a_notebook_page_fit_any_screen_pass_axe_and_answer_with_no_kernel(opened, axe, name):
     page = opened(f"notebooks/{name}")
     places = page.locator(".live").all()
     assert places, "the page shows no widget"
-    for place in places:
-        widget = open_widget(page, place)
+    widgets = [open_widget(page, place) for place in places]
+    assert_it_fits(page, axe)
+    for widget in widgets:
         if widget.get_attribute("data-kind") == "predict":
             widget.get_by_role("button", name="Skip").click()
             assert widget.get_by_role("status").last.inner_text().startswith("The truth: ")
         else:
             changed_by(page, widget, lambda widget=widget: move(page, widget))
+
+
+@pytest.mark.parametrize("name", OTHERS)
+def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(opened, axe, name):
+    page = opened(name)
+    for place in page.locator(".live").all():
+        open_widget(page, place)
+    assert_it_fits(page, axe)
 
 
 def test_the_brush_follows_the_pointer_and_the_keys(opened, site):
@@ -108,18 +126,6 @@ def test_the_brush_follows_the_pointer_and_the_keys(opened, site):
     changed_by(
         page, widget, lambda: page.mouse.move(box["x"] + 0.3 * box["width"], box["y"] + 0.3 * box["height"])
     )
-
-
-@pytest.mark.parametrize("name", [*(f"notebooks/{name}" for name in NOTEBOOKS), *OTHERS])
-def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(opened, axe, name):
-    page = opened(name)
-    for place in page.locator(".live").all():
-        open_widget(page, place)
-    for width in (1280, 400):
-        page.set_viewport_size({"width": width, "height": 900})
-        assert page.evaluate("document.documentElement.scrollWidth") <= width
-        found = [each for each in axe(page, "html") if not each.startswith(MINOR)]
-        assert found == [], width
 
 
 @pytest.mark.parametrize("name", ["index", "notebooks/00_welcome"])
