@@ -2,6 +2,7 @@
 
 import ast
 import json
+import zipfile
 
 import numpy as np
 import pytest
@@ -194,3 +195,34 @@ def test_the_same_file_has_the_same_hash_and_another_another(read):
 )
 def test_the_names_that_a_piece_takes_from_outside_are_found(code, free):
     assert [use.node.id for use in names.free(ast.parse(code).body[0])] == free
+
+
+@pytest.mark.parametrize(
+    ("names_in_it", "found"),
+    [
+        (["hw2.ipynb"], "hw2.ipynb"),
+        (["photo.jpg", "mine.PY"], "mine.PY"),
+        (["notes.ipynb", "my HW2.ipynb"], "my HW2.ipynb"),
+        (["a.ipynb", "b.ipynb"], None),
+        (["photo.jpg"], None),
+    ],
+)
+def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homework(
+    names_in_it, found, tmp_path
+):
+    archive = tmp_path / "handed in.ZIP"
+    with zipfile.ZipFile(archive, "w") as opened:
+        for name in names_in_it:
+            opened.writestr(name, "1 + 1\n")
+    path, refused = submission.opened(archive, tmp_path, "hw2")
+    if found:
+        assert (path, refused) == (tmp_path / "files" / found, "")
+    else:
+        assert path == archive and refused.startswith(
+            "Expected one notebook or Python file in the archive, got "
+        )
+
+
+def test_a_file_that_is_no_archive_or_is_missing_is_taken_as_it_is(tmp_path):
+    for name in ("hw2.ipynb", "missing.zip"):
+        assert submission.opened(tmp_path / name, tmp_path, "hw2") == (tmp_path / name, "")

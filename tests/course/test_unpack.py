@@ -54,3 +54,28 @@ def test_a_folder_that_is_there_is_not_touched(tmp_path):
     (tmp_path / "new").mkdir()
     with pytest.raises(FileExistsError):
         unpack(tmp_path / "a.zip", tmp_path / "new")
+
+
+def test_a_zip_that_counts_its_members_wrongly_is_counted_again(tmp_path):
+    archive = zipped(tmp_path / "many.zip", {f"{k}.txt": b"x" for k in range(5)})
+    data = bytearray(archive.read_bytes())
+    at = data.rfind(b"PK\5\6")
+    data[at + 8 : at + 12] = b"\1\0\1\0"  # it says that there is one
+    archive.write_bytes(data)
+    with pytest.raises(Refused, match="members|files"):
+        unpack(archive, tmp_path / "out", Limits(members=4))
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("kind", ["zip", "tar"])
+def test_as_many_members_as_are_allowed_are_unpacked_and_one_more_is_refused(kind, tmp_path):
+    for count in (4, 5):
+        archive = tmp_path / f"{count}.{kind}"
+        files = {f"{k}.txt": b"x" for k in range(count)}
+        if kind == "zip":
+            zipped(archive, files)
+        else:
+            tarred(archive, [(info(name), data) for name, data in files.items()])
+    assert len(unpack(tmp_path / f"4.{kind}", tmp_path / "four", Limits(members=4))) == 4
+    with pytest.raises(Refused):
+        unpack(tmp_path / f"5.{kind}", tmp_path / "five", Limits(members=4))
