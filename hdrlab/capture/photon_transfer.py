@@ -96,7 +96,7 @@ def calibrate(Z: ArrayLike) -> Transfer:
     """
     Z = np.asarray(Z)
     if Z.ndim != 4 or Z.shape[1] != 2 or Z.dtype.kind not in "iu" or len(Z) < 4 or Z[0, 0].size < 100:
-        raise ValueError(f"expected levels (M, 2, H, W), a dark pair and three more or more, got {describe(Z)}")
+        raise ValueError(f"expected levels (M, 2, H, W), a dark pair and three more, got {describe(Z)}")
     mean = Z.mean(axis=(1, 2, 3))
     S, V = mean - mean[0], np.array([variance(pair) for pair in Z])
     used = (S <= SAFE_SIGNAL_SHARE * S.max()) & (S >= 0)
