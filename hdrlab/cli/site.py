@@ -26,11 +26,14 @@ NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
     default=min(4, os.cpu_count() or 1),
     help="How many notebooks run at a time.",
 )
-def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
+@click.option(
+    "--address", default="", help="Where it will stand: a link's preview needs it, https:// and all."
+)
+def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
     """Make a site of the course: notebooks that were run, guides, and the reference.
 
     Its pages need no server and nothing from elsewhere: open index.html, or put the folder on any web server.
-    What has been run is kept in the folder's .cache, so that the next build runs only what has changed.
+    What has been run is kept beside it, in .NAME.cache, so that the next build runs only what has changed.
     """
     missing = [name for name in NEEDS if find_spec(name) is None]
     if missing:
@@ -52,7 +55,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int) -> None:
         raise click.ClickException(str(error)) from None
     in_order = sorted(done, key=lambda one: one.source.stem)
     with elapsed("pages"):
-        made = pages.build(out, in_order, handouts, {"commands.md": _commands()})
+        made = pages.build(out, in_order, handouts, {"commands.md": _commands()}, address=address)
     for complaint in made.complaints:
         click.echo(f"note: {complaint}", err=True)
     fresh = sum(one.fresh for one in done)

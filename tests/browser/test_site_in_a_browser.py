@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from laboratory import PATIENCE, changed_by
 
-from hdrlab.course.site.pages import CACHE
+from hdrlab.course.site.pages import cache_of
 
 NOTEBOOKS = sorted(path.stem for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 OTHERS = [
@@ -31,8 +31,8 @@ pytestmark = pytest.mark.skipif(
 
 def make_site(folder, kept):
     """Make the site of all notebooks in a folder."""
-    cache = folder / "site" / CACHE
-    cache.mkdir(parents=True)
+    cache = cache_of(folder / "site")
+    cache.mkdir()
     (kept / "executed").mkdir(parents=True, exist_ok=True)
     (cache / "executed").symlink_to(kept / "executed")
     command = [sys.executable, "-m", "hdrlab", "site", "--out", str(folder / "site"), "--jobs", "2"]
@@ -146,11 +146,50 @@ def test_the_first_key_leads_past_the_menu(opened):
     assert page.evaluate("document.activeElement.id") == "main"
 
 
-def test_the_search_finds_a_page(opened):
+@pytest.mark.parametrize("words", ["lambda", "λ", "g(z)", "gsolve least squares"])
+def test_the_search_finds_the_response_curve_by_its_words_and_its_letters(opened, words):
     page = opened("index")
-    page.get_by_role("searchbox", name="Search").fill("bilateral")
+    page.get_by_role("searchbox", name="Search").fill(words)
     page.keyboard.press("Enter")
-    page.locator("#search-results li a").first.wait_for(timeout=PATIENCE)
+    first = page.locator("#search-results li a").first
+    first.wait_for(timeout=PATIENCE)
+    found = page.locator("#search-results li").all_inner_texts()
+    assert "04 · The response curve: gsolve" in found and len(found) < 30
+
+
+def test_a_page_has_its_contents_at_the_right_and_leads_on(opened):
+    page = opened("notebooks/04_response_gsolve", 1440)
+    contents = page.get_by_role("navigation", name="On this page")
+    assert contents.bounding_box()["x"] > 1100
+    contents.get_by_role("link", name="Many pixels").click()
+    assert page.evaluate("location.hash") == "#many-pixels"
+    assert page.get_by_role("heading", name="Many pixels").bounding_box()["y"] < 200
+    page.locator("footer").get_by_role("link", name="Next").click()
+    assert "notebooks/05" in page.url
+
+
+def test_a_cell_is_copied_and_an_example_without_its_prompts(opened):
+    page = opened("notebooks/00_welcome")
+    page.context.grant_permissions(["clipboard-read", "clipboard-write"])
+    for name, copied in (("notebooks/00_welcome", "import tempfile"), ("reference/tonemap.chiu", "tonemap(")):
+        page = opened(name)
+        page.get_by_role("button", name="Copy").first.click()
+        page.get_by_role("button", name="Copied").wait_for(timeout=PATIENCE)
+        text = page.evaluate("navigator.clipboard.readText()")
+        assert copied in text and ">>>" not in text
+
+
+def test_on_paper_answers_are_unfolded_and_no_line_is_cut(opened):
+    page = opened("notebooks/04_response_gsolve", 700)
+    folded = page.locator("main details:not(.hide):not([open])")
+    before = folded.count()
+    page.emulate_media(media="print")
+    page.evaluate("dispatchEvent(new Event('beforeprint'))")
+    assert before > 0 and folded.count() == 0
+    cut = "(all) => all.filter((el) => el.scrollWidth > el.clientWidth + 1).length"
+    assert page.locator("main pre").evaluate_all(cut) == 0
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    assert folded.count() == before
 
 
 def test_the_site_works_from_a_server_too(site, page):

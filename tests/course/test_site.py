@@ -21,12 +21,14 @@ from hdrlab import pipeline, scenes
 from hdrlab.course.site import cases, live, reference
 from hdrlab.course.site import pages as build
 from hdrlab.io.photos import read_bracket, write_picture
+from hdrlab.io.web import decode_picture
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 pytestmark = pytest.mark.skipif(
     any(find_spec(name) is None for name in NEEDS), reason='the site needs pip install ".[site]"'
 )
 REFUSED = ("without times", "one photograph", "times the other way round", "two sizes")
+ADDRESS = "https://example.org/course"
 PATIENCE = 300  # seconds: a limit for errors, not for speed
 
 PLAYED = """import numpy as np
@@ -55,7 +57,7 @@ def notebook(path, title, *cells):
 
 def command(out, *notebooks):
     return [
-        *(sys.executable, "-m", "hdrlab", "site", "--out", str(out)),
+        *(sys.executable, "-m", "hdrlab", "site", "--out", str(out), "--address", ADDRESS),
         *(word for one in notebooks for word in ("--notebooks", str(one))),
     ]
 
@@ -90,6 +92,7 @@ class Addresses(HTMLParser):
     def __init__(self, text):
         super().__init__()
         self.asked, self.links, self.silent, self.headings = [], [], [], []
+        self.anchors, self.told = set(), {}
         self.feed(text)
 
     def handle_starttag(self, tag, attrs):
@@ -98,6 +101,10 @@ class Addresses(HTMLParser):
             self.asked.append(attributes["src"])
         if tag == "link" and attributes["rel"] not in ("next", "prev"):
             self.asked.append(attributes["href"])
+        if "id" in attributes:
+            self.anchors.add(attributes["id"])
+        if tag == "meta" and "content" in attributes:
+            self.told[attributes.get("name") or attributes.get("property")] = attributes["content"]
         if tag == "a" and "href" in attributes:
             self.links.append(attributes["href"])
         if tag == "img" and "alt" not in attributes:
@@ -107,16 +114,37 @@ class Addresses(HTMLParser):
 
 
 def pages(site):
-    found = [page for page in site.rglob("*.html") if ".cache" not in page.parts]
-    return {page: Addresses(page.read_text("utf-8")) for page in found}
+    return {page: Addresses(page.read_text("utf-8")) for page in site.rglob("*.html")}
 
 
-def test_a_site_is_made_without_a_complaint_and_writes_in_its_folder_alone(made):
+def test_a_site_is_made_without_a_complaint_and_writes_in_its_folder_and_its_cache_alone(made):
     folder, site, notebooks, ran = made
     assert ran.stderr == ""
     assert "3 widgets, 2 notebooks; run now: 3" in ran.stdout  # the first page has a picture to wipe
-    assert sorted(folder.iterdir()) == sorted([site, *notebooks])
-    assert not list((site / ".cache" / "kernels").iterdir())
+    assert sorted(folder.iterdir()) == sorted([site, folder / ".site.cache", *notebooks])
+    assert not list((folder / ".site.cache" / "kernels").iterdir())
+
+
+def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
+    site = made[1]
+    parts = {path.name for path in site.iterdir()} - {page.name for page in site.glob("*.html")}
+    folders = {"notebooks", "reference", "_modules", "_static", "_widgets"}
+    assert parts == folders | {"searchindex.js", "objects.inv", ".nojekyll"}
+    assert {path.name for path in site.rglob(".*")} == {".nojekyll"}
+    kinds = [".html", ".js", ".css", ".svg", ".png", ".jpg", ".webp", ".inv"]
+    assert {path.suffix for path in site.rglob("*") if path.is_file()} <= {*kinds, ""}
+
+
+def test_a_page_says_what_it_is_to_who_shows_a_link_to_it(made):
+    site = made[1]
+    told = Addresses((site / "index.html").read_text("utf-8")).told
+    assert told["description"].startswith("A camera turns light into numbers")
+    assert told["og:image"] == f"{ADDRESS}/_static/preview.jpg"
+    preview = decode_picture((site / "_static" / "preview.jpg").read_bytes())
+    assert preview.shape[1] >= 600 and preview[:, :200].mean() < preview[:, -200:].mean()
+    for page in ("verdicts", "commands", "reference/tonemap.chiu"):
+        told = Addresses((site / f"{page}.html").read_text("utf-8")).told
+        assert 40 < len(told["description"]) <= 200, page
 
 
 def test_no_page_asks_for_anything_outside_and_what_it_asks_for_is_there(made):
@@ -135,13 +163,17 @@ def test_style_sheets_and_scripts_name_no_address_outside(made):
         assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
 
 
-def test_every_link_within_the_site_leads_somewhere(made):
+def test_every_link_within_the_site_leads_to_a_page_and_a_place_on_it(made):
     found = pages(made[1])
     for page, addresses in found.items():
         for link in addresses.links:
-            path = link.partition("#")[0].partition("?")[0]
-            if path and not re.match(r"\w+:", path):
-                assert (page.parent / path).is_file(), f"{page.name}: {link}"
+            path, _, anchor = link.partition("#")
+            path = path.partition("?")[0]
+            if re.match(r"\w+:", path):
+                continue
+            target = (page.parent / path).resolve() if path else page
+            assert target.is_file(), f"{page.name}: {link}"
+            assert not anchor or anchor in found[target].anchors, f"{page.name}: {link}"
 
 
 def test_every_picture_has_alt_text_and_headings_go_down_one_by_one(made):

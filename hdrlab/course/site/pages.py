@@ -1,9 +1,10 @@
 """All that Sphinx reads is put in one folder, and Sphinx makes the site of it.
 
-out/           the site, which takes the place of the one before when all of it is made
-out/.cache/    what the next build need not make again: executed notebooks, sources, pages, Sphinx's notes
+out           the site and nothing else; it takes the place of the one before when all of it is made
+.out.cache    beside it, what the next build need not make again: executed notebooks, sources, Sphinx's notes
 """
 
+import base64
 import hashlib
 import io
 import json
@@ -13,6 +14,8 @@ from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from hdrlab.course.site import cases, live, reference
 from hdrlab.course.site.execute import Done, library_key
 from hdrlab.io import web
@@ -20,7 +23,8 @@ from hdrlab.show.plots.figures import fit
 
 PAGES = Path(__file__).parent / "pages"
 FRONT = PAGES / "front.ipynb"  # the picture of the first page
-CACHE = ".cache"
+MARK = ".nojekyll"  # keeps GitHub's pages from leaving out what begins with _; its text tells a site of ours
+MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
 WIDGETS = "_widgets"  # where the pages find them
 OWN = ("notebooks", "assignments", "reference", "_modules", WIDGETS)  # folders whose files are all ours
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
@@ -37,45 +41,62 @@ class Site(NamedTuple):
     complaints: list[str]
 
 
+def cache_of(out: Path) -> Path:
+    """Return the folder beside a site in which is kept what its next build need not make again."""
+    return out.resolve().with_name(f".{out.resolve().name}.cache")
+
+
 def claim(out: Path) -> Path:
-    """Return the folder for the cache in `out`, which must be empty or a site of before.
+    """Mark a folder as a site's, which must be empty or a site of before, and return that of its cache.
 
     Raises
     ------
     ValueError
         Where `out` holds something else: a build removes pages that are no more.
     """
-    cache = out.resolve() / CACHE
+    mark = out / MARK
     if out.exists() and not out.is_dir():
         raise ValueError(f"expected a folder to write the site to, {out} is a file")
-    if out.exists() and any(out.iterdir()) and not cache.is_dir():
+    if out.exists() and any(out.iterdir()) and not (mark.exists() and mark.read_bytes() == MADE):
         raise ValueError(f"expected an empty folder or a site of before, {out} holds something else")
-    cache.mkdir(parents=True, exist_ok=True)
+    live.write_changed(mark, MADE)
+    cache = cache_of(out)
+    live.write_changed(cache / ".gitignore", b"*\n")
     return cache
 
 
-def build(out: Path, done: Sequence[Done], handouts: Sequence[Path], more: Mapping[str, str]) -> Site:
+def build(
+    out: Path, done: Sequence[Done], handouts: Sequence[Path], more: Mapping[str, str], *, address: str = ""
+) -> Site:
     """Make the site of executed notebooks, FRONT among them, of handouts, and of more pages by name.
 
     A handout is shown as it is, since its tasks are still to be done. Where nothing has changed since the
-    site was made, it is left as it is.
+    site was made, it is left as it is. `address` is where it will stand.
     """
-    record = out / CACHE / "made.json"
+    record = cache_of(out) / "made.json"
     sheets = {file.stem: file.read_text("utf-8") for file in handouts}
-    made_of = [library_key(course=True), sorted(one.executed.name for one in done), sheets, dict(more)]
+    made_of = [
+        library_key(course=True),
+        sorted(one.executed.name for one in done),
+        sheets,
+        dict(more),
+        address,
+    ]
     key = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()
     if record.exists() and (out / "index.html").exists():
         before = json.loads(record.read_text("utf-8"))
         if before["key"] == key:
             return Site(out / "index.html", *before["site"])
     record.unlink(missing_ok=True)  # an interrupted build leaves no record
-    site = _build(out, done, sheets, more)
+    site = _build(out, done, sheets, more, address)
     live.write_changed(record, json.dumps({"key": key, "site": site[1:]}).encode())
     return site
 
 
-def _build(out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str]) -> Site:
-    source, html = out.resolve() / CACHE / "source", out.resolve() / CACHE / "html"
+def _build(
+    out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str], address: str
+) -> Site:
+    source, html = cache_of(out) / "source", cache_of(out) / "html"
     front = next(one for one in done if one.source == FRONT)
     notebooks = {one.source.stem: _read(one) for one in done if one.source != FRONT}
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
@@ -90,6 +111,7 @@ def _build(out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mappin
     texts |= {f"assignments/{name}.ipynb": text for name, (_, text) in handouts.items()}
     hero = next(one for _, one in live.widgets(_read(front), "front"))
     live.write(hero, html / WIDGETS)
+    live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
     texts["index.md"] = _front(hero, titles, {name: title for name, (title, _) in handouts.items()}, html)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
     texts |= {page.name: cases.illustrate(_linked(page.read_text("utf-8"), known)) for page in guides}
@@ -97,7 +119,7 @@ def _build(out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mappin
     for name, text in texts.items():
         live.write_changed(source / name, text.encode())
     _forget(source, set(texts))
-    complaints = _sphinx(source, html)
+    complaints = _sphinx(source, html, address)
     _forget_pages(html, set(texts), set(titles))
     _publish(html, out)
     return Site(out / "index.html", len(texts), widgets + 1, complaints)
@@ -180,7 +202,14 @@ def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str], ht
     return text.replace("<!-- titles -->", "\n".join(f"notebooks/{name}" for name in titles))
 
 
-def _sphinx(source: Path, html: Path) -> list[str]:
+def _preview(hero: live.Live) -> bytes:
+    """Return what a link to the site shows elsewhere: the first page's two pictures, half of each."""
+    one, other = [web.decode_picture(base64.b64decode(each["base64"])) for each in hero.state["pictures"]]
+    middle = one.shape[1] // 2
+    return web.encode_jpeg(np.hstack([one[:, :middle], other[:, middle:]]))
+
+
+def _sphinx(source: Path, html: Path, address: str) -> list[str]:
     """Run Sphinx, and return its complaints."""
     from sphinx.application import Sphinx
 
@@ -188,7 +217,8 @@ def _sphinx(source: Path, html: Path) -> list[str]:
 
     complaints = io.StringIO()
     notes = html.parent / "doctrees"
-    Sphinx(source, None, html, notes, "html", SETTINGS, status=None, warning=complaints).build()
+    settings = SETTINGS | {"html_baseurl": address and address.rstrip("/") + "/"}
+    Sphinx(source, None, html, notes, "html", settings, status=None, warning=complaints).build()
     return [line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()]
 
 

@@ -1,6 +1,7 @@
 """What Sphinx is told: how docstrings, formulas and names in backticks become pages."""
 
 import re
+import textwrap
 import tomllib
 from html import escape
 from pathlib import Path
@@ -12,6 +13,9 @@ from hdrlab.course.site import formulas, reference
 HERE = Path(__file__).parent
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
+SAYING, SUMMARY = 40, 200  # letters that a page's description has at least, and at most
+# From a source to its place in the reference: viewcode names the module from which it came there first
+BACK = re.compile(r'((?<=id=")([\w.]+)">\s*<a class="viewcode-back" href="[^"#]*?([\w.]+)\.html)#[^"]*')
 SETTINGS: dict[str, Any] = tomllib.loads((HERE / "settings.toml").read_text("utf-8"))
 SETTINGS |= {"version": __version__, "release": __version__, "html_theme_path": [str(HERE)]}
 SETTINGS["extensions"].append(__name__)
@@ -19,11 +23,15 @@ SETTINGS["extensions"].append(__name__)
 
 def setup(app: Any) -> dict[str, Any]:
     """Tell Sphinx what this extension does."""
+    from hdrlab.course.site.words import Words
+
+    app.add_search_language(Words)
     app.add_html_math_renderer("drawn", (_inline, None), (_display, None))
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # numpydoc comes at 500
     app.connect("autodoc-skip-member", _skip)
     app.connect("missing-reference", _resolve)
     app.connect("html-page-context", _breakable)
+    app.connect("html-page-context", _describe)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
@@ -74,6 +82,17 @@ def _resolve(app: Any, env: Any, node: Any, content: Any) -> Any:
     return None
 
 
+def _describe(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+    """Give a page the sentences under which a link to it is shown elsewhere: its first without a formula."""
+    from docutils import nodes
+
+    context["site"] = app.config.html_baseurl
+    for part in doctree.findall(nodes.paragraph) if doctree else ():
+        if next(part.findall(nodes.math), None) is None and len(part.astext()) > SAYING:
+            context["summary"] = textwrap.shorten(part.astext(), SUMMARY, placeholder=" …")
+            return
+
+
 def _breakable(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Let a name in a table break after a dot or an underscore: a narrow column cuts it nowhere else."""
 
@@ -82,3 +101,5 @@ def _breakable(app: Any, page: str, template: str, context: dict[str, Any], doct
 
     if "body" in context:
         context["body"] = TABLE.sub(broken, context["body"])
+        if page.startswith("_modules/"):
+            context["body"] = BACK.sub(r"\1#hdrlab.\3.\2", context["body"])

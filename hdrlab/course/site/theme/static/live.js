@@ -71,6 +71,28 @@
       else each.removeAttribute("tabindex");
   }
 
+  // A button that copies a cell; what stands behind a prompt is copied without it.
+  function copyable(block) {
+    const code = block.querySelector("pre");
+    const button = Object.assign(document.createElement("button"), { className: "copy", textContent: "Copy" });
+    button.addEventListener("click", async () => {
+      const lines = code.textContent.trimEnd().split("\n");
+      const asked = lines.filter((line) => /^(>>>|\.\.\.)( |$)/.test(line)).map((line) => line.slice(4));
+      await navigator.clipboard.writeText((asked.length ? asked : lines).join("\n"));
+      button.textContent = "Copied";
+      setTimeout(() => (button.textContent = "Copy"), 2000);
+    });
+    block.append(button);
+  }
+
+  // On paper an answer cannot be opened, so all are; afterwards they are as they were.
+  const closed = () => document.querySelectorAll("main details:not(.hide):not([open])");
+  let opened = [];
+  addEventListener("beforeprint", () => (opened = [...closed()]).forEach((each) => (each.open = true)));
+  addEventListener("afterprint", () => opened.forEach((each) => (each.open = false)));
+
+  if (navigator.clipboard)
+    document.querySelectorAll("main .highlight:not(.cell_output *)").forEach(copyable);
   document.querySelectorAll(".live").forEach((place) => near.observe(place));
   reach();
   addEventListener("resize", reach);
