@@ -173,3 +173,8 @@ def test_controls_are_large_enough_and_fit_a_narrow_page(player):
     for role in ("slider", "button"):
         box = player.get_by_role(role).bounding_box()
         assert box["height"] >= 24 and box["x"] >= 0 and box["x"] + box["width"] <= 400
+
+
+def test_axe_names_a_picture_without_words(page, axe):
+    page.set_content('<!DOCTYPE html><html lang="en"><title>A page</title><main><img src="data:,"></main>')
+    assert [each.partition(":")[0] for each in axe(page, "main")] == ["image-alt"]
