@@ -46,6 +46,10 @@ def run(arguments: Sequence[str] | None = None) -> None:
         said, code = error.format_message(), error.exit_code
     except OSError as error:
         said, code = f"{error.filename}: {error.strerror}" if error.filename else str(error), 2
+    except RuntimeError as error:  # Python 3.11 wraps what rises while a class is made, Ctrl-C too
+        if not isinstance(error.__cause__, KeyboardInterrupt):
+            raise
+        said, code = "interrupted", 130
     except (ValueError, MemoryError) as error:
         said, code = str(error) or type(error).__name__, 2
     click.echo(f"hdrlab: {visible(said)}", err=True)

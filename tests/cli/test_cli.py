@@ -300,6 +300,25 @@ def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys
     assert list(tmp_path.iterdir()) == []
 
 
+def test_ctrl_c_while_a_class_is_made_ends_in_one_line_too(monkeypatch, tmp_path, capsys):
+    class Stopped:
+        def __set_name__(self, owner, name):
+            raise KeyboardInterrupt
+
+    monkeypatch.setattr("hdrlab.io.photos.photographs", lambda *_, **__: type("Axes", (), {"a": Stopped()}))
+    code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
+
+
+def test_a_fault_of_the_library_is_not_taken_for_ctrl_c(monkeypatch, tmp_path):
+    def broken(*_, **__):
+        raise RuntimeError("a mistake of ours")
+
+    monkeypatch.setattr("hdrlab.io.photos.photographs", broken)
+    with pytest.raises(RuntimeError, match="a mistake of ours"):
+        cli.run(["assemble", str(tmp_path), "-o", str(tmp_path / "x.hdr")])
+
+
 def test_lab_copies_notebooks_and_assignments_and_keeps_what_the_reader_changed(tmp_path, capsys):
     copy = tmp_path / "mine"
     assert hdrlab("lab", "--folder", copy, "--copy-only") == 0
