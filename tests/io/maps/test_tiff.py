@@ -22,7 +22,9 @@ def test_opencv_reads_ours_and_we_read_opencvs_bit_for_bit(tmp_path, E):
     write_radiance(ours, E)
     found = cv2.imread(str(ours), cv2.IMREAD_UNCHANGED)
     assert found.dtype == np.float32 and np.array_equal(found if E.ndim == 2 else found[..., ::-1], E)
-    assert cv2.imwrite(str(theirs), E if E.ndim == 2 else np.ascontiguousarray(E[..., ::-1]))
+    bgr = E if E.ndim == 2 else np.ascontiguousarray(E[..., ::-1])
+    # uncompressed: by itself, OpenCV before 4.11 writes colours as LogLuv, which loses
+    assert cv2.imwrite(str(theirs), bgr, [cv2.IMWRITE_TIFF_COMPRESSION, 1])
     read = read_radiance(theirs)
     assert read.dtype == np.float32 and np.array_equal(read, E)
 
