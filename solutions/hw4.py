@@ -5,7 +5,10 @@
 #
 # The map holds the light of the scene, over a factor of a million; the screen shows a factor of a few
 # hundred. Five papers, five answers: a curve for all pixels, a layer for the light, a histogram that may
-# not exaggerate, a scale that varies slowly, and gradients that are flattened. You write the heart of each.
+# not exaggerate, a scale that varies slowly, and gradients that are flattened.
+#
+# {choice} Reinhard's curve is where everybody begins. Of the four papers after it, take those whose pictures
+# you like: Durand with Ward is enough, Chiu with Fattal is, and so are three. A half of one counts, too.
 #
 # | letter | what it is | shape |
 # |---|---|---|

@@ -163,6 +163,7 @@ def _result(
             "scipy": scipy.__version__,
             "python": platform.python_version(),
         },
+        at_most=homework.at_most,
     )
 
 

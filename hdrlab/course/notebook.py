@@ -40,7 +40,7 @@ class Feedback:
     def _repr_html_(self) -> str:
         whole = self.homework.points
         earned = sum(_latest[task.id].score for task in self.homework.tasks if task.id in _latest)
-        below = feedback.bar(earned, whole, f"{self.homework.name} so far")
+        below = feedback.bar(min(earned, whole), whole, f"{self.homework.name} so far")
         return f'<div class="hdrlab-check">{feedback.fragment(self.result)}{below}</div>'
 
 
@@ -81,12 +81,15 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     return Feedback(result, homework)
 
 
-def use_plan(name: str, **points: float) -> None:
-    """Take a homework's tasks and their points from its sheet; without any, from hdrlab's own plan."""
+def use_plan(name: str, at_most: float | None = None, **points: float) -> None:
+    """Take a homework's tasks and points from its sheet; without any, from hdrlab's own plan.
+
+    Of the points, `at_most` so many count.
+    """
     own = plan.read()
     tasks = tuple(own.task(id)._replace(points=float(worth)) for id, worth in points.items())
     known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(name=name, title=name)
-    _plan[name] = known._replace(tasks=tasks or known.tasks)
+    _plan[name] = known._replace(tasks=tasks, at_most=at_most) if tasks else known
 
 
 def find_tasks(name: str) -> tuple[Homework, list[str]]:

@@ -47,18 +47,20 @@ class ByHand(NamedTuple):
 
 
 class Homework(NamedTuple):
-    """A sheet of tasks, and when it is due."""
+    """A sheet of tasks, when it is due, and how many points count at most where its tasks give more."""
 
     name: str
     title: str
     due: datetime
     tasks: tuple[Task, ...]
     by_hand: tuple[ByHand, ...] = ()
+    at_most: float | None = None
 
     @property
     def points(self) -> float:
         """What the checks can give."""
-        return sum(task.points for task in self.tasks)
+        whole = sum(task.points for task in self.tasks)
+        return whole if self.at_most is None else min(whole, self.at_most)
 
 
 class Late(NamedTuple):
@@ -131,7 +133,8 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
             ByHand(one["title"], float(one["points"]), tuple(map(str, one.get("rubric", ()))))
             for one in sheet.get("by_hand", ())
         )
-        made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand)
+        at_most = float(sheet["at_most"]) if "at_most" in sheet else None
+        made = Homework(name, sheet["title"], sheet["due"], tasks, by_hand, at_most)
     except (KeyError, TypeError, ValueError, OverflowError) as error:
         raise ValueError(f"{path}: expected title, due and tasks in {here}, {error!r:.200}") from None
     if not isinstance(made.due, datetime) or made.due.tzinfo is None:
@@ -139,6 +142,9 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     points = [one.points for one in tasks] + [one.points for one in by_hand]
     if not (points and min(points) >= 0 and sum(points) < np.inf):
         raise ValueError(f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}")
+    if at_most is not None and not 0 < at_most <= sum(points):
+        most = sum(points)
+        raise ValueError(f"{path}: expected at_most of {here} above 0 and at most {most:g}, got {at_most:g}")
     return made
 
 

@@ -7,6 +7,8 @@ import os
 import re
 import subprocess
 import sys
+from collections import Counter
+from itertools import combinations
 from pathlib import Path
 
 import pytest
@@ -148,6 +150,31 @@ def test_the_sheet_brings_the_points_of_its_plan_to_check(made, monkeypatch):
     assert notebook.find_tasks("ev")[0] == PLAN.homeworks["hw1"]
     notebook.use_plan("hw2")
     assert notebook.find_tasks("hw2")[0].points == 100
+
+
+def test_a_sheet_of_choices_says_how_many_points_count_and_check_counts_no_more(monkeypatch):
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    hw4 = PLAN.homeworks["hw4"]
+    sheet = handouts.handout((SOURCES / "hw4.py").read_text(encoding="utf8"), hw4).assignment
+    text = "\n".join(cell["source"] for cell in sheet["cells"])
+    assert "UTC. 100 points." in text and "the tasks give 160 points, of which 100 count at most" in text
+    (cell,) = [cell["source"] for cell in sheet["cells"] if "use_plan(" in cell["source"]]
+    monkeypatch.setattr(notebook, "_plan", {})
+    exec(cell[cell.index("use_plan(") :], {"use_plan": notebook.use_plan})
+    assert notebook.find_tasks("hw4")[0] == hw4 and hw4.points == 100
+
+
+def test_any_two_or_three_of_the_four_papers_make_homework_4_whole():
+    hw4 = PLAN.homeworks["hw4"]
+    papers = Counter()
+    for task in hw4.tasks:
+        papers[task.function.split(".")[-2]] += task.points
+    papers["fattal"] += papers.pop("poisson")
+    needed = hw4.at_most - papers.pop("reinhard")
+    pairs = {frozenset(two) for two in combinations(papers, 2) if sum(papers[one] for one in two) >= needed}
+    assert {frozenset(("durand", "ward")), frozenset(("chiu", "fattal"))} <= pairs
+    assert all(sum(papers[one] for one in three) >= needed for three in combinations(papers, 3))
+    assert max(papers.values()) < needed
 
 
 SHORT = """

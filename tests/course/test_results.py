@@ -191,3 +191,37 @@ def test_a_terminal_sees_hints_only_when_it_asks(hostile):
     assert "first" not in feedback.text(result)
     assert "first" in feedback.text(result, hints=1) and "second" not in feedback.text(result, hints=1)
     assert "third" in feedback.text(result, hints=3)
+
+
+def chosen(earned, at_most):
+    """A Result of three tasks of 40 points each, of which so many count."""
+    checks = [
+        Check(
+            f"task{n}", "test_a", "It holds", Fraction(points), Fraction(40), "holds" if points else "fails"
+        )
+        for n, points in enumerate(earned)
+    ]
+    rest = dict.fromkeys(("submission", "specification", "seed", "tier", "student"), "x")
+    return Result(
+        homework="hw4", title="", checks=tuple(checks), misconceptions={}, problems=(), versions={},
+        at_most=at_most, **rest,
+    )  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("earned", "at_most", "score"), [((40, 40, 0), 80, 80), ((40, 40, 40), 80, 80), ((40, 20, 0), 80, 60)]
+)
+def test_where_tasks_are_to_be_chosen_no_more_counts_than_the_sheet_is_worth(earned, at_most, score):
+    result = chosen(earned, at_most)
+    assert (result.score, result.max_score) == (score, 80)
+    assert json.loads(gradebook.gradescope(result))["score"] == score
+    assert f"hw4: {score} of 80 points" in feedback.text(result)
+    (row,) = csv.DictReader(io.StringIO(gradebook.table([result])))
+    assert (float(row["score"]), float(row["max_score"]), float(row["task1"])) == (score, 80, earned[1])
+    assert results.from_json(results.to_json(result)) == result
+
+
+def test_a_result_that_an_earlier_version_wrote_counts_all_of_its_points():
+    whole = json.loads(results.to_json(chosen((40, 40, 40), None)))
+    del whole["at_most"]
+    assert results.from_json(json.dumps(whole).encode()).score == 120

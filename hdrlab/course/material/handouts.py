@@ -6,7 +6,7 @@ task="gsolve"   becomes the function's signature and docstring over a stub, or, 
                 own source; comment lines in the cell take the place of the docstring's beginning. What the
                 function yields or returns by name is given before it, and `check("gsolve")` follows.
 about="gsolve hat"  is left out where the plan leaves one of these tasks out; a picture shows what they do
-{points}, {due}, {total}, {late}, {hand}   in the prose stand for what the plan says
+{points}, {due}, {total}, {choice}, {late}, {hand}   in the prose stand for what the plan says
 use_plan("hw2")   gets the points of each task, so that `check` knows them wherever the sheet goes
 """
 
@@ -93,15 +93,19 @@ def _task_cells(
 def _planned(text: str, homework: Homework) -> str:
     """Return a cell in which `use_plan` says what each task is worth."""
     points = ", ".join(f"{task.id}={task.points:g}" for task in homework.tasks)
+    if homework.at_most is not None:
+        points = f"at_most={homework.at_most:g}, {points}"
     said = textwrap.fill(f'use_plan("{homework.name}", {points})', 96, subsequent_indent=9 * " ")
     return text.replace(f'use_plan("{homework.name}")', said)
 
 
 def _filled(text: str, homework: Homework, task: Task | None, late: str) -> str:
     """Return prose with what the plan says in place of its names in braces."""
+    tasks = sum(one.points for one in homework.tasks)
     said = {
         "points": f"{task.points:g} points{', the minimum' * task.minimum}" if task else "",
         "total": f"{homework.points + sum(one.points for one in homework.by_hand):g}",
+        "choice": f"Choose: the tasks give {tasks:g} points, of which {homework.points:g} count at most.",
         "due": f"{homework.due:%A, %d %B %Y, %H:%M} {homework.due.tzname()}",
         "late": late,
         "hand": "\n".join(_judged(one) for one in homework.by_hand),

@@ -76,16 +76,20 @@ class Result(NamedTuple):
     specification: str
     seed: str
     versions: dict[str, str]
+    at_most: float | None = None
 
     @property
     def score(self) -> float:
-        """Points earned."""
-        return points(self.checks)[0]
+        """Points earned, of which no more count than the sheet is worth."""
+        return self._counted(points(self.checks)[0])
 
     @property
     def max_score(self) -> float:
         """Points to be earned."""
-        return points(self.checks)[1]
+        return self._counted(points(self.checks)[1])
+
+    def _counted(self, earned: float) -> float:
+        return earned if self.at_most is None else min(earned, self.at_most)
 
     @property
     def why_practice(self) -> str:
@@ -191,8 +195,10 @@ def from_json(data: bytes) -> Result:
         raise ValueError(f"expected a result of version {VERSION}, written by hdrlab grade")
     try:
         checks = tuple(_check_from_json(one) for one in read["checks"])
-        rest = {name: read[name] for name in Result._fields if name not in ("checks", "problems")}
-        return Result(checks=checks, problems=tuple(read["problems"]), **rest)
+        early = {"at_most": None}  # which a result of an early version lacks
+        rest = early | {name: read[name] for name in Result._fields if name in read}
+        rest |= {"checks": checks, "problems": tuple(read["problems"])}
+        return Result(**rest)
     except (KeyError, TypeError, ValueError, ArithmeticError, AttributeError) as error:
         raise ValueError(f"expected a result written by hdrlab grade, {error!r:.200} is wrong") from None
 
