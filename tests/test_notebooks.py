@@ -5,6 +5,7 @@ import re
 import symtable
 from pathlib import Path
 
+import folds
 import nbformat
 import pytest
 
@@ -66,6 +67,14 @@ def test_a_cell_of_code_fits_the_page(path):
     for cell in cells_of(path, "code"):
         lines = cell.source.splitlines()
         assert len(lines) <= 12 and max(map(len, lines)) <= LONGEST, cell.id
+
+
+def test_a_cell_is_folded_where_it_only_draws_and_open_where_its_code_is_the_lesson(path):
+    cells = cells_of(path, "code")
+    should = folds.folded({"cells": cells})
+    assert any(should) and not all(should)
+    for cell, fold in zip(cells, should, strict=True):
+        assert cell.metadata == (folds.FOLDED if fold else {}), f"{cell.id}: python tests/folds.py"
 
 
 def test_every_picture_has_alt_text(path):

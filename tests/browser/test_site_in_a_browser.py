@@ -179,6 +179,23 @@ def test_a_cell_is_copied_and_an_example_without_its_prompts(opened):
         assert copied in text and ">>>" not in text
 
 
+def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_and_the_next(opened):
+    page = opened("notebooks/04_response_gsolve")
+    folds = page.locator("main details.hide")
+    assert folds.count() > 5 and page.locator("main details.hide[open]").count() == 0
+    assert page.get_by_text("debevec.system(Z[:20], B, 30").is_visible()  # what is the lesson stands open
+    folds.first.get_by_text("Show the code").press("Enter")
+    assert page.locator("main details.hide[open]").count() == 1
+    page.get_by_role("button", name="Show all code").click()
+    assert page.locator("main details.hide:not([open])").count() == 0
+    page = opened("notebooks/03_alignment_mtb")
+    assert page.locator("main details.hide:not([open])").count() == 0
+    page.get_by_role("button", name="Fold the code of pictures").click()
+    assert page.locator("main details.hide[open]").count() == 0
+    page.reload()
+    assert page.locator("main details.hide[open]").count() == 0
+
+
 def test_on_paper_answers_are_unfolded_and_no_line_is_cut(opened):
     page = opened("notebooks/04_response_gsolve", 700)
     folded = page.locator("main details:not(.hide):not([open])")

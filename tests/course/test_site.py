@@ -51,6 +51,8 @@ def notebook(path, title, *cells):
     made = nbformat.v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
     made.cells = [nbformat.v4.new_markdown_cell(words, id="title")]
     made.cells += [nbformat.v4.new_code_cell(cell, id=f"cell-{k}") for k, cell in enumerate(cells)]
+    for cell in made.cells:
+        cell.metadata = {"jupyter": {"source_hidden": True}} if cell.source == SHOWN else {}
     nbformat.write(made, path)
     return path
 
@@ -217,6 +219,14 @@ def test_a_page_of_the_reference_has_the_legend_the_parameters_and_the_source(ma
     assert re.search('<dl class="[^"]*legend', text)
     for expected in ("headroom", "Parameters", "Raises", "Examples", "[source]"):
         assert expected in text
+
+
+def test_a_cell_that_is_folded_in_jupyterlab_is_folded_on_its_page_with_its_picture_below(made):
+    one, two = ((made[1] / f"notebooks/{name}.html").read_text("utf-8") for name in ("01_one", "02_two"))
+    assert "<details" not in one and two.count("<details") == 1
+    before, _, folded = two.partition("<details")
+    code, _, after = folded.partition("</details>")
+    assert "widgets" in before and "Show the code" in code and "pictures" in code and "<img" in after
 
 
 def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):

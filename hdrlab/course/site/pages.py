@@ -161,6 +161,8 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
             cell.source = _linked(cell.source, known)
+        if cell.metadata.get("jupyter", {}).get("source_hidden"):  # as JupyterLab has it
+            cell.metadata["tags"] = [*cell.metadata.get("tags", ()), "hide-input"]  # as Sphinx has it
     return nbformat.writes(notebook), len(found)
 
 

@@ -85,6 +85,29 @@
     block.append(button);
   }
 
+  // Cells that only draw are folded; a switch opens all of them, on this page and on the next.
+  function unfoldable(folds) {
+    const button = Object.assign(document.createElement("button"), { className: "codes" });
+    const set = (open) => {
+      folds.forEach((fold) => (fold.open = open));
+      button.textContent = open ? "Fold the code of pictures" : "Show all code";
+      if (open) reach();
+    };
+    let open = false;
+    try {
+      open = localStorage.getItem("hdrlab-code") === "open";
+    } catch {} // where a browser keeps nothing for a file, the switch is of this page alone
+    button.addEventListener("click", () => {
+      set((open = !open));
+      try {
+        localStorage.setItem("hdrlab-code", open ? "open" : "folded");
+      } catch {}
+    });
+    set(open);
+    for (const fold of folds) fold.querySelector("summary").removeAttribute("aria-label"); // its text says more
+    document.querySelector("main h1").after(button);
+  }
+
   // On paper an answer cannot be opened, so all are; afterwards they are as they were.
   const closed = () => document.querySelectorAll("main details:not(.hide):not([open])");
   let opened = [];
@@ -93,6 +116,8 @@
 
   if (navigator.clipboard)
     document.querySelectorAll("main .highlight:not(.cell_output *)").forEach(copyable);
+  const folds = document.querySelectorAll("main details.hide");
+  if (folds.length) unfoldable(folds);
   document.querySelectorAll(".live").forEach((place) => near.observe(place));
   reach();
   addEventListener("resize", reach);
