@@ -52,8 +52,15 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
 @common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
 @common.choice("--response", [*METHODS, "all"], "debevec")
-@click.option("--plot", type=common.OUT, help="Picture of curve, band and residuals: .png or .svg.")
-@click.option("--rounds", type=click.IntRange(0), default=50, help="Of the bootstrap; 0 for no band.")
+@click.option(
+    "--plot", type=common.OUT, help="Picture of the curve, how well it repeats, and residuals: .png or .svg."
+)
+@click.option(
+    "--rounds",
+    type=click.IntRange(0),
+    default=50,
+    help="Of the bootstrap, which says how well the curve repeats; 0 for none.",
+)
 @click.option("--seed", default=1, help="Of the bootstrap.")
 def calibrate(
     photos: tuple[Path, ...],

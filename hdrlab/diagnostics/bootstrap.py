@@ -1,4 +1,4 @@
-"""How far to trust a response: the bootstrap (Efron, Annals of Statistics 1979), tile by tile.
+"""How well a response repeats: the bootstrap (Efron, Annals of Statistics 1979), tile by tile.
 
 images  photographs  (P, H, W[, 3]), aligned: a pixel is the same point of the scene in every frame
 g       response     (256,) or (256, 3), ln exposure of each level, g[128] = 0
@@ -10,7 +10,8 @@ the response of that picture. Tiles and not pixels, for neighbours measure the s
 make the band too narrow. A tile is drawn with all its exposures, so that the frames stay connected.
 
 The band measures the choice of the scene and the noise. It does not measure what all tiles share: wrong
-times, frames that are not aligned, a model of the curve that is too stiff.
+times, frames that are not aligned, a model of the curve that is too stiff. So it says how well the curve
+repeats and not how near the truth it is: that lies outside at far more levels than the rounds let expect.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -111,7 +112,7 @@ def percentile_band(curves: Iterable[F64 | None], *, share: float = 0.95) -> Ban
 def bootstrap(
     recover: Callable[..., F64], images: ArrayLike, times: ArrayLike, *, share: float = 0.95, **knobs: Any
 ) -> Band:
-    """Return the confidence band of a method's response to a bracket.
+    """Return how well a method's response to a bracket repeats; the truth may lie outside, see above.
 
     Parameters
     ----------

@@ -40,7 +40,7 @@ def test_a_bracket_becomes_a_curve_in_every_format(suffix, photographs, tmp_path
     folder, times, true = photographs
     out = tmp_path / f"g{suffix}"
     code, said, _ = hdrlab("calibrate", folder, "-o", out, "--times", times, "--rounds", 0, capsys=capsys)
-    assert code == 0 and str(out) in said and "band" not in said
+    assert code == 0 and str(out) in said and "repeats" not in said
     assert response_rmse(read_curve(out), true).max() < 1.5
 
 
@@ -59,7 +59,7 @@ def test_the_summary_says_where_exposure_doubles_and_how_far_to_trust_it(photogr
     true_levels = calibration.doublings(true)
     assert levels["0"] == 128
     assert abs(levels["+1"] - true_levels[1]) < 4 and abs(levels["−2"] - true_levels[-2]) < 4
-    assert 0 < float(lines["band"][0]) < 0.2 and float(lines["spread"][0]) < 0.1
+    assert 0 < float(lines["repeats"][1]) < 0.2 and float(lines["spread"][0]) < 0.1
     assert all(out.exists() for out in outs)
 
 
@@ -179,7 +179,7 @@ def test_figures_stand_for_gray_and_colour_and_for_levels_that_nothing_is_known_
     assert isinstance(drawn, Figure) and len(drawn.axes) == 3 and len(drawn.axes[2].lines) == 3
     edges = [line.get_ydata() for line in drawn.axes[1].lines[:2]]
     assert np.allclose(edges[0], -0.1 / np.log(2)) and np.allclose(edges[1], 0.1 / np.log(2))
-    assert "band, 0.28" in drawn.get_label()
+    assert "repeats to 0.28" in drawn.get_label()
     assert len(calibration.calibration(g, r, [0.1, 1], title="debevec").axes) == 2
     over = calibration.overlay({"one": g, "two": 1.1 * g}, title="two")
     assert len(over.axes) == 2 * (channels or (1,))[0]

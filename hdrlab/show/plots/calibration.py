@@ -71,7 +71,10 @@ def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | No
         f"residuals  {rms(r):.3f} stops rms; furthest off is {names[worst]}, by {signed(off[worst], 2)}",
     ]
     if band is not None:
-        lines.append(f"band       {band.width:.4f} stops wide: 95 % of the rounds, median over the levels")
+        lines.append(
+            f"repeats    to {band.width:.4f} stops in 95 % of a bootstrap's rounds, median over the levels; "
+            "how near the truth that is, it does not say"
+        )
     return lines
 
 
@@ -122,7 +125,7 @@ def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> d
 
 
 def calibration(g: F64, r: F64, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
-    """Draw a response, next to it its confidence band, and the residuals of each frame."""
+    """Draw a response, next to it how well it repeats, and the residuals of each frame."""
     count = 2 if band is None else 3
     figure = Figure(figsize=(5.2 * count, 4.2), dpi=100, layout="constrained")
     left, *middle, right = figure.subplots(1, count)
@@ -130,12 +133,12 @@ def calibration(g: F64, r: F64, times: ArrayLike, *, band: Band | None = None, t
     left.set_title(title, fontsize=10)
     if band is not None:
         draw_band(band, g, ax=middle[0])
-        middle[0].set_title("its band: 95 % of the rounds of a bootstrap", fontsize=10)
+        middle[0].set_title("how well it repeats: 95 % of a bootstrap's rounds", fontsize=10)
     draw_residuals(r, times, ax=right)
     right.set_title("residuals of the frames, median over a level's pixels", fontsize=10)
     for ax in figure.axes:
         ax.grid(color="#D9D9D9", linewidth=0.6)
-    width = "" if band is None else f"its band, {band.width:.4f} stops wide; "
+    width = "" if band is None else f"it repeats to {band.width:.4f} stops; "
     figure.set_label(
         f"{title}: the response over ln exposure, from {g.min():.1f} to {g.max():.1f}; {width}"
         f"and what it leaves unexplained of each frame, {rms(r):.3f} stops rms"
