@@ -12,7 +12,6 @@ A dial says 1/60 and the shutter opens for 1/64 s: the series is one of powers o
 rounded so that people can say them. Times taken from names are wrong by up to 7 %, and a calibration sees it.
 """
 
-from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -22,14 +21,11 @@ from hdrlab.core.types import F64
 
 Real = float | NDArray[np.floating[Any]]
 
-# What dials say, from bright to dark in thirds of a stop; every third one is a full stop.
+# What the dial says, from bright to dark in thirds of a stop; every third one is a full stop.
 SHUTTER = """
     30 25 20 15 13 10 8 6 5 4 3.2 2.5 2 1.6 1.3 1 0.8 0.6 1/2 0.4 0.3 1/4 1/5 1/6 1/8 1/10 1/13 1/15
     1/20 1/25 1/30 1/40 1/50 1/60 1/80 1/100 1/125 1/160 1/200 1/250 1/320 1/400 1/500 1/640 1/800
     1/1000 1/1250 1/1600 1/2000 1/2500 1/3200 1/4000 1/5000 1/6400 1/8000
-"""
-APERTURE = """
-    1 1.1 1.2 1.4 1.6 1.8 2 2.2 2.5 2.8 3.2 3.5 4 4.5 5 5.6 6.3 7.1 8 9 10 11 13 14 16 18 20 22 25 29 32
 """
 # stops: the dial's 30 is 2^5 s
 LONGEST_STOP = 5
@@ -55,26 +51,10 @@ def shutter_series(per_stop: int = 1) -> Dial:
     >>> dial.names[11], float(1 / dial.values[11])
     ('1/60', 64.0)
     """
-    return _series(SHUTTER, per_stop, lambda stop: 2.0 ** (LONGEST_STOP - stop))
-
-
-def aperture_series(per_stop: int = 1) -> Dial:
-    """Return the f-numbers of a dial, wide to narrow: names, and true values 2^(k / (2 per_stop)).
-
-    Examples
-    --------
-    >>> dial = aperture_series()
-    >>> dial.names[:4], dial.values[:4].round(3)
-    (('1', '1.4', '2', '2.8'), array([1.   , 1.414, 2.   , 2.828]))
-    """
-    return _series(APERTURE, per_stop, lambda stop: 2.0 ** (stop / 2))
-
-
-def _series(marks: str, per_stop: int, true: Callable[[Any], Any]) -> Dial:
     if per_stop not in (1, 3):
         raise ValueError(f"expected a dial of 1 or 3 settings per stop, got {per_stop}")
-    chosen = tuple(marks.split()[:: 3 // per_stop])
-    return Dial(chosen, true(np.arange(len(chosen)) / per_stop))
+    chosen = tuple(SHUTTER.split()[:: 3 // per_stop])
+    return Dial(chosen, 2.0 ** (LONGEST_STOP - np.arange(len(chosen)) / per_stop))
 
 
 def seconds(name: str) -> float:
