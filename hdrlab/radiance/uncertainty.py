@@ -1,0 +1,103 @@
+"""How sure is each pixel: the mean by inverse variance, and what chance leaves of doubt in it.
+
+Z      pixel levels       (P, H, W, C)
+X      exposure           exp(g(Z)): 1 is that of level n / 2
+D      step               dX / dZ, the exposures that are rounded to one level
+N, R   electrons at X = 1, and read noise in electrons: `capture.photon_transfer` finds both
+t      exposure times     (P,) seconds
+E, s   radiance, and its standard deviation, (H, W[, C]) float32
+
+Photons come by chance: of X N electrons the variance is X N. The amplifier adds R^2, and rounding spreads
+evenly over a step. So a frame's answer X / t is as sure as its light allows, and the mean in which each
+counts by the inverse of its variance has the least variance of all (Granados et al., CVPR 2010). The variance
+is that of the light which is there and not of the light which was counted: a frame with too few photons, by
+chance, would count too much. So it is taken from E itself, and that in two rounds.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from hdrlab.core.types import F32, F64
+from hdrlab.radiance.merge import TOP, as_tables, merge_with_quality, weigh
+
+ROUNDS = 2
+
+
+class Sure(NamedTuple):
+    """The radiance map (H, W[, 3]) float32, and its standard deviation; infinite where no frame measures."""
+
+    E: F32
+    s: F32
+
+
+def variance(X: F64, D: F64, N: float, R: float) -> F64:
+    """Return V = X / N + (R / N)^2 + D^2 / 12: of photons, of the amplifier, of rounding.
+
+    Examples
+    --------
+    >>> float(variance(np.array(1.0), np.array(0.0), 100, 0)) ** 0.5  # of 100 electrons, 10 by chance
+    0.1
+    """
+    return X / N + (R / N) ** 2 + D**2 / 12
+
+
+def weighted_mean(x: F64, V: F64) -> tuple[F64, F64]:
+    """Return E = sum (x / V) / sum (1 / V) over the frames, and its variance, 1 / sum (1 / V)."""
+    least = 1 / np.sum(1 / V, axis=0)
+    return least * np.sum(x / V, axis=0), least
+
+
+def merge_with_deviation(images: ArrayLike, times: ArrayLike, g: ArrayLike, N: float, R: float = 0.0) -> Sure:
+    """Return the radiance map by inverse variance, and its standard deviation.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Aligned photographs, in any order.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each level.
+    N : float
+        Electrons of a pixel at the exposure X = 1, that of level n / 2.
+    R : float
+        Read noise in electrons, standard deviation.
+
+    Returns
+    -------
+    Sure
+        E and s (H, W) or (H, W, 3) float32. Where no frame measures, E is what the bounds allow and s is
+        infinite.
+
+    Raises
+    ------
+    ValueError
+        For arrays that do not fit together, and for electrons that are not positive.
+
+    References
+    ----------
+    Granados and others, Optimal HDR reconstruction with linear digital cameras, CVPR 2010.
+
+    Examples
+    --------
+    >>> images = np.array([[[40, 255]], [[80, 255]]], np.uint8)  # a linear camera, one and two seconds
+    >>> g = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    >>> found = merge_with_deviation(images, [1, 2], g, N=10_000)
+    >>> found.E[0].round(2), found.s[0].round(4)
+    (array([0.31, 1.95], dtype=float32), array([0.0034,    inf], dtype=float32))
+    """
+    if not 0 < N < np.inf or not 0 <= R < np.inf:
+        raise ValueError(f"expected electrons N above 0 and read noise R of at least 0, got {N} and {R}")
+    stack, t, w, curves, top = as_tables(images, times, g, None, "mean", TOP)
+    Z, t = stack.reshape(*stack.shape[:3], -1), t[:, None, None, None]
+    E = merge_with_quality(images, times, g).E.reshape(Z.shape[1:]).astype(np.float64)
+    c, table, measured = np.arange(Z.shape[-1]), np.exp(curves), weigh(Z, w, top) > 0
+    X, D, known = table[Z, c], np.gradient(table, axis=0)[Z, c], measured.any(axis=0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            mean, least = weighted_mean(X / t, V)
+            E = np.where(known, mean, E)
+    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, np.sqrt(least))))

@@ -1,0 +1,102 @@
+"""hdrlab.radiance.uncertainty: the mean by inverse variance, and how true its standard deviation is."""
+
+import numpy as np
+import pytest
+
+from hdrlab.capture import camera, responses
+from hdrlab.radiance.merge import METHODS, merge_with_quality
+from hdrlab.radiance.uncertainty import merge_with_deviation, variance, weighted_mean
+
+WELL, READ = 8_000, 6.0
+LIGHT = np.geomspace(1e-3, 10, 30_000).reshape(150, 200)
+
+
+def photographed(response, bits=8, rng=0, E=LIGHT):
+    """A bracket, its g, the electrons at level n / 2, and the radiance in the map's unit."""
+    g = responses.true_g(response, 2**bits)
+    times = camera.times_around(E, 6, stops=2)
+    taken = camera.shoot(
+        E, times, camera.Camera(response=response, bits=bits, full_well=WELL, read_noise=READ), rng=rng
+    )
+    whole = np.exp(g[-1])  # exposure of a full well
+    return taken.images, taken.times, g, WELL / whole, E * whole
+
+
+@pytest.mark.parametrize(("response", "bits"), [("linear", 16), ("linear", 8), ("gamma", 8), ("film", 8)])
+def test_of_100_pixels_of_any_decade_95_lie_within_1_96_deviations(response, bits):
+    images, times, g, N, true = photographed(response, bits)
+    found = merge_with_deviation(images, times, g, N, READ)
+    inside = np.abs(found.E - true) < 1.96 * found.s
+    decade = np.floor(np.log10(LIGHT))
+    shares = [inside[(decade == one) & np.isfinite(found.s)].mean() for one in (-3, -2, -1, 0)]
+    assert np.allclose(shares, 0.95, atol=0.02), shares
+
+
+@pytest.mark.parametrize("response", ["linear", "gamma", "film"])
+def test_no_other_mean_errs_less(response):
+    images, times, g, N, true = photographed(response, rng=2)
+    found = merge_with_deviation(images, times, g, N, READ)
+    known = np.isfinite(found.s)
+
+    def error(E):
+        return np.sqrt(np.mean((E / true - 1)[known] ** 2))
+
+    others = [error(merge_with_quality(images, times, g, method=name).E) for name in METHODS]
+    assert error(found.E) < min(others)
+
+
+def test_the_deviation_of_draws_is_the_one_that_is_said():
+    flat = np.full((40, 50), 0.05)
+    images, times, g, N, _ = photographed("linear", 16, rng=1, E=flat)
+    found = merge_with_deviation(images, times, g, N, READ)
+    assert found.E.std() == pytest.approx(np.median(found.s), rel=0.06)
+
+
+def test_photons_alone_leave_one_over_the_root_of_all_that_were_counted():
+    g = responses.true_g("linear", 65536)
+    images = np.full((3, 1, 1), 20_000, np.uint16) * np.array([1, 2, 3], np.uint16)[:, None, None]
+    found = merge_with_deviation(images, [1, 2, 3], g, N=1e4)
+    counted = 1e4 * np.exp(g[images]).sum()
+    assert found.s / found.E == pytest.approx(counted**-0.5, rel=1e-3)
+
+
+def test_of_equal_answers_the_mean_has_a_fraction_of_the_variance():
+    E, V = weighted_mean(np.array([1.0, 2.0, 3.0]), np.full(3, 0.3))
+    assert E == pytest.approx(2) and V == pytest.approx(0.1)
+    E, V = weighted_mean(np.array([1.0, 5.0]), np.array([0.2, np.inf]))
+    assert E == pytest.approx(1) and V == pytest.approx(0.2)
+
+
+def test_the_three_causes_of_noise_add_their_variances():
+    X = np.array([0.0, 0.5, 2.0])
+    assert variance(X, 0 * X, 100, 0) == pytest.approx(X / 100)
+    assert variance(X, 0 * X, 100, 7) - X / 100 == pytest.approx(0.07**2)
+    assert variance(0 * X, X, 1e9, 0) == pytest.approx(X**2 / 12)
+
+
+def test_the_order_of_the_frames_and_the_unit_of_time_change_nothing_else():
+    images, times, g, N, _ = photographed("film")
+    found = merge_with_deviation(images, times, g, N, READ)
+    turned = merge_with_deviation(images[::-1], times[::-1], g, N, READ)
+    slower = merge_with_deviation(images, 4 * times, g, N, READ)
+    for one, other, longer in zip(found, turned, slower, strict=True):
+        assert np.allclose(other, one, rtol=1e-5) and np.allclose(4 * longer, one, rtol=1e-5)
+
+
+@pytest.mark.parametrize("channels", [(), (3,)])
+def test_nothing_is_known_where_no_frame_measures_but_the_bound(channels):
+    images = np.array([[[40, 255, 0]], [[80, 255, 0]]], np.uint8)
+    images = images.reshape(*images.shape, *[1] * len(channels)) + np.zeros(channels, np.uint8)
+    g = responses.true_g("linear")
+    found = merge_with_deviation(images, [1, 2], g, 1000)
+    assert found.E.shape == found.s.shape == images.shape[1:] and found.E.dtype == found.s.dtype == np.float32
+    assert np.isfinite(found.s[0, 0]).all() and np.isinf(found.s[0, 1:]).all()
+    assert np.array_equal(found.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
+
+
+@pytest.mark.parametrize("bad", [{"N": 0}, {"N": -1}, {"N": np.nan}, {"N": np.inf}, {"R": -1}, {"R": np.nan}])
+def test_electrons_that_cannot_be_are_refused(bad):
+    with pytest.raises(ValueError, match="expected electrons N above 0 and read noise R of at least 0"):
+        merge_with_deviation(
+            np.ones((2, 2, 2), np.uint8), [1, 2], responses.true_g("linear"), **{"N": 100, **bad}
+        )
