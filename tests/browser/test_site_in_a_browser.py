@@ -184,7 +184,9 @@ def test_cells_that_only_draw_are_folded_and_one_switch_opens_them_on_this_page_
     folds = page.locator("main details.hide")
     assert folds.count() > 5 and page.locator("main details.hide[open]").count() == 0
     assert page.get_by_text("debevec.system(Z[:20], B, 30").is_visible()  # what is the lesson stands open
-    folds.first.get_by_text("Show the code").press("Enter")
+    first = folds.first.locator("summary")
+    assert first.inner_text() == "Show the code" and first.get_attribute("aria-label") is None
+    first.press("Enter")
     assert page.locator("main details.hide[open]").count() == 1
     page.get_by_role("button", name="Show all code").click()
     assert page.locator("main details.hide:not([open])").count() == 0
