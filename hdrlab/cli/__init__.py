@@ -46,7 +46,7 @@ def run(arguments: Sequence[str] | None = None) -> None:
         said, code = error.format_message(), error.exit_code
     except OSError as error:
         said, code = f"{error.filename}: {error.strerror}" if error.filename else str(error), 2
-    except RuntimeError as error:  # Python 3.11 wraps what rises while a class is made, Ctrl-C too
+    except (RuntimeError, ImportError) as error:  # wrap what rises while a class, or a module of C, is made
         if not isinstance(error.__cause__, KeyboardInterrupt):
             raise
         said, code = "interrupted", 130

@@ -310,12 +310,22 @@ def test_ctrl_c_while_a_class_is_made_ends_in_one_line_too(monkeypatch, tmp_path
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
 
-def test_a_fault_of_the_library_is_not_taken_for_ctrl_c(monkeypatch, tmp_path):
+def test_ctrl_c_while_a_module_of_c_is_made_ends_in_one_line_too(monkeypatch, tmp_path, capsys):
+    def stopped(*_, **__):  # as pybind11 tells it
+        raise ImportError("initialization failed") from KeyboardInterrupt()
+
+    monkeypatch.setattr("hdrlab.io.photos.photographs", stopped)
+    code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
+    assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
+
+
+@pytest.mark.parametrize("kind", [RuntimeError, ImportError])
+def test_a_fault_of_the_library_is_not_taken_for_ctrl_c(kind, monkeypatch, tmp_path):
     def broken(*_, **__):
-        raise RuntimeError("a mistake of ours")
+        raise kind("a mistake of ours")
 
     monkeypatch.setattr("hdrlab.io.photos.photographs", broken)
-    with pytest.raises(RuntimeError, match="a mistake of ours"):
+    with pytest.raises(kind, match="a mistake of ours"):
         cli.run(["assemble", str(tmp_path), "-o", str(tmp_path / "x.hdr")])
 
 
