@@ -33,6 +33,7 @@ VALUES = {
     "w": np.ones(256),
     "well": np.ones(LIGHT.shape, bool),
     "time": 0.1,
+    "N": 1e4,
     "sensor": Sensor(),
     "centre": (12, 16),
     **{"x": 16, "y": 12, "reading": 5.0},
