@@ -107,8 +107,8 @@ def assemble_steps(
     flare: str = "none",
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
-    asked = {"a weight": weight, "a method": method, "times": times, "ghosts": ghosts, "flare": flare}
-    for (what, given), known in zip(asked.items(), (WEIGHTS, METHODS, TIMES, GHOSTS, FLARE), strict=True):
+    asked = {"a weight": weight, "a method": method, "times": times, "ghosts": ghosts, "flare": flare}.items()
+    for (what, given), known in zip(asked, ((*WEIGHTS,), (*METHODS,), TIMES, GHOSTS, FLARE), strict=True):
         if given not in known:
             raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     bracket, said = timing.complete_times(bracket, times)
