@@ -52,16 +52,7 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
 @common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
 @common.choice("--response", [*METHODS, "all"], "debevec")
-@click.option(
-    "--plot", type=common.OUT, help="Picture of the curve, how well it repeats, and residuals: .png or .svg."
-)
-@click.option(
-    "--rounds",
-    type=click.IntRange(0),
-    default=50,
-    help="Of the bootstrap, which says how well the curve repeats; 0 for none.",
-)
-@click.option("--seed", default=1, help="Of the bootstrap.")
+@click.option("--plot", type=common.OUT, help="Picture of the curve and the residuals: .png or .svg.")
 def calibrate(
     photos: tuple[Path, ...],
     out: tuple[Path, ...],
@@ -71,8 +62,6 @@ def calibrate(
     align: str,
     response: str,
     plot: Path | None,
-    rounds: int,
-    seed: int,
 ) -> None:
     """Find the camera's response in PHOTOS (files, or one folder), and how far it is to be trusted.
 
@@ -107,7 +96,7 @@ def calibrate(
     if response == "all":
         _every(state, out, plot)
     else:
-        _one(state, response, out, plot, rounds, seed)
+        _one(state, response, out, plot)
 
 
 def _assembled(state: "Assembly", name: str) -> "Assembly":
@@ -119,29 +108,18 @@ def _assembled(state: "Assembly", name: str) -> "Assembly":
     return pipeline.assemble(state.bracket, align="none", response=lambda *_, **__: g, times="stated")
 
 
-def _one(
-    state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None, rounds: int, seed: int
-) -> None:
-    from hdrlab.diagnostics import bootstrap, residuals
-    from hdrlab.pipeline import recovery
+def _one(state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None) -> None:
     from hdrlab.show.plots import calibration
 
-    images, times, names, valid, _ = state.bracket
     assembly = _assembled(state, name)
-    g = assembly.g
+    g, medians, (_, times, names, *_) = assembly.g, assembly.medians, assembly.bracket
     for doubt in assembly.doubts:
         click.echo(f"warning: {doubt}", err=True)
-    band = None
-    if rounds:
-        method = recovery.find_validated_method(name)
-        steps = bootstrap.bootstrap_steps(method, images, times, rounds=rounds, rng=seed, valid=valid)
-        band = bootstrap.percentile_band(common.progress(steps, "bootstrap", rounds))
-    r = residuals.residuals(images, times, g, valid=valid)
     click.echo(f"{name}, from {len(times)} photographs")
-    click.echo("\n".join(calibration.summary(g, r, assembly.spread, names, band)))
+    click.echo("\n".join(calibration.summary(g, medians, names)))
     _write(out, g)
     if plot:
-        calibration.write_plot(plot, calibration.calibration(g, r, times, band=band, title=name))
+        calibration.write_plot(plot, calibration.calibration(g, medians, times, title=name))
         click.echo(plot)
 
 

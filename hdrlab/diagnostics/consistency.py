@@ -14,7 +14,7 @@ import warnings
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_mask, as_radiance, as_stack, as_times, to_256
+from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, describe, to_256
 from hdrlab.core.types import F32, F64, Flags
 
 # away from the noise below and the shoulder above
@@ -92,6 +92,27 @@ def measure_deviations(medians: F64) -> F64:
         warnings.simplefilter("ignore", RuntimeWarning)  # a level that no frame shows has no mean
         apart = medians - np.nanmean(_keep_shared(medians), axis=0)
         return np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1)
+
+
+def measure_residuals(medians: ArrayLike, g: ArrayLike) -> F64:
+    """Return what g and the times leave unexplained of each frame, channel and level, (P, C, 256) stops.
+
+    All are 0 where the camera is the one that g and the times describe. A frame that lies off as a whole has
+    a wrong time; a level that lies off in all frames, a wrong g; a level that lies off differently from frame
+    to frame belongs to a camera that treats each photograph in its own way. Where two frames contradict each
+    other by a stop, each shows a part of it, for both have a share in E.
+
+    Examples
+    --------
+    >>> g = np.log(np.maximum(np.arange(256), 0.5) / 128)
+    >>> medians = np.stack([g / np.log(2), g / np.log(2) - 1])[:, None]  # the second lies off by a stop
+    >>> measure_residuals(medians, g)[:, 0, 64].tolist()
+    [0.0, 1.0]
+    """
+    medians = np.asarray(medians, np.float64)
+    if medians.ndim != 3 or medians.shape[-1] != 256:
+        raise ValueError(f"expected medians (P, C, 256), got {describe(medians)}")
+    return as_response(g, 256, medians.shape[1]).T / np.log(2) - medians
 
 
 def measure_spread(medians: F64) -> float:

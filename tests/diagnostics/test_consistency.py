@@ -128,3 +128,32 @@ def test_what_does_not_fit_together_is_refused(given, said):
     knobs = {"images": np.zeros((2, 4, 5), np.uint8), "times": [1, 2], "E": np.ones((4, 5))} | given
     with pytest.raises(ValueError, match=said):
         consistency.measure_level_exposures(**knobs)
+
+
+def test_the_true_response_and_times_leave_no_residual(bracket):
+    E, taken = bracket
+    r = consistency.measure_residuals(consistency.measure_level_exposures(taken.images, taken.times, E), G)
+    r -= np.nanmedian(r)  # E is in a unit of its own
+    assert r.shape == (5, 1, 256) and np.nanmax(np.abs(r[..., 20:230])) < 0.02
+
+
+def test_a_wrong_response_bends_the_residuals_of_all_frames_alike(bracket):
+    _, taken = bracket
+    E = merge(taken.images, taken.times, G, gaussian(65536))
+    found = consistency.measure_level_exposures(taken.images, taken.times, E)
+    right, wrong = (consistency.measure_residuals(found, g)[..., 20:230] for g in (G, 1.3 * G))
+    assert np.nanstd(wrong) > 10 * np.nanstd(right)
+    assert np.nanstd(wrong - np.nanmean(wrong, axis=0)) < 0.1 * np.nanstd(wrong)
+
+
+def test_a_frame_with_a_wrong_time_leaves_a_residual_at_all_its_levels(bracket):
+    _, taken = bracket
+    times = taken.times * np.array([1, 1, 2**-0.5, 1, 1])  # the middle frame saw longer than it says
+    off = np.nanmedian(consistency.measure_residuals(medians(taken, times), G)[..., 30:226], axis=(1, 2))
+    assert np.argmax(off) == 2 and off[2] - np.delete(off, 2).mean() > 0.2
+
+
+@pytest.mark.parametrize("bad", [np.zeros((3, 256)), np.zeros((3, 1, 255)), np.zeros((3, 2, 256))])
+def test_residuals_want_medians_that_go_with_the_response(bad):
+    with pytest.raises(ValueError, match="expected"):
+        consistency.measure_residuals(bad, np.stack([G] * 3, axis=1))

@@ -1,8 +1,8 @@
-"""What a calibration found, in words and pictures: a response with its band and residuals, or many together.
+"""What a calibration found, in words and pictures: a response with its residuals, or many together.
 
-g  response   (n,) or (n, 3), ln exposure of each pixel level, 0 at level n // 2
-r  residuals  (P, 256) or (P, 256, 3), stops: what g and the times do not explain
-E  radiance   (H, W[, 3])
+g        response   (n,) or (n, 3), ln exposure of each pixel level, 0 at level n // 2
+medians  (P, C, 256), log2 exposure of each level by each frame: see `diagnostics.consistency`
+E        radiance   (H, W[, 3])
 
 A stop is a factor of 2. Functions return lines of text or figures; only `write_plot` writes.
 """
@@ -20,8 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_table
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS, radiance_errors, response_rmse
 from hdrlab.core.types import F64
-from hdrlab.diagnostics.bootstrap import Band
-from hdrlab.diagnostics.residuals import frame_offsets, rms
+from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show import plots
 from hdrlab.show.pages.wording import signed
@@ -53,8 +52,8 @@ def reach(g: ArrayLike) -> float:
     return float(np.mean(curve[HIGH_LEVEL] - curve[LOW_LEVEL]) / np.log(2))
 
 
-def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | None = None) -> list[str]:
-    """Return the lines that describe a response and its uncertainty."""
+def summary(g: F64, medians: F64, names: Sequence[str]) -> list[str]:
+    """Return the lines that describe a response and how well it explains the photographs."""
     channels = plots.CHANNELS if g.ndim == 2 else (("gray", "", ""),)
     found = [doublings(one) for one in np.atleast_2d(g.T)]
     stops = sorted(set().union(*found))
@@ -62,20 +61,23 @@ def summary(g: F64, r: F64, spread: float, names: Sequence[str], band: Band | No
     for (name, *_), levels in zip(channels, found, strict=True):
         row = "".join(f"{levels[k]:5.0f}" if k in levels else 5 * " " for k in stops)
         lines.append(f"{name:<8}{row}".rstrip())
-    off = np.nan_to_num(frame_offsets(r))
+    spread, off = consistency.measure_spread(medians), np.nan_to_num(consistency.measure_deviations(medians))
     worst = int(np.argmax(np.abs(off)))
-    lines += [
+    return [
+        *lines,
         f"range      {reach(g):.2f} stops between the levels {LOW_LEVEL} and {HIGH_LEVEL}",
         f"spread     {f'{spread:.3f} stops' if np.isfinite(spread) else 'unknown'} between the frames' "
         "measurements of the same light",
-        f"residuals  {rms(r):.3f} stops rms; furthest off is {names[worst]}, by {signed(off[worst], 2)}",
+        f"residuals  {_rms(consistency.measure_residuals(medians, g)):.3f} stops rms; furthest off is "
+        f"{names[worst]}, by {signed(off[worst], 2)}",
     ]
-    if band is not None:
-        lines.append(
-            f"repeats    to {band.width:.4f} stops in 95 % of a bootstrap's rounds, median over the levels; "
-            "how near the truth that is, it does not say"
-        )
-    return lines
+
+
+def _rms(r: F64) -> float:
+    """Return the root of the mean squared residual of the levels 10 to 250, in stops; NaN for none."""
+    known = r[..., RELIABLE_LEVELS]
+    known = known[np.isfinite(known)]
+    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
 
 
 def matrix(names: Sequence[str], values: Mapping[tuple[str, str], float], digits: int = 2) -> list[str]:
@@ -124,45 +126,22 @@ def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> d
     return {(one, other): between(maps[one], maps[other]) for one, other in pairs(list(maps))}
 
 
-def calibration(g: F64, r: F64, times: ArrayLike, *, band: Band | None = None, title: str = "") -> Figure:
-    """Draw a response, next to it how well it repeats, and the residuals of each frame."""
-    count = 2 if band is None else 3
-    figure = Figure(figsize=(5.2 * count, 4.2), dpi=100, layout="constrained")
-    left, *middle, right = figure.subplots(1, count)
+def calibration(g: F64, medians: F64, times: ArrayLike, *, title: str = "") -> Figure:
+    """Draw a response, and next to it the residuals of each frame."""
+    r = consistency.measure_residuals(medians, g)
+    figure = Figure(figsize=(10.4, 4.2), dpi=100, layout="constrained")
+    left, right = figure.subplots(1, 2)
     plots.response(g, ax=left)
     left.set_title(title, fontsize=10)
-    if band is not None:
-        draw_band(band, g, ax=middle[0])
-        middle[0].set_title("how well it repeats: 95 % of a bootstrap's rounds", fontsize=10)
     draw_residuals(r, times, ax=right)
     right.set_title("residuals of the frames, median over a level's pixels", fontsize=10)
     for ax in figure.axes:
         ax.grid(color="#D9D9D9", linewidth=0.6)
-    width = "" if band is None else f"it repeats to {band.width:.4f} stops; "
     figure.set_label(
-        f"{title}: the response over ln exposure, from {g.min():.1f} to {g.max():.1f}; {width}"
-        f"and what it leaves unexplained of each frame, {rms(r):.3f} stops rms"
+        f"{title}: the response over ln exposure, from {g.min():.1f} to {g.max():.1f}; "
+        f"and what it leaves unexplained of each frame, {_rms(r):.3f} stops rms"
     )
     return figure
-
-
-def draw_band(band: Band, g: F64, *, ax: Axes | None = None) -> Axes:
-    """Draw how far a band lies from g, stops over the pixel level: upon a curve of ten stops none shows."""
-    ax = ax or plots.axes()
-    channels = plots.CHANNELS if band.low.ndim == 2 else plots.GRAY
-    columns = [np.reshape(one - g, (len(g), -1)).T / np.log(2) for one in (band.low, band.high)]
-    for (name, colour, style), low, high in zip(channels, *columns, strict=True):
-        level = np.arange(len(low))
-        ax.fill_between(level, low, high, color=colour, alpha=0.2, linewidth=0)
-        for edge, label in ((low, name), (high, None)):
-            ax.plot(level, edge, color=colour, linestyle=style, linewidth=1, label=label)
-    most = max(0.02, 1.3 * max(float(np.quantile(np.abs(one[:, RELIABLE_LEVELS]), 0.98)) for one in columns))
-    ax.axhline(0, color="#1A1A1A", linewidth=0.8)
-    ax.set(xlabel="pixel level Z", ylabel="stops from the curve", xlim=(0, len(g) - 1), ylim=(-most, most))
-    _shade(ax)
-    if len(channels) > 1:
-        ax.legend(fontsize=8, loc="upper center", ncols=3, framealpha=0.9)
-    return ax
 
 
 def _shade(ax: Axes) -> None:
@@ -174,7 +153,7 @@ def _shade(ax: Axes) -> None:
 def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     """Draw a line per frame, the channels' mean: pixel level across, stops up; dark lines are short times."""
     ax = ax or plots.axes()
-    lines = np.ma.masked_invalid(r.reshape(*r.shape[:2], -1)).mean(axis=-1)
+    lines = np.ma.masked_invalid(r).mean(axis=1)
     colours = matplotlib.colormaps["viridis"](np.linspace(0, 0.9, len(lines)))
     for line, time, colour in zip(lines, np.asarray(times).tolist(), colours, strict=True):
         ax.plot(np.arange(256), line, color=colour, linewidth=1.1, label=plots.seconds(time))
