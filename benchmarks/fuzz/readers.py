@@ -182,7 +182,6 @@ ALL: Sequence[Reader] = (
     Reader("exif", ".exif", seeds.settings, read_exif, named=False),
     Reader("times", ".txt", seeds.times, times.read_times),
     Reader("curve-csv", ".csv", seeds.curves, response_files.read_curve),
-    Reader("curve-npz", ".npz", seeds.curves, response_files.read_curve, printed=OLD),
     Reader("curve-pfs", ".m", seeds.curves, response_files.read_curve),
     Reader("emor", ".npz", seeds.emor, emor.read_curves, printed=OLD),
     Reader("plan", ".toml", course_seeds.plan, plan.read, damaged="plan"),

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
 TIMES = "exif|estimate|FILE"
-SUFFIXES = ".csv, .npz or .m (pfstools)"
+SUFFIXES = ".csv or .m (pfstools)"
 
 
 class Response(click.ParamType):  # type: ignore[type-arg]  # it takes arguments since click 8.4

@@ -4,10 +4,9 @@ g  response  (n,) or (n, 3), ln exposure of each pixel level, g[n // 2] = 0
 f  f^-1      exp g, the exposure of each level, in any unit
 
 .csv  a line per level: the level, then g of red, green and blue, or of gray; the header says so
-.npz  NumPy's archive, with g in it
 .m    pfstools, see `pfscurves`
 
-The first two keep every bit, the third 10 digits.
+The first keeps every bit, the second 10 digits.
 """
 
 from collections.abc import Callable
@@ -20,7 +19,7 @@ from numpy.typing import ArrayLike
 from hdrlab.core.arrays import LARGEST_LN_EXPOSURE, describe
 from hdrlab.core.types import F64
 from hdrlab.io import pfscurves
-from hdrlab.io.emor import MAX_FILE_BYTES, read_npz
+from hdrlab.io.emor import MAX_FILE_BYTES
 from hdrlab.io.files import replacing, require_suffix
 
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
@@ -39,7 +38,7 @@ def write_curve(path: str | Path, g: ArrayLike) -> None:
 
     Parameters
     ----------
-    path : a .csv, .npz or .m file; what it held is replaced
+    path : a .csv or .m file; what it held is replaced
     g : (n,) or (n, 3) float, n = 256 or 65536, ln exposure of each level
 
     Raises
@@ -66,7 +65,7 @@ def read_curve(path: str | Path) -> F64:
 
     Parameters
     ----------
-    path : a .csv, .npz or .m file
+    path : a .csv or .m file
 
     Returns
     -------
@@ -145,17 +144,7 @@ def _read_csv(path: Path) -> F64:
     return pfscurves.squeeze_gray(table[:, 1:])
 
 
-def _write_npz(path: Path, g: F64) -> None:
-    with open(path, "wb") as file:
-        np.savez(file, g=g)
-
-
-def _read_npz(path: Path) -> F64:
-    return read_npz(path, "g")[0]
-
-
 FORMS = {
     ".csv": Form(_write_csv, _read_csv),
-    ".npz": Form(_write_npz, _read_npz),
     ".m": Form(pfscurves.write_pfstools, pfscurves.read_pfstools),
 }

@@ -18,7 +18,7 @@ from hdrlab.io.response_files import FORMS, insert_name, read_curve, suffix_of, 
 Z = np.arange(256)
 GRAY = np.log(np.maximum(Z, 0.25) / 128)
 RGB = GRAY[:, None] * [1.8, 2.0, 2.2]
-EXACT = {".csv": 0, ".npz": 0, ".m": 1e-8}
+EXACT = {".csv": 0, ".m": 1e-8}
 
 
 @pytest.fixture(scope="module")
@@ -43,15 +43,14 @@ def test_a_curve_reads_back_as_it_was_written(suffix, tmp_path):
     assert f.shape == g.shape and np.allclose(f, g, rtol=EXACT[suffix], atol=1e-9)
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".npz"])
-def test_our_own_files_keep_every_bit(suffix, tmp_path):
+def test_our_own_files_keep_every_bit(tmp_path):
     g = RGB + np.random.default_rng(1).normal(0, 1e-3, RGB.shape)
     g -= g[128]
-    write_curve(tmp_path / f"g{suffix}", g)
-    assert np.array_equal(read_curve(tmp_path / f"g{suffix}"), g)
+    write_curve(tmp_path / "g.csv", g)
+    assert np.array_equal(read_curve(tmp_path / "g.csv"), g)
 
 
-@pytest.mark.parametrize("suffix", [".csv", ".npz", ".m"])
+@pytest.mark.parametrize("suffix", [".csv", ".m"])
 @pytest.mark.parametrize("n", [256, 65536])
 def test_gray_curves_and_16_bits_keep_their_shape(suffix, n, tmp_path):
     g = np.log(np.maximum(np.arange(n), 0.25) / (n // 2))
@@ -106,7 +105,7 @@ def test_a_name_says_which_format():
     assert suffix_of("a/room.old.CSV") == ".csv" and suffix_of("room.m") == ".m"
     assert insert_name("a/room.m", "mann").as_posix() == "a/room-mann.m"
     for wrong in ("room.txt", "room", "folder.csv/room"):
-        with pytest.raises(ValueError, match=".csv, .npz, .m"):
+        with pytest.raises(ValueError, match=".csv, .m"):
             suffix_of(wrong)
 
 
@@ -157,9 +156,6 @@ def test_a_damaged_file_reads_as_a_response_or_is_refused(whole, suffix, changes
 
 
 def test_a_file_that_claims_more_than_any_response_is_refused(tmp_path):
-    np.savez_compressed(tmp_path / "g.npz", g=np.zeros(5_000_000))
-    with pytest.raises(ValueError, match="claims"):
-        read_curve(tmp_path / "g.npz")
     with open(tmp_path / "g.csv", "wb") as file:
         file.truncate(1 << 30)
     with pytest.raises(ValueError, match="bytes"):
