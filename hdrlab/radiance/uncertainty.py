@@ -4,6 +4,7 @@ Z      pixel levels       (P, H, W, C)
 X      exposure           exp(g(Z)): 1 is that of level n / 2
 D      step               dX / dZ, the exposures that are rounded to one level
 N, R   electrons at X = 1, and read noise in electrons: `capture.photon_transfer` finds both
+rho    what varies with the light itself, as a share of it: pixels that are unlike, a lamp that flickers
 t      exposure times     (P,) seconds
 E, s   radiance, and its standard deviation, (H, W[, C]) float32
 
@@ -20,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.types import F32, F64
-from hdrlab.radiance.merge import TOP, as_tables, merge_with_quality, weigh
+from hdrlab.radiance.merge import TOP, as_tables, merge_with_quality
 
 ROUNDS = 2
 
@@ -32,15 +33,16 @@ class Sure(NamedTuple):
     s: F32
 
 
-def variance(X: F64, D: F64, N: float, R: float) -> F64:
-    """Return V = X / N + (R / N)^2 + D^2 / 12: of photons, of the amplifier, of rounding.
+def variance(X: F64, D: F64, N: ArrayLike, R: ArrayLike, rho: ArrayLike = 0.0) -> F64:
+    """Return V = X / N + (R / N)^2 + (rho X)^2 + D^2 / 12: photons, amplifier, unlike pixels, rounding.
 
     Examples
     --------
     >>> float(variance(np.array(1.0), np.array(0.0), 100, 0)) ** 0.5  # of 100 electrons, 10 by chance
     0.1
     """
-    return X / N + (R / N) ** 2 + D**2 / 12
+    N, R, rho = (np.asarray(one, np.float64) for one in (N, R, rho))
+    return X / N + (R / N) ** 2 + (rho * X) ** 2 + D**2 / 12
 
 
 def weighted_mean(x: F64, V: F64) -> tuple[F64, F64]:
@@ -49,21 +51,25 @@ def weighted_mean(x: F64, V: F64) -> tuple[F64, F64]:
     return least * np.sum(x / V, axis=0), least
 
 
-def merge_with_deviation(images: ArrayLike, times: ArrayLike, g: ArrayLike, N: float, R: float = 0.0) -> Sure:
+def merge_with_deviation(
+    images: ArrayLike, times: ArrayLike, g: ArrayLike, N: ArrayLike, R: ArrayLike = 0.0, rho: ArrayLike = 0.0
+) -> Sure:
     """Return the radiance map by inverse variance, and its standard deviation.
 
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Aligned photographs, in any order.
+        Aligned photographs, in any order; level 0 and levels that clip measure nothing, each channel alone.
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
         Response, ln exposure of each level.
-    N : float
+    N : float or (3,)
         Electrons of a pixel at the exposure X = 1, that of level n / 2.
-    R : float
+    R : float or (3,)
         Read noise in electrons, standard deviation.
+    rho : float or (3,)
+        Of what varies with the light, the standard deviation as a share of it.
 
     Returns
     -------
@@ -74,7 +80,7 @@ def merge_with_deviation(images: ArrayLike, times: ArrayLike, g: ArrayLike, N: f
     Raises
     ------
     ValueError
-        For arrays that do not fit together, and for electrons that are not positive.
+        For arrays that do not fit together, and for noise that cannot be.
 
     References
     ----------
@@ -88,16 +94,21 @@ def merge_with_deviation(images: ArrayLike, times: ArrayLike, g: ArrayLike, N: f
     >>> found.E[0].round(2), found.s[0].round(4)
     (array([0.31, 1.95], dtype=float32), array([0.0034,    inf], dtype=float32))
     """
-    if not 0 < N < np.inf or not 0 <= R < np.inf:
-        raise ValueError(f"expected electrons N above 0 and read noise R of at least 0, got {N} and {R}")
-    stack, t, w, curves, top = as_tables(images, times, g, None, "mean", TOP)
+    stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
     Z, t = stack.reshape(*stack.shape[:3], -1), t[:, None, None, None]
-    E = merge_with_quality(images, times, g).E.reshape(Z.shape[1:]).astype(np.float64)
-    c, table, measured = np.arange(Z.shape[-1]), np.exp(curves), weigh(Z, w, top) > 0
+    c = np.arange(Z.shape[-1])
+    for name, value, least in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
+        one = np.asarray(value, np.float64)
+        if one.shape not in ((), c.shape) or not np.all((one >= least) & (one < np.inf)):
+            raise ValueError(
+                f"expected {name} as a number of at least {least:g}, or one a channel, got {value}"
+            )
+    E = merge_with_quality(images, times, g, repair=False).E.reshape(Z.shape[1:]).astype(np.float64)
+    table, measured = np.exp(curves), (Z > 0) & (Z < top)
     X, D, known = table[Z, c], np.gradient(table, axis=0)[Z, c], measured.any(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         for _ in range(ROUNDS):
-            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
-            mean, least = weighted_mean(X / t, V)
+            V = np.where(measured, variance(E * t, D, N, R, rho) / t**2, np.inf)
+            mean, least_variance = weighted_mean(X / t, V)
             E = np.where(known, mean, E)
-    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, np.sqrt(least))))
+    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, np.sqrt(least_variance))))

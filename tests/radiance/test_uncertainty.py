@@ -94,9 +94,38 @@ def test_nothing_is_known_where_no_frame_measures_but_the_bound(channels):
     assert np.array_equal(found.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
 
 
-@pytest.mark.parametrize("bad", [{"N": 0}, {"N": -1}, {"N": np.nan}, {"N": np.inf}, {"R": -1}, {"R": np.nan}])
-def test_electrons_that_cannot_be_are_refused(bad):
-    with pytest.raises(ValueError, match="expected electrons N above 0 and read noise R of at least 0"):
+def test_what_varies_with_the_light_leaves_a_share_of_it_in_every_frame():
+    g = responses.true_g("linear", 65536)
+    images = np.full((4, 1, 1), 30_000, np.uint16)
+    found = merge_with_deviation(images, np.ones(4), g, N=1e9, rho=0.02)
+    assert found.s / found.E == pytest.approx(0.02 / 2, rel=1e-3)
+
+
+def test_each_channel_may_have_its_own_noise_and_counts_by_itself():
+    images = np.array([[[[40, 40, 255]]], [[[80, 80, 255]]], [[[160, 160, 200]]]], np.uint8)
+    g = responses.true_g("linear")
+    each = merge_with_deviation(images, [1, 2, 4], g, [100, 1000, 1000], [5, 0, 0])
+    assert np.isfinite(each.s).all() and each.s[0, 0, 0] > 3 * each.s[0, 0, 1]
+    for c, knobs in enumerate([(100, 5), (1000, 0), (1000, 0)]):
+        alone = merge_with_deviation(images[..., c], [1, 2, 4], g, *knobs)
+        assert each.E[0, 0, c] == alone.E[0, 0] and each.s[0, 0, c] == alone.s[0, 0]
+
+
+@pytest.mark.parametrize(
+    "bad",
+    [
+        {"N": 0},
+        {"N": -1},
+        {"N": np.nan},
+        {"N": np.inf},
+        {"N": [1, 2, 3]},
+        {"R": -1},
+        {"R": np.nan},
+        {"rho": -1},
+    ],
+)
+def test_noise_that_cannot_be_is_refused(bad):
+    with pytest.raises(ValueError, match=f"expected {next(iter(bad))} as a number of at least .* or one a"):
         merge_with_deviation(
             np.ones((2, 2, 2), np.uint8), [1, 2], responses.true_g("linear"), **{"N": 100, **bad}
         )

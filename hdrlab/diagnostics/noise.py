@@ -1,0 +1,160 @@
+"""A camera's noise, from the bracket itself: two photographs of one light differ by chance.
+
+x_j   answer of frame j   X_j / t_j, the exposure of its level over its time: a radiance
+E     radiance            (H, W, C), the map of these frames
+y     of two frames       (x_j - x_k) / E, what they contradict each other by
+S     of a group          the mean square of y about its mean, over pixels that are flat and of like light
+
+Photon transfer wants an evenly lit wall (`capture.photon_transfer`); a bracket has flat parts of many lights
+instead, and each of them in several frames. The variances of two frames add:
+
+    S = a_1 / N + a_2 (R / N)^2 + a_3 rho^2 + a_0
+
+where each a is what `radiance.uncertainty.variance` multiplies there, summed over the two. What is fitted is
+log S, for the error of a variance grows with it, and groups far off count little: there something moved. The
+mean of a group tells how response and times err, which is no noise: it is taken off.
+"""
+
+from itertools import combinations
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+from scipy.optimize import least_squares
+
+from hdrlab.core.arrays import as_radiance
+from hdrlab.core.types import F64, Array
+from hdrlab.radiance.merge import TOP, as_tables
+
+# of a channel, on an even grid, that stand for all
+PIXELS = 400_000
+# groups of like light, and pixels of one that make a mean square
+GROUPS, FEWEST = 80, 60
+# of a group, those whose surroundings change least
+FLAT = 0.4
+# ln S by which a group may err for other reasons than that it is small
+MODEL = 0.1
+# from where the fit may begin, and how far it may go: ln of 1 / N, (R / N)^2 and rho^2
+STARTS = np.log([[1e-4, 1e-7, 1e-6], [1e-3, 1e-8, 1e-8], [1e-2, 1e-4, 1e-6]])
+LIMITS = np.log([1e-9, 1e-16, 1e-12]), np.log([10.0, 10.0, 1.0])
+
+
+class Noise(NamedTuple):
+    """Of each channel (C,): electrons at X = 1, read noise in electrons, and rho, the share of the light."""
+
+    N: F64
+    R: F64
+    rho: F64
+
+
+def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLike) -> Noise:
+    """Return the noise of a camera, from its bracket.
+
+    Parameters
+    ----------
+    images : (P, H, W) or (P, H, W, 3) uint8 or uint16
+        Aligned photographs, in any order; level 0 measures nothing.
+    times : (P,) float
+        Exposure times in seconds.
+    g : (n,) or (n, 3) float
+        Response, ln exposure of each level.
+    E : (H, W) or (H, W, 3) float
+        The radiance map of these photographs.
+
+    Returns
+    -------
+    Noise
+        What `radiance.uncertainty.merge_with_deviation` takes. Where rounding hides the noise, N is hardly
+        known, and hardly matters.
+
+    Raises
+    ------
+    ValueError
+        For arrays that do not fit together, and where too little is flat and measured by two photographs.
+
+    References
+    ----------
+    Granados and others, Optimal HDR reconstruction with linear digital cameras, CVPR 2010, for the model.
+
+    Examples
+    --------
+    >>> from hdrlab.capture import camera, responses
+    >>> wall = np.geomspace(0.02, 1, 256 * 256).reshape(256, 256).astype(np.float32)
+    >>> maker = camera.Camera(response="linear", bits=16, full_well=5000, read_noise=4)
+    >>> taken = camera.shoot(wall, [0.25, 0.5, 1], maker, rng=1)
+    >>> found = estimate_noise(*taken[:2], responses.true_g("linear", 65536), 2 * wall)
+    >>> bool(abs(found.N[0] / 2500 - 1) < 0.1), bool(abs(found.R[0] / 4 - 1) < 0.2)  # half a well is X = 1
+    (True, True)
+    """
+    stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
+    light = as_radiance(E).astype(np.float64)
+    if light.shape != stack.shape[1:]:
+        raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {light.shape}")
+    every = max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    Z, light = stack.reshape(*stack.shape[:3], -1), light.reshape(*light.shape[:2], -1)
+    found = []
+    for c, curve in enumerate(curves.T):
+        chosen = np.s_[2:-2:every, 2:-2:every]
+        level, lit, rough = Z[(slice(None), *chosen, c)], light[(*chosen, c)], slope(light[..., c])
+        seen = lit > 0
+        found.append(_fit(level[:, seen], t, curve, lit[seen], rough[::every, ::every][seen], top))
+    return Noise(*np.array(found).T)
+
+
+def slope(E: F64) -> F64:
+    """Return how steeply E (H, W) changes around each pixel, as a share of it, (H - 4, W - 4).
+
+    The pixel itself has no say, so that those with little noise are not preferred.
+    """
+    across, down = E[2:-2, 4:] - E[2:-2, :-4], E[4:, 2:-2] - E[:-4, 2:-2]
+    return (np.abs(across) + np.abs(down)) / np.maximum(E[2:-2, 2:-2], 1e-12)
+
+
+def group_flat(E: F64, rough: F64) -> list[Array]:
+    """Return the indices of the flattest pixels of each of GROUPS groups of like light."""
+    rising = [one for one in np.array_split(np.argsort(E, kind="stable"), GROUPS) if len(one)]
+    return [one[rough[one] <= np.quantile(rough[one], FLAT)] for one in rising]
+
+
+def mean_square(y: F64) -> float:
+    """Return the mean square of y about its mean, without what lies 4 deviations of the middle half away."""
+    far = np.abs(y - np.median(y))
+    kept = y[far <= 4 * max(1.4826 * np.median(far), 0.5 * y.std())]
+    return float(kept.var())
+
+
+def _fit(Z: Array, t: F64, g: F64, E: F64, rough: F64, top: int) -> tuple[float, float, float]:
+    """Return N, R and rho of one channel, from levels Z (P, M) of the light E (M,)."""
+    X, measured = np.exp(g), (Z > 0) & (Z < top)
+    D = np.gradient(X)
+    rows = []
+    for flat in group_flat(E, rough):
+        for j, k in combinations(range(len(t)), 2):
+            both = measured[j, flat] & measured[k, flat]
+            if both.sum() < FEWEST or both.mean() < 0.99:  # where some clip, the rest scatter less
+                continue
+            pixels = flat[both]
+            lit, answers = E[pixels], [X[Z[i, pixels]] / t[i] for i in (j, k)]
+            y = (answers[0] - answers[1]) / lit
+            rounding = sum(np.mean((D[Z[i, pixels]] / t[i] / lit) ** 2) for i in (j, k)) / 12
+            shares = [sum(np.mean((lit * t[i]) ** -power) for i in (j, k)) for power in (1.0, 2.0)]
+            rows.append([mean_square(y), rounding, *shares, 2.0, len(pixels)])
+    S, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 6).T
+    if len(S) < 6:
+        raise ValueError(
+            "expected flat parts of many lights, each measured by two photographs, to learn the noise from; "
+            f"got {len(S)} groups of pixels, of at least 6"
+        )
+    return _solve(S, a0, np.array(a), count)
+
+
+def _solve(S: F64, a0: F64, a: F64, count: F64) -> tuple[float, float, float]:
+    """Return N, R and rho of S = a_0 + a_1 / N + a_2 (R / N)^2 + a_3 rho^2, by least squares of log S."""
+    sd = np.sqrt(2 / count + MODEL**2)
+
+    def residual(p: F64) -> F64:
+        return np.asarray(np.log((a0 + np.exp(p) @ a) / S) / sd, np.float64)
+
+    fits = [least_squares(residual, start, bounds=LIMITS, loss="soft_l1") for start in STARTS]
+    one, two, three = np.exp(min(fits, key=lambda fit: float(fit.cost)).x)
+    return 1 / one, np.sqrt(two) / one, np.sqrt(three)
