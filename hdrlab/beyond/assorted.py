@@ -39,8 +39,7 @@ def colours_and_exposures(exposures: ArrayLike = FOUR_EXPOSURES[0]) -> tuple[Arr
 
 def added_decades(e: ArrayLike) -> float:
     """Return log10(max e / min e), the decades that the mosaic adds to those of one pixel."""
-    e = np.asarray(e, np.float64)
-    return float(np.log10(e.max() / e.min()))
+    return float(np.log10(np.max(e) / np.min(e)))
 
 
 def shoot(

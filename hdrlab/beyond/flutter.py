@@ -72,14 +72,14 @@ def matrix(h: ArrayLike, n: int) -> F64:
     return smear(np.eye(n), h)
 
 
-def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> F64:
-    """Return the thing at rest, by least squares: A' A x = A' (y - background).
+def sharpen(y: ArrayLike, h: ArrayLike) -> F64:
+    """Return the thing at rest, by least squares: A' A x = A' y.
 
     Parameters
     ----------
-    y : (n + m - 1[, ...]), a photograph in linear light; the thing moved down the first axis, m pixels
+    y : (n + m - 1[, ...]), a photograph in linear light, less what stands beside and behind the thing, which
+        moved down the first axis, m pixels, and hid none of it
     h : (m,) the shutter's chops, 0 and 1
-    background : what stands beside and behind the thing, as the sensor saw it; the thing hides none of it
 
     Returns
     -------
@@ -105,9 +105,8 @@ def sharpen(y: ArrayLike, h: ArrayLike, *, background: ArrayLike = 0.0) -> F64:
     n = len(y) - len(code) + 1
     if y.ndim < 1 or n < 1 or not np.all(np.isfinite(y)):
         raise ValueError(f"expected a finite photograph of at least {len(code)} rows, got {describe(y)}")
-    moving = y - background
     A = matrix(code, n)
-    x: F64 = solve(A.T @ A, A.T @ moving.reshape(len(moving), -1), assume_a="pos")
+    x: F64 = solve(A.T @ A, A.T @ y.reshape(len(y), -1), assume_a="pos")
     return x.reshape(n, *y.shape[1:])
 
 

@@ -10,7 +10,6 @@ A meter does not know what it looks at. It takes the world for gray, so snow com
 locomotive too; the modes differ in which pixels they ask.
 """
 
-from collections.abc import Sequence
 from functools import lru_cache
 
 import numpy as np
@@ -152,15 +151,6 @@ def reading(B: ArrayLike, w: ArrayLike) -> float:
     if w.shape != B.shape or not np.all(w >= 0) or not w.sum() > 0:
         raise ValueError(f"expected weights of shape {B.shape}, positive somewhere, got {describe(w)}")
     return float((w * B).sum() / w.sum())
-
-
-def multi_spot(B: ArrayLike, places: Sequence[At], *, share: float = 0.03) -> float:
-    """Return exp mean ln B_pre of several spots: a photographer averages stops."""
-    if not len(places):
-        raise ValueError("expected at least one place to read, got none")
-    B = as_luminance(B)
-    read = [reading(B, spot(B.shape, at=at, share=share)) for at in places]
-    return float(np.exp(np.mean(np.log(np.maximum(read, 2.0**-14)))))
 
 
 def optimum(EV_pre: float, B_pre: float, B_opt: float = MIDDLE_GRAY) -> float:

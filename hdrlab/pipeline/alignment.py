@@ -6,7 +6,7 @@ where the light of the two photographs then agrees clearly better than after the
 """
 
 from collections.abc import Callable, Iterator
-from itertools import pairwise
+from itertools import pairwise, starmap
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -95,10 +95,9 @@ def register(
         if callable(g)
         else light_scale(images, times, g)
     )
-    if method in SEARCHES:
-        pairs = tuple(register_by_light(images, as_light, method))
-    else:
-        pairs = tuple(register_by_bits(images))
+    by_light = method in SEARCHES
+    by_bits = starmap(best_percentile, photograph_pairs(images))
+    pairs = tuple(register_by_light(images, as_light, method) if by_light else by_bits)
     if method == "auto":
         names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]
         if any(one.apart for one in pairs):  # a hand that rotates once does so in every pair
@@ -118,11 +117,6 @@ def photograph_pairs(images: Array, bits: int = BITS) -> Iterator[tuple[int, Pho
     """Yield the numbers and Photographs of neighbours from dark to bright, two at a time in memory."""
     taken = ((image, Photograph(images[image], bits=bits)) for image in mtb.by_brightness(images))
     yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
-
-
-def register_by_bits(images: Array, *, bits: int = BITS) -> Iterator[Validation]:
-    """Yield the Validation of pair after pair from dark to bright, by median threshold bitmaps."""
-    yield from (best_percentile(*both) for both in photograph_pairs(images, bits))
 
 
 def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator[Validation]:

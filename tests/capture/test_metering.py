@@ -54,12 +54,6 @@ def test_the_spot_goes_where_it_is_put():
     assert metering.reading(B, metering.spot(SHAPE)) == 0
 
 
-def test_several_spots_are_averaged_in_stops():
-    B = np.full(SHAPE, 0.1)
-    B[:, 60:] = 0.4
-    assert metering.multi_spot(B, [(0.5, 0.2), (0.5, 0.8)]) == pytest.approx(0.2)
-
-
 def test_a_matrix_meter_divides_the_picture_into_28_zones():
     labels = metering.zones((200, 300))
     assert np.array_equal(np.unique(labels), np.arange(28))
@@ -141,7 +135,6 @@ def test_what_means_nothing_is_refused():
         lambda: metering.centre(SHAPE, inside=0.1),
         lambda: metering.reading(B, np.zeros(SHAPE)),
         lambda: metering.reading(B, np.ones((3, 3))),
-        lambda: metering.multi_spot(B, []),
         lambda: subjects.snow((0, 3)),
     ):
         with pytest.raises(ValueError, match="expected"):
