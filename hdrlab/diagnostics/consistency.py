@@ -14,7 +14,7 @@ import warnings
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, describe, to_256
+from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, to_256
 from hdrlab.core.types import F32, F64, Flags
 
 # away from the noise below and the shoulder above
@@ -94,7 +94,7 @@ def measure_deviations(medians: F64) -> F64:
         return np.nanmedian(apart[..., LEVELS].reshape(len(medians), -1), axis=1)
 
 
-def measure_residuals(medians: ArrayLike, g: ArrayLike) -> F64:
+def measure_residuals(medians: F64, g: ArrayLike) -> F64:
     """Return what g and the times leave unexplained of each frame, channel and level, (P, C, 256) stops.
 
     All are 0 where the camera is the one that g and the times describe. A frame that lies off as a whole has
@@ -109,9 +109,6 @@ def measure_residuals(medians: ArrayLike, g: ArrayLike) -> F64:
     >>> measure_residuals(medians, g)[:, 0, 64].tolist()
     [0.0, 1.0]
     """
-    medians = np.asarray(medians, np.float64)
-    if medians.ndim != 3 or medians.shape[-1] != 256:
-        raise ValueError(f"expected medians (P, C, 256), got {describe(medians)}")
     return as_response(g, 256, medians.shape[1]).T / np.log(2) - medians
 
 

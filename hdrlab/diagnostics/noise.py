@@ -15,7 +15,7 @@ log S, for the error of a variance grows with it, and groups far off count littl
 mean of a group tells how response and times err, which is no noise: it is taken off.
 """
 
-from itertools import combinations
+from itertools import combinations, product
 from typing import NamedTuple
 
 import numpy as np
@@ -36,7 +36,7 @@ FLAT = 0.4
 MODEL = 0.1
 # from where the fit may begin, and how far it may go: ln of 1 / N, (R / N)^2 and rho^2
 STARTS = np.log([[1e-4, 1e-7, 1e-6], [1e-3, 1e-8, 1e-8], [1e-2, 1e-4, 1e-6]])
-LIMITS = np.log([1e-9, 1e-16, 1e-12]), np.log([10.0, 10.0, 1.0])
+LIMITS = np.log([[1e-9, 1e-16, 1e-12], [10.0, 10.0, 1.0]])
 
 
 class Noise(NamedTuple):
@@ -87,17 +87,16 @@ def estimate_noise(images: ArrayLike, times: ArrayLike, g: ArrayLike, E: ArrayLi
     (True, True)
     """
     stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
-    light = as_radiance(E).astype(np.float64)
+    light, Z = as_radiance(E).astype(np.float64), stack.reshape(*stack.shape[:3], -1)
     if light.shape != stack.shape[1:]:
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {light.shape}")
-    every = max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
-    Z, light = stack.reshape(*stack.shape[:3], -1), light.reshape(*light.shape[:2], -1)
-    found = []
+    every, found = max(1, int(np.sqrt(Z[0, ..., 0].size / PIXELS))), []
+    few = np.s_[2:-2:every, 2:-2:every]
     for c, curve in enumerate(curves.T):
-        chosen = np.s_[2:-2:every, 2:-2:every]
-        level, lit, rough = Z[(slice(None), *chosen, c)], light[(*chosen, c)], slope(light[..., c])
-        seen = lit > 0
-        found.append(_fit(level[:, seen], t, curve, lit[seen], rough[::every, ::every][seen], top))
+        plane = light.reshape(Z.shape[1:])[..., c]
+        groups = group_flat(plane[few].ravel(), slope(plane)[::every, ::every].ravel())
+        levels = Z[(slice(None), *few, c)].reshape(len(t), -1)
+        found.append(_fit(levels, t, curve, plane[few].ravel(), groups, top))
     return Noise(*np.array(found).T)
 
 
@@ -119,26 +118,22 @@ def group_flat(E: F64, rough: F64) -> list[Array]:
 def mean_square(y: F64) -> float:
     """Return the mean square of y about its mean, without what lies 4 deviations of the middle half away."""
     far = np.abs(y - np.median(y))
-    kept = y[far <= 4 * max(1.4826 * np.median(far), 0.5 * y.std())]
-    return float(kept.var())
+    return float(y[far <= 4 * max(1.4826 * np.median(far), 0.5 * y.std())].var())
 
 
-def _fit(Z: Array, t: F64, g: F64, E: F64, rough: F64, top: int) -> tuple[float, float, float]:
+def _fit(Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int) -> tuple[float, float, float]:
     """Return N, R and rho of one channel, from levels Z (P, M) of the light E (M,)."""
-    X, measured = np.exp(g), (Z > 0) & (Z < top)
+    X, measured, rows = np.exp(g), (Z > 0) & (Z < top), []
     D = np.gradient(X)
-    rows = []
-    for flat in group_flat(E, rough):
-        for j, k in combinations(range(len(t)), 2):
-            both = measured[j, flat] & measured[k, flat]
-            if both.sum() < FEWEST or both.mean() < 0.99:  # where some clip, the rest scatter less
-                continue
-            pixels = flat[both]
-            lit, answers = E[pixels], [X[Z[i, pixels]] / t[i] for i in (j, k)]
-            y = (answers[0] - answers[1]) / lit
-            rounding = sum(np.mean((D[Z[i, pixels]] / t[i] / lit) ** 2) for i in (j, k)) / 12
-            shares = [sum(np.mean((lit * t[i]) ** -power) for i in (j, k)) for power in (1.0, 2.0)]
-            rows.append([mean_square(y), rounding, *shares, 2.0, len(pixels)])
+    for flat, two in product(groups, map(list, combinations(range(len(t)), 2))):
+        both = measured[two][:, flat].all(axis=0)
+        if both.sum() < FEWEST or both.mean() < 0.99:  # where some clip, the rest scatter less
+            continue
+        pixels = flat[both]
+        Et, level = E[pixels] * t[two, None], Z[two][:, pixels]
+        x, rounding = X[level] / Et, (D[level] / Et) ** 2 / 12
+        a = [(Et**-power).mean(axis=1).sum() for power in (1, 2)]
+        rows.append([mean_square(x[0] - x[1]), rounding.mean(axis=1).sum(), *a, 2.0, len(pixels)])
     S, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 6).T
     if len(S) < 6:
         raise ValueError(

@@ -12,7 +12,7 @@ Photons come by chance: of X N electrons the variance is X N. The amplifier adds
 evenly over a step. So a frame's answer X / t is as sure as its light allows, and the mean in which each
 counts by the inverse of its variance has the least variance of all (Granados et al., CVPR 2010). The variance
 is that of the light which is there and not of the light which was counted: a frame with too few photons, by
-chance, would count too much. So it is taken from E itself, and that in two rounds.
+chance, would count too much. So it begins with X, and then is taken from E itself, in two rounds.
 """
 
 from typing import NamedTuple
@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from hdrlab.core.types import F32, F64
-from hdrlab.radiance.merge import TOP, as_tables, merge_with_quality
+from hdrlab.radiance.merge import TOP, as_tables, bound
 
 ROUNDS = 2
 
@@ -97,18 +97,18 @@ def merge_with_deviation(
     stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
     Z, t = stack.reshape(*stack.shape[:3], -1), t[:, None, None, None]
     c = np.arange(Z.shape[-1])
-    for name, value, least in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
+    for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
         one = np.asarray(value, np.float64)
-        if one.shape not in ((), c.shape) or not np.all((one >= least) & (one < np.inf)):
-            raise ValueError(
-                f"expected {name} as a number of at least {least:g}, or one a channel, got {value}"
-            )
-    E = merge_with_quality(images, times, g, repair=False).E.reshape(Z.shape[1:]).astype(np.float64)
+        if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
+            raise ValueError(f"expected {name} of at least {floor:g}, one or one a channel, got {value}")
     table, measured = np.exp(curves), (Z > 0) & (Z < top)
-    X, D, known = table[Z, c], np.gradient(table, axis=0)[Z, c], measured.any(axis=0)
+    X, D = table[Z, c], np.gradient(table, axis=0)[Z, c]
+    light = X
     with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(ROUNDS):
-            V = np.where(measured, variance(E * t, D, N, R, rho) / t**2, np.inf)
-            mean, least_variance = weighted_mean(X / t, V)
-            E = np.where(known, mean, E)
-    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, np.sqrt(least_variance))))
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(light, D, N, R, rho) / t**2, np.inf)
+            E, least = weighted_mean(X / t, V)
+            light = E * t
+    bounds, _ = bound(Z, np.log(t.ravel()), curves, top, np.ones(Z.shape, bool))
+    E = np.where(measured.any(axis=0), E, bounds)
+    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, np.sqrt(least))))

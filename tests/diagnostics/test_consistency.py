@@ -153,7 +153,6 @@ def test_a_frame_with_a_wrong_time_leaves_a_residual_at_all_its_levels(bracket):
     assert np.argmax(off) == 2 and off[2] - np.delete(off, 2).mean() > 0.2
 
 
-@pytest.mark.parametrize("bad", [np.zeros((3, 256)), np.zeros((3, 1, 255)), np.zeros((3, 2, 256))])
-def test_residuals_want_medians_that_go_with_the_response(bad):
-    with pytest.raises(ValueError, match="expected"):
-        consistency.measure_residuals(bad, np.stack([G] * 3, axis=1))
+def test_residuals_want_a_response_of_as_many_channels():
+    with pytest.raises(ValueError, match="expected a response"):
+        consistency.measure_residuals(np.zeros((3, 1, 256)), np.stack([G] * 3, axis=1))
