@@ -147,7 +147,12 @@ def write(path: str | Path, E: ArrayLike, *, half: bool = False, comments: Seque
     header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
     if comments:
         header["comments"] = "\n".join(comments)
-    with replacing(path) as name, OpenEXR.File(header, {"RGB" if E.ndim == 3 else "Y": pixels}) as file:
+    save(path, header, {"RGB" if E.ndim == 3 else "Y": pixels})
+
+
+def save(path: str | Path, *content: Any) -> None:
+    """Write a header and its channels, or a list of OpenEXR's parts, whole or not at all."""
+    with replacing(path) as name, OpenEXR.File(*content) as file:
         try:
             file.write(str(name))
         except RuntimeError as error:

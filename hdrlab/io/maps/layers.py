@@ -3,14 +3,20 @@
 A program that knows nothing of parts sees the first: `hdrlab.io.maps.exr` and most viewers do.
 """
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike
 
+from hdrlab.core.arrays import describe
+from hdrlab.core.optional import OpenEXR
 from hdrlab.core.types import F32
 from hdrlab.io.maps import exr
 
 CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth
+DEVIATION = "standard deviation"  # the layer of what `assemble --uncertainty` says beside radiance
 
 
 def read_layers(path: str | Path) -> dict[str, F32]:
@@ -46,3 +52,40 @@ def read_layers(path: str | Path) -> dict[str, F32]:
     if len(sizes) > 1:
         raise ValueError(f"{path}: expected parts of one size, got {sorted(sizes)}")
     return layers
+
+
+def write_layers(path: str | Path, layers: Mapping[str, ArrayLike], *, comments: Sequence[str] = ()) -> None:
+    """Write pictures of one size as the parts of an OpenEXR file of float32, whole or not at all.
+
+    Parameters
+    ----------
+    path : the file; what it held is replaced
+    layers : of each part, under its name, (H, W) as Z, (H, W, 3) or (H, W, 4); infinite values are kept
+    comments : sentences for the attribute `comments` of the first
+
+    Raises
+    ------
+    ValueError
+        For no layers, and for what is no picture or has another size than the first.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "known.exr"
+    >>> write_layers(file, {"radiance": np.ones((2, 3, 3)), "standard deviation": np.full((2, 3), np.inf)})
+    >>> read_layers(file)["standard deviation"].tolist()
+    [[inf, inf, inf], [inf, inf, inf]]
+    """
+    parts: list[Any] = []
+    said = {"comments": "\n".join(comments)} if comments else {}
+    for name, layer in layers.items():
+        pixels = np.ascontiguousarray(layer, np.float32)
+        channels = CHANNELS.get(1 if pixels.ndim == 2 else pixels.shape[-1])
+        if pixels.ndim not in (2, 3) or not pixels.size or channels is None:
+            raise ValueError(f"expected {name} as (H, W), (H, W, 3) or (H, W, 4), got {describe(pixels)}")
+        header = {"compression": OpenEXR.ZIP_COMPRESSION, "type": OpenEXR.scanlineimage}
+        parts.append(OpenEXR.Part({**header, **(said if not parts else {})}, {channels: pixels}, name))
+    sizes = {np.shape(layer)[:2] for layer in layers.values()}
+    if len(sizes) != 1:
+        raise ValueError(f"{path}: expected layers of one size, got {sorted(sizes)}")
+    exr.save(path, parts)
