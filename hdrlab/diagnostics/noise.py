@@ -2,20 +2,21 @@
 
 x_j   answer of frame j   X_j / t_j, the exposure of its level over its time: a radiance
 E     radiance            (H, W, C), the map of these frames
-y     of two frames       (x_j - x_k) / E, what they contradict each other by
-S     of a group          the mean square of y about its mean, over pixels that are flat and of like light
+y     of two frames       (x_j - x_k) / E, what neighbours in exposure contradict each other by
+S     of a group          the variance of y, over pixels that are flat and of like light
 
 Photon transfer wants an evenly lit wall (`capture.photon_transfer`); a bracket has flat parts of many lights
-instead, and each of them in several frames. The variances of two frames add:
+instead, and each of them in neighbouring frames. The variances of the two add:
 
     S = a_1 / N + a_2 (R / N)^2 + a_3 rho^2 + a_0
 
 where each a is what `radiance.uncertainty.variance` multiplies there, summed over the two. What is fitted is
 log S, for the error of a variance grows with it, and groups far off count little: there something moved. The
-mean of a group tells how response and times err, which is no noise: it is taken off.
+mean of y tells how response and times err, or how a camera treats each photograph in its own way: its square,
+in the median group, adds to rho^2.
 """
 
-from itertools import combinations, product
+from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
@@ -115,17 +116,21 @@ def group_flat(E: F64, rough: F64) -> list[Array]:
     return [one[rough[one] <= np.quantile(rough[one], FLAT)] for one in rising]
 
 
-def mean_square(y: F64) -> float:
-    """Return the mean square of y about its mean, without what lies 4 deviations of the middle half away."""
+def scatter(y: F64) -> tuple[float, float]:
+    """Return the variance of y and the square of its mean, without what lies far from the median.
+
+    Far are 4 deviations of the middle half: what moved, and edges.
+    """
     far = np.abs(y - np.median(y))
-    return float(y[far <= 4 * max(1.4826 * np.median(far), 0.5 * y.std())].var())
+    kept = y[far <= 4 * max(1.4826 * np.median(far), 0.5 * y.std())]
+    return float(kept.var()), float(kept.mean() ** 2)
 
 
 def _fit(Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int) -> tuple[float, float, float]:
     """Return N, R and rho of one channel, from levels Z (P, M) of the light E (M,)."""
     X, measured, rows = np.exp(g), (Z > 0) & (Z < top), []
     D = np.gradient(X)
-    for flat, two in product(groups, map(list, combinations(range(len(t)), 2))):
+    for flat, two in product(groups, map(list, pairwise(np.argsort(t)))):
         both = measured[two][:, flat].all(axis=0)
         if both.sum() < FEWEST or both.mean() < 0.99:  # where some clip, the rest scatter less
             continue
@@ -133,14 +138,15 @@ def _fit(Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int) -> tup
         Et, level = E[pixels] * t[two, None], Z[two][:, pixels]
         x, rounding = X[level] / Et, (D[level] / Et) ** 2 / 12
         a = [(Et**-power).mean(axis=1).sum() for power in (1, 2)]
-        rows.append([mean_square(x[0] - x[1]), rounding.mean(axis=1).sum(), *a, 2.0, len(pixels)])
-    S, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 6).T
+        rows.append([*scatter(x[0] - x[1]), rounding.mean(axis=1).sum(), *a, 2.0, len(pixels)])
+    S, bias, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 7).T
     if len(S) < 6:
         raise ValueError(
             "expected flat parts of many lights, each measured by two photographs, to learn the noise from; "
             f"got {len(S)} groups of pixels, of at least 6"
         )
-    return _solve(S, a0, np.array(a), count)
+    N, R, rho = _solve(S, a0, np.array(a), count)
+    return N, R, np.sqrt(rho**2 + max(float(np.median(bias - S / count)), 0.0))
 
 
 def _solve(S: F64, a0: F64, a: F64, count: F64) -> tuple[float, float, float]:

@@ -4,7 +4,7 @@ Z      pixel levels       (P, H, W, C)
 X      exposure           exp(g(Z)): 1 is that of level n / 2
 D      step               dX / dZ, the exposures that are rounded to one level
 N, R   electrons at X = 1, and read noise in electrons: `capture.photon_transfer` finds both
-rho    what varies with the light itself, as a share of it: pixels that are unlike, a lamp that flickers
+rho    what errs with the light itself, as a share of it: pixels that are unlike, a response that is not right
 t      exposure times     (P,) seconds
 E, s   radiance, and its standard deviation, (H, W[, C]) float32
 
@@ -12,7 +12,8 @@ Photons come by chance: of X N electrons the variance is X N. The amplifier adds
 evenly over a step. So a frame's answer X / t is as sure as its light allows, and the mean in which each
 counts by the inverse of its variance has the least variance of all (Granados et al., CVPR 2010). The variance
 is that of the light which is there and not of the light which was counted: a frame with too few photons, by
-chance, would count too much. So it begins with X, and then is taken from E itself, in two rounds.
+chance, would count too much. So it begins with X, and then is taken from E itself, in two rounds. What errs
+with the light does so in all frames alike, and no mean takes it away: it is added in the end.
 """
 
 from typing import NamedTuple
@@ -33,16 +34,16 @@ class Sure(NamedTuple):
     s: F32
 
 
-def variance(X: F64, D: F64, N: ArrayLike, R: ArrayLike, rho: ArrayLike = 0.0) -> F64:
-    """Return V = X / N + (R / N)^2 + (rho X)^2 + D^2 / 12: photons, amplifier, unlike pixels, rounding.
+def variance(X: F64, D: F64, N: ArrayLike, R: ArrayLike) -> F64:
+    """Return V = X / N + (R / N)^2 + D^2 / 12: of photons, of the amplifier, of rounding.
 
     Examples
     --------
     >>> float(variance(np.array(1.0), np.array(0.0), 100, 0)) ** 0.5  # of 100 electrons, 10 by chance
     0.1
     """
-    N, R, rho = (np.asarray(one, np.float64) for one in (N, R, rho))
-    return X / N + (R / N) ** 2 + (rho * X) ** 2 + D**2 / 12
+    N, R = np.asarray(N, np.float64), np.asarray(R, np.float64)
+    return X / N + (R / N) ** 2 + D**2 / 12
 
 
 def weighted_mean(x: F64, V: F64) -> tuple[F64, F64]:
@@ -59,7 +60,8 @@ def merge_with_deviation(
     Parameters
     ----------
     images : (P, H, W) or (P, H, W, 3) uint8 or uint16
-        Aligned photographs, in any order; level 0 and levels that clip measure nothing, each channel alone.
+        Aligned photographs, in any order. Levels that clip measure nothing, each channel by itself, nor does
+        level 0, where its step is wider than the noise.
     times : (P,) float
         Exposure times in seconds.
     g : (n,) or (n, 3) float
@@ -69,7 +71,7 @@ def merge_with_deviation(
     R : float or (3,)
         Read noise in electrons, standard deviation.
     rho : float or (3,)
-        Of what varies with the light, the standard deviation as a share of it.
+        Of what errs with the light, the standard deviation as a share of it.
 
     Returns
     -------
@@ -95,20 +97,20 @@ def merge_with_deviation(
     (array([0.31, 1.95], dtype=float32), array([0.0034,    inf], dtype=float32))
     """
     stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
-    Z, t = stack.reshape(*stack.shape[:3], -1), t[:, None, None, None]
-    c = np.arange(Z.shape[-1])
+    Z, t, c = stack.reshape(*stack.shape[:3], -1), t[:, None, None, None], np.arange(stack[0, 0, 0].size)
     for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
         one = np.asarray(value, np.float64)
         if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
             raise ValueError(f"expected {name} of at least {floor:g}, one or one a channel, got {value}")
-    table, measured = np.exp(curves), (Z > 0) & (Z < top)
+    table = np.exp(curves)
     X, D = table[Z, c], np.gradient(table, axis=0)[Z, c]
+    measured = (Z < top) & ((Z > 0) | (D < np.asarray(R) / N))
     light = X
     with np.errstate(divide="ignore", invalid="ignore"):
         for _ in range(1 + ROUNDS):
-            V = np.where(measured, variance(light, D, N, R, rho) / t**2, np.inf)
+            V = np.where(measured, variance(light, D, N, R) / t**2, np.inf)
             E, least = weighted_mean(X / t, V)
             light = E * t
-    bounds, _ = bound(Z, np.log(t.ravel()), curves, top, np.ones(Z.shape, bool))
-    E = np.where(measured.any(axis=0), E, bounds)
-    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, np.sqrt(least))))
+    E = np.where(measured.any(axis=0), E, bound(Z, np.log(t.ravel()), curves, top, np.ones(Z.shape, bool))[0])
+    s = np.sqrt(least + (np.asarray(rho) * E) ** 2)
+    return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, s)))

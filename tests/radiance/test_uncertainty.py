@@ -94,11 +94,19 @@ def test_nothing_is_known_where_no_frame_measures_but_the_bound(channels):
     assert np.array_equal(found.E[0, 1:], merge_with_quality(images, [1, 2], g).E[0, 1:])
 
 
-def test_what_varies_with_the_light_leaves_a_share_of_it_in_every_frame():
+def test_what_errs_with_the_light_does_not_average_out():
     g = responses.true_g("linear", 65536)
     images = np.full((4, 1, 1), 30_000, np.uint16)
     found = merge_with_deviation(images, np.ones(4), g, N=1e9, rho=0.02)
-    assert found.s / found.E == pytest.approx(0.02 / 2, rel=1e-3)
+    assert found.s / found.E == pytest.approx(0.02, rel=1e-3)
+
+
+@pytest.mark.parametrize(("R", "counts"), [(0.0, False), (30.0, True)])
+def test_black_is_a_measurement_where_the_noise_is_wider_than_its_step(R, counts):
+    images = np.array([[[0]], [[40]]], np.uint8)
+    found = merge_with_deviation(images, [1, 1], responses.true_g("linear"), N=1000, R=R)
+    alone = merge_with_deviation(images[1:], [1], responses.true_g("linear"), N=1000, R=R)
+    assert (found.E < alone.E) == (found.s < alone.s) == counts
 
 
 def test_each_channel_may_have_its_own_noise_and_counts_by_itself():
