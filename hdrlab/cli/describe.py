@@ -7,7 +7,8 @@ import numpy as np
 
 from hdrlab.io import radiance
 from hdrlab.io.decode import look, tiff_page
-from hdrlab.io.maps import exr, pfm, rgbe, rgbe_header, tiff
+from hdrlab.io.maps import exr, layers, pfm, rgbe, rgbe_header, tiff
+from hdrlab.show.pages import wording
 
 
 def describe_file(path: str | Path) -> dict[str, Any]:
@@ -83,12 +84,16 @@ def _pfm(path: str | Path) -> dict[str, Any]:
 
 
 def _exr(path: str | Path) -> dict[str, Any]:
-    header = exr.read_header(path)
+    header, *more = exr.read_headers(path)
+    names = [one.attributes.get("name", "") for one in (header, *more)] if more else []
+    found = layers.read_layers(path) if names == list(layers.CERTAIN) else None
     return {
         "format": "OpenEXR",
         **_size(*header.display[2:], ", ".join(header.channels), ", ".join(sorted({*exr.read_dtypes(path)}))),
         "compression": header.attributes["compression"].name.removesuffix("_COMPRESSION"),
         **({"data window": tuple(header.data)} if header.data != header.display else {}),
+        **({"layers": ", ".join(names)} if names else {}),
+        **({"certainty": wording.certainty(*found.values())} if found else {}),
         **({"comments": header.attributes["comments"]} if "comments" in header.attributes else {}),
     }
 

@@ -57,6 +57,7 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @common.operator("--tonemap")
 @click.option("--picture", type=common.OUT, help="Picture to write as well, tone-mapped: .png, .jpg or .tif.")
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
+@click.option("--uncertainty", type=common.OUT, help="Map and standard deviation as two layers: .exr.")
 @click.option("--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too.")
 def assemble(
     photos: tuple[Path, ...],
@@ -69,6 +70,7 @@ def assemble(
     tonemap: str,
     picture: Path | None,
     report: Path | None,
+    uncertainty: Path | None,
     strict: bool,
     merge: str,
     response: str | Path,
@@ -86,14 +88,21 @@ def assemble(
     from hdrlab.fast import mertens
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
+    from hdrlab.io.files import require_suffix
+    from hdrlab.io.maps import layers
+    from hdrlab.show.pages import wording
 
     recover, metered = curves.method_or_curve(response), calibrate and common.reading(calibrate)
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
+    if uncertainty:
+        require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
     bracket = read_bracket(photos, times, mask, stops)
     methods["method"] = merge
     methods["times"] = "stated" if keep_times or times == "stated" else "correct"
     methods["times"] = "estimate" if times == "estimate" else methods["times"]
     assembly = _assembled(bracket, methods | {"response": recover})
+    if uncertainty:
+        assembly = pipeline.measure_deviation(assembly)
     if metered:
         assembly = pipeline.calibrate(assembly, *metered)
     for note in assembly.notes:
@@ -102,6 +111,10 @@ def assemble(
         click.echo(f"warning: {doubt}", err=True)
     comments = ["unit: cd/m^2"] * bool(metered) + [f"doubt: {doubt}" for doubt in assembly.doubts]
     radiance.write_radiance(out, assembly.E, comments=comments)
+    if uncertainty and assembly.s is not None:
+        both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
+        layers.write_layers(uncertainty, both, comments=comments)
+        click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
     if picture or report:
         rendered, settings = pipeline.develop_and_describe(assembly.E, tonemap)
         if assembly.fallback:

@@ -8,6 +8,7 @@ from typing import Any
 
 PLACES = {
     "assembly": ("Assembly", "Method"),
+    "certainty": ("measure_deviation",),
     "pictures": ("develop", "develop_and_describe", "own_saturation"),
     "registration": ("aligned", "moved"),
     "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps", "calibrate"),

@@ -30,6 +30,7 @@ class Assembly(NamedTuple):
     homographies : (P, 3, 3), where each photograph was moved, rotation, scale and fractions included
     moving : (h, w) int32, the regions in which something moved, 0 elsewhere; None where nobody asked
     glare : (h, w) bool, where veiling glare was removed; None where nobody asked
+    s : (h, w) or (h, w, 3) float32, standard deviation of E, infinite where unknown; None where nobody asked
     fallback : why the map is not worth a picture, and the photographs are fused instead; "" where it is
     """
 
@@ -45,6 +46,7 @@ class Assembly(NamedTuple):
     homographies: NDArray[np.float64] = None  # type: ignore[assignment]
     moving: NDArray[np.int32] | None = None
     glare: NDArray[np.bool_] | None = None
+    s: NDArray[np.float32] | None = None
     fallback: str = ""
 
     @property

@@ -188,7 +188,8 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
         raise ValueError(f"expected a place that the photographs measured, got {x},{y}, which none did")
     k = fit_unit(state.E, x, y, reading)
     note = f"1 in the map is 1 cd/m^2: {reading:g} cd/m^2 were read at {x},{y}"
-    return state._replace(E=state.E * np.float32(k), notes=(*state.notes, note))
+    s = None if state.s is None else state.s * np.float32(k)
+    return state._replace(E=state.E * np.float32(k), s=s, notes=(*state.notes, note))
 
 
 def assess(state: Assembly, medians: NDArray[np.float64], moved: float) -> Assembly:

@@ -1,6 +1,7 @@
 """What a shell user may expect of the `hdrlab` command."""
 
 import os
+import re
 import subprocess
 import sys
 
@@ -13,6 +14,7 @@ from hdrlab.capture import camera
 from hdrlab.cli.common import agreement
 from hdrlab.core.colour import luminance
 from hdrlab.io import radiance
+from hdrlab.io.maps.layers import read_layers
 from hdrlab.io.photos import read_photo, write_picture
 
 
@@ -125,6 +127,43 @@ def test_a_doubtful_map_is_written_with_its_doubts_and_fails_only_under_strict(p
         assert radiance.read_radiance(out).any()
     assert hdrlab(*common, tmp_path / "x.hdr", "--strict") == 3
     assert cv2.imread(str(tmp_path / "x.hdr"), cv2.IMREAD_UNCHANGED).any()
+
+
+def test_a_map_is_written_with_its_standard_deviation_as_a_second_layer(photographs, tmp_path, capsys):
+    folder, times = photographs
+    out, both, page = tmp_path / "x.pfm", tmp_path / "sure.exr", tmp_path / "page"
+    code, said, _ = hdrlab(
+        *("assemble", folder, "--times", times, "-o", out, "--uncertainty", both, "--report", page),
+        capsys=capsys,
+    )
+    words = next(line for line in said.splitlines() if line.startswith(str(both))).partition(": ")[2]
+    assert code == 0 and re.fullmatch(
+        r"half of the pixels are sure to ± 0\.0\d+ stops, 95 % to ± 0\.\d+", words
+    )
+    E, s = read_layers(both).values()
+    assert np.array_equal(E, radiance.read_radiance(both)) and E.shape == s.shape
+    assert np.allclose(E, radiance.read_radiance(out)) and 0 < np.median((s / E)[np.isfinite(s)]) < 0.1
+    about = hdrlab("info", both, capsys=capsys)[1]
+    assert "layers" in about and "radiance, standard deviation" in about and words in about
+    assert words in (page / "report.html").read_text(encoding="utf8").replace("\u00a0", " ")
+
+
+def test_a_standard_deviation_wants_an_exr_file_and_says_so_before_the_work(photographs, tmp_path, capsys):
+    folder, times = photographs
+    code, _, said = hdrlab(
+        *(
+            "assemble",
+            folder,
+            "--times",
+            times,
+            "-o",
+            tmp_path / "x.pfm",
+            "--uncertainty",
+            tmp_path / "s.hdr",
+        ),
+        capsys=capsys,
+    )
+    assert code == 2 and said.count("\n") == 1 and ".exr" in said and not (tmp_path / "x.pfm").exists()
 
 
 def test_a_map_without_doubts_has_none_in_its_header_and_passes_strictly(photographs, tmp_path, capsys):

@@ -14,6 +14,7 @@ COMMANDS = {
     "assemble": "photos/a.png photos/b.png --stops 2 -o room.hdr --picture photos/b.png",
     "assemble a folder": "photos --stops 2 -o room.hdr --picture photos/b.png",
     "assemble in a folder": "{here}/photos --stops 2 -o room.hdr --picture ./photos/../photos/b.png",
+    "assemble --uncertainty": "photos --stops 2 -o room.hdr --uncertainty photos/link.exr",
     "calibrate --times": "photos --times times.csv -o times.csv",
     "calibrate --plot": "photos --times times.csv --plot photos/b.png",
     "correct": "photos/b.png -o photos/b.png",
@@ -40,6 +41,7 @@ def here(tmp_path, monkeypatch):
     (tmp_path / "hw2.py").write_text("def hat():\n    pass\n")
     os.link(tmp_path / "photos/room.hdr", tmp_path / "hard.hdr")
     (tmp_path / "link.png").symlink_to("photos/room.hdr")
+    (tmp_path / "photos/link.exr").symlink_to("a.png")
     monkeypatch.chdir(tmp_path)
     return tmp_path
 

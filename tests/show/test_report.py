@@ -97,6 +97,29 @@ def test_the_page_fetches_nothing_and_runs_nothing(page):
     assert not re.search(r"url\(|@import|<script|<iframe|<object|\son\w+=", page.source)
 
 
+def test_how_sure_each_pixel_is_stands_there_where_it_was_asked(room, tmp_path):
+    found = pipeline.measure_deviation(room[0])
+    page = report(tmp_path, found)
+    assert "How sure each pixel is" in page.headings and wording.certainty(found.E, found.s) in page.text
+    (picture,) = (one for one in page.images if one["alt"].startswith("How sure each pixel is"))
+    assert re.search(r"from ± 0\.\d+ to ± 0\.\d+ stops", picture["alt"])
+    assert "How sure each pixel is" not in report(tmp_path, room[0]).headings
+
+
+def test_where_no_pixel_is_sure_the_page_says_so_without_a_picture(tmp_path):
+    state = flat()
+    page = report(tmp_path, state._replace(s=np.full_like(state.E, np.inf)))
+    assert "how sure each pixel is, is not known" in page.text
+    assert not any("How sure" in one["alt"] for one in page.images)
+
+
+def test_what_the_deviation_of_a_pixel_is_in_stops():
+    E, s = np.full((1, 2, 3), 2.0, np.float32), np.full((1, 2, 3), 0.2, np.float32)
+    s[0, 1, 2] = np.inf
+    assert wording.deviation(E, s)[0] == pytest.approx([0.1 / np.log(2), np.inf], rel=1e-5)
+    assert wording.certainty(E, s) == "half of the pixels are sure to ± 0.14 stops, 95 % to ± 0.14"
+
+
 def test_every_picture_has_alt_text_and_a_size_and_is_inside_the_page(page):
     assert len(page.images) == 1 + 6 + 1 + 1 + 1 + 1  # picture, frames, response, radiance, known, errors
     for image in page.images:

@@ -16,7 +16,7 @@ from hdrlab.core.types import F32
 from hdrlab.io.maps import exr
 
 CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth
-DEVIATION = "standard deviation"  # the layer of what `assemble --uncertainty` says beside radiance
+CERTAIN = ("radiance", "standard deviation")  # the layers that `assemble --uncertainty` writes
 
 
 def read_layers(path: str | Path) -> dict[str, F32]:

@@ -89,6 +89,7 @@ def _page(
         response=sections.response(g, truth),
         radiance=sections.radiance(E),
         known=sections.known(quality, picture),
+        certainty=sections.certainty(E, assembly.s),
         moving=sections.moving(assembly.moving, picture),
         agreement=sections.agreement(bracket, medians),
         errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),

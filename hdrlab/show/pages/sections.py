@@ -16,11 +16,12 @@ from hdrlab.core import colour, metrics
 from hdrlab.core.arrays import to_256
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import Truth
-from hdrlab.core.types import Array
+from hdrlab.core.types import F32, Array
 from hdrlab.diagnostics import consistency
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
-from hdrlab.show.pages.wording import CLOSE, KINDS, offset, share, signed, verdict
+from hdrlab.show.pages import wording
+from hdrlab.show.pages.wording import CLOSE, KINDS, deviation, offset, share, signed, verdict
 from hdrlab.show.pages.wording import stops as in_stops
 from hdrlab.show.plots import figures
 
@@ -92,6 +93,24 @@ def known(quality: Image, picture: Image) -> dict[str, Any]:
         return {"rows": rows, "picture": None}
     alt = "The picture in pale gray, with dots where a pixel was not measured"
     return {"rows": rows, "picture": figures.photograph(figures.known(picture, quality), 1000, alt)}
+
+
+def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
+    """Return how sure each pixel is, as words and in false colour; None where nobody asked."""
+    if s is None:
+        return None
+    stops, said = deviation(E, s), wording.certainty(E, s)
+    stops = np.where(np.isfinite(stops), stops, np.nan)
+    if not np.isfinite(stops).any():
+        return {"said": said, "picture": None}
+    low, high = np.nanpercentile(stops, [1, 99]).tolist()
+    low = min(low, 0.9 * high)  # lest what is even looks uneven
+    image = figures.false_colour(figures.fit(stops, 1000), low, high)
+    ends = f"from ± {low:.2g} to ± {high:.2g} stops; gray where it is not known"
+    shown = figures.photograph(image, 1000, f"How sure each pixel is, in false colour, {ends}")
+    scale = figures.scale(low, high, digits=3)
+    scale = scale._replace(ticks=[(at, label.removeprefix("+")) for at, label in scale.ticks])
+    return {"said": said, "picture": shown, "scale": scale}
 
 
 def moving(labels: NDArray[np.int32] | None, picture: Image) -> dict[str, Any] | None:

@@ -3,6 +3,8 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
+from hdrlab.core.colour import LUMINANCE, luminance
+from hdrlab.core.types import F32
 from hdrlab.pipeline.stages import CONTRADICTION
 from hdrlab.radiance.merge import Quality
 
@@ -65,3 +67,27 @@ def verdict(spread: float) -> str:
     if spread <= CLOSE:
         return "they agree"
     return "they agree roughly" if spread <= CONTRADICTION else "they contradict each other"
+
+
+def deviation(E: F32, s: F32) -> F32:
+    """Return one standard deviation of each pixel's luminance in stops, (H, W); infinite where unknown.
+
+    The channels are taken to err together, as they do in a JPEG: it is not more than this.
+
+    Examples
+    --------
+    >>> deviation(np.float32([[1.0, 2.0]]), np.float32([[0.1, np.inf]])).round(3)
+    array([[0.144,   inf]], dtype=float32)
+    """
+    of_L = s if s.ndim == 2 else s @ LUMINANCE
+    return np.asarray(of_L / np.maximum(luminance(E), 1e-30) / np.log(2), np.float32)
+
+
+def certainty(E: F32, s: F32) -> str:
+    """Return how sure half and most of the pixels are, in words: E and its standard deviation."""
+    known = deviation(E, s)
+    known = known[np.isfinite(known)]
+    if not known.size:
+        return "how sure each pixel is, is not known"
+    half, most = np.quantile(known, [0.5, 0.95])
+    return f"half of the pixels are sure to ± {half:.2g} stops, 95 % to ± {most:.2g}"

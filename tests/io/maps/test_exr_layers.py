@@ -1,0 +1,39 @@
+"""hdrlab.io.maps.layers: what is written as parts of an OpenEXR file reads back."""
+
+import numpy as np
+import pytest
+
+from hdrlab.io import radiance
+from hdrlab.io.maps import exr
+from hdrlab.io.maps.layers import read_layers, write_layers
+
+RNG = np.random.default_rng(1)
+RGB, GRAY, RGBA = (RNG.random((5, 7, *rest)).astype(np.float32) for rest in ((3,), (), (4,)))
+
+
+def test_layers_read_back_bit_for_bit_infinity_too(tmp_path):
+    s = GRAY.copy()
+    s[2, 3] = np.inf
+    given = {"radiance": RGB, "standard deviation": s, "cover": RGBA}
+    write_layers(tmp_path / "a.exr", given, comments=["one", "two"])
+    found = read_layers(tmp_path / "a.exr")
+    assert list(found) == list(given) and all(np.array_equal(found[name], given[name]) for name in given)
+    assert exr.read_header(tmp_path / "a.exr").attributes["comments"] == "one\ntwo"
+
+
+def test_a_program_that_knows_one_picture_reads_the_first(tmp_path):
+    write_layers(tmp_path / "a.exr", {"radiance": RGB, "standard deviation": 0 * RGB})
+    assert np.array_equal(radiance.read_radiance(tmp_path / "a.exr"), RGB)
+
+
+@pytest.mark.parametrize(
+    "layers",
+    [{}, {"a": RGB, "b": GRAY[:3]}, {"a": RGB[0, 0]}, {"a": RGB[..., :2]}, {"a": np.zeros((0, 3))}],
+)
+def test_what_are_no_layers_is_refused_and_what_stood_there_stays(layers, tmp_path):
+    path = tmp_path / "a.exr"
+    write_layers(path, {"radiance": RGB})
+    before = path.read_bytes()
+    with pytest.raises(ValueError, match="expected"):
+        write_layers(path, layers)
+    assert path.read_bytes() == before and [one.name for one in tmp_path.iterdir()] == ["a.exr"]

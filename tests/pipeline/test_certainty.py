@@ -1,0 +1,100 @@
+"""hdrlab.pipeline.certainty: how sure each pixel of a finished map is."""
+
+import numpy as np
+import pytest
+
+from hdrlab import pipeline, scenes
+from hdrlab.capture import camera
+from hdrlab.cli.photographs import read_bracket
+from hdrlab.core.bracket import Bracket
+from hdrlab.pipeline import certainty
+from hdrlab.radiance.merge import Quality
+from hdrlab.show.pages import wording
+
+
+@pytest.fixture(scope="module")
+def assembly():
+    """Five photographs of the room, 8 bits, a well of 4000 electrons; the lamps are clipped in all."""
+    E = scenes.room((192, 288))
+    maker = camera.Camera(response="srgb", full_well=4_000, read_noise=8)
+    taken = camera.shoot(E, camera.times_around(E, 5, stops=1.5), maker, rng=1)
+    return E, pipeline.assemble(taken, align="none")
+
+
+def test_95_of_100_pixels_lie_within_what_the_photographs_say_of_themselves(assembly):
+    E, state = assembly
+    found = pipeline.measure_deviation(state)
+    known = np.isfinite(found.s)
+    ratio = np.median((found.E / E)[known])  # the map's unit is the camera's own
+    inside = np.abs(found.E / ratio - E) < 1.96 * found.s / ratio
+    assert 0.93 < inside[known].mean() < 0.97 and known.mean() > 0.9
+    assert found.notes == state.notes and found.doubts == state.doubts
+
+
+def test_what_is_not_measured_keeps_its_bound_and_is_not_sure(assembly):
+    _, state = assembly
+    found = pipeline.measure_deviation(state)
+    unknown = state.quality != Quality.MEASURED
+    assert unknown.any() and np.isinf(found.s[unknown]).all()
+    assert np.array_equal(found.E[unknown], state.E[unknown])
+    assert found.E.dtype == found.s.dtype == np.float32 and state.s is None
+
+
+def test_where_something_moved_or_glare_was_removed_nothing_is_sure(assembly):
+    _, state = assembly
+    labels, glare = np.zeros(state.quality.shape, np.int32), np.zeros(state.quality.shape, bool)
+    labels[:40, :40], glare[-40:, -40:] = 2, True
+    found = pipeline.measure_deviation(state._replace(moving=labels, glare=glare))
+    for corner in (np.s_[:40, :40], np.s_[-40:, -40:]):
+        assert np.isinf(found.s[corner]).all() and np.array_equal(found.E[corner], state.E[corner])
+
+
+def test_strips_do_not_show(assembly, monkeypatch):
+    _, state = assembly
+    whole = pipeline.measure_deviation(state)
+    monkeypatch.setattr(certainty, "STRIP", 50_000)
+    parts = pipeline.measure_deviation(state)
+    assert np.array_equal(parts.E, whole.E) and np.array_equal(parts.s, whole.s)
+
+
+def test_a_photograph_is_not_asked_where_it_holds_no_picture(assembly):
+    _, state = assembly
+    images, times, names, _, linear = state.bracket
+    valid = np.ones(images.shape[:3], bool)
+    valid[-1, :, :60] = False
+    hidden = np.where(valid[..., None], images, np.uint8(77))
+    kept = [hidden.copy(), valid.copy()]
+    found = pipeline.measure_deviation(state._replace(bracket=Bracket(hidden, times, names, valid, linear)))
+    plain = pipeline.measure_deviation(state)
+    assert np.array_equal(kept[0], hidden) and np.array_equal(kept[1], valid)
+    both = np.isfinite(found.s) & np.isfinite(plain.s)
+    ratio = np.divide(found.s, plain.s, where=both, out=np.ones_like(found.s))
+    assert np.median(ratio[:, :60]) > 1.1 > np.median(ratio[:, 60:])
+
+
+def test_too_small_a_bracket_leaves_a_note_and_no_pixel_sure():
+    E = scenes.room((24, 36))
+    taken = camera.shoot(E, camera.times_around(E, 3), camera.Camera(full_well=4_000), rng=1)
+    state = pipeline.assemble(taken, align="none")
+    found = pipeline.measure_deviation(state)
+    assert np.isinf(found.s).all() and np.array_equal(found.E, state.E)
+    assert "expected flat parts of many lights" in found.notes[-1]
+    assert wording.certainty(found.E, found.s) == "how sure each pixel is, is not known"
+
+
+def test_a_meter_reading_scales_both(assembly):
+    found = pipeline.measure_deviation(assembly[1])
+    y, x = (int(one[0]) for one in np.nonzero(found.quality == 0))
+    scaled = pipeline.calibrate(found, x, y, 100.0)
+    assert np.allclose((scaled.s / scaled.E)[y, x], (found.s / found.E)[y, x], rtol=1e-5)
+
+
+REAL = [("frobisher", None, 0.01, 0.1), ("window", None, 0.01, 0.1), ("memorial", "0000FF", 0.01, 0.2)]
+
+
+@pytest.mark.parametrize(("folder", "mask", "least", "most"), REAL)
+def test_half_of_a_real_map_is_sure_to_so_many_stops(folder, mask, least, most, shared):
+    taken = read_bracket((shared(folder),), "exif", mask, None)
+    found = pipeline.measure_deviation(pipeline.assemble(taken))
+    known = wording.deviation(found.E, found.s)
+    assert least < np.median(known[np.isfinite(known)]) < most
