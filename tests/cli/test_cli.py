@@ -358,6 +358,36 @@ def test_ctrl_c_while_a_module_of_c_is_made_ends_in_one_line_too(monkeypatch, tm
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
 
+WHILE_LOADING = """
+import runpy, sys
+class Finder:
+    def find_spec(name, path=None, target=None):
+        if name == "hdrlab.cli.maps":
+            {raised}
+sys.meta_path.insert(0, Finder)
+runpy.run_module("hdrlab", run_name="__main__")
+"""
+
+
+@pytest.mark.parametrize(
+    ("raised", "code", "complaint"),
+    [
+        ("raise KeyboardInterrupt", 130, "hdrlab: interrupted"),
+        ("raise ImportError('initialization failed') from KeyboardInterrupt()", 130, "hdrlab: interrupted"),
+        ("raise ImportError('a mistake of ours')", 1, "ImportError: a mistake of ours"),
+    ],
+)
+def test_ctrl_c_while_the_command_is_loaded_ends_in_one_line_and_a_fault_does_not(raised, code, complaint):
+    ended = subprocess.run(
+        [sys.executable, "-c", WHILE_LOADING.format(raised=raised), "info"],
+        capture_output=True,
+        text=True,
+        encoding="utf8",
+    )
+    assert (ended.returncode, ended.stderr.splitlines()[-1]) == (code, complaint)
+    assert code == 1 or len(ended.stderr.splitlines()) == 1
+
+
 @pytest.mark.parametrize("kind", [RuntimeError, ImportError])
 def test_a_fault_of_the_library_is_not_taken_for_ctrl_c(kind, monkeypatch, tmp_path):
     def broken(*_, **__):
