@@ -15,14 +15,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.fft import irfft2, next_fast_len, rfft2
 from scipy.ndimage import maximum_filter
 from scipy.optimize import minimize
 
 from hdrlab.align import light
 from hdrlab.core.filters import warp
-from hdrlab.core.types import F32, F64, Indices
+from hdrlab.core.types import F32, F64, ArrayLike, Indices
 
 # of the correlation: the coarsest level tries this many
 PEAKS = 3

@@ -18,14 +18,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from hdrlab.align import light
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_feature, skimage_measure
 from hdrlab.core.optional import skimage_transform as transform
-from hdrlab.core.types import F32, F64, Mask
+from hdrlab.core.types import F32, F64, ArrayLike, Mask
 
 # pixels of the level where points are looked for, at most
 PIXELS = 250_000

@@ -22,13 +22,12 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter, map_coordinates
 
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.types import F32, F64, Array, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 
 # of the range of levels: noise below, saturation above
 DARK, BRIGHT = 5 / 255, 250 / 255

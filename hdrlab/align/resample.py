@@ -13,19 +13,18 @@ Clipped pixels are not light. Where one takes part in a mean, the nearest pixel 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
 from hdrlab.align.light import BRIGHT
 from hdrlab.core.arrays import as_mask, as_stack, as_table, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
-from hdrlab.core.types import Array
+from hdrlab.core.types import F64, Array, ArrayLike, Mask
 
 
 def photographs(
     images: ArrayLike, homographies: ArrayLike, g: ArrayLike | None = None, *, valid: ArrayLike | None = None
-) -> tuple[Array, NDArray[np.bool_] | None]:
+) -> tuple[Array, Mask | None]:
     """Return the images moved and cut to what all of them show, and their masks where there are any.
 
     Parameters
@@ -65,9 +64,7 @@ def photographs(
     return moved, np.stack([_mask_moved(one, h, shown) for one, h in zip(mask, H, strict=True)])
 
 
-def one_moved(
-    image: Array, H: NDArray[np.float64], shown: tuple[slice, slice], table: NDArray[np.float64]
-) -> Array:
+def one_moved(image: Array, H: F64, shown: tuple[slice, slice], table: F64) -> Array:
     """Return an image moved by H, of the rectangle `shown`, by a table (n, C) of light."""
     if (whole := _whole(H)) is not None:
         return image[tuple(slice(s.start - d, s.stop - d) for s, d in zip(shown, whole, strict=True))]
@@ -84,7 +81,7 @@ def one_moved(
     return moved.reshape(*size, *image.shape[2:])
 
 
-def _table(g: ArrayLike | None, n: int, colours: int) -> NDArray[np.float64]:
+def _table(g: ArrayLike | None, n: int, colours: int) -> F64:
     """Return the light of each level (n, C), which rises."""
     light = decode_srgb(np.arange(n) / (n - 1)) if g is None else np.exp(as_table(g, n))
     table = np.maximum.accumulate(light.reshape(n, -1), axis=0)
@@ -94,27 +91,25 @@ def _table(g: ArrayLike | None, n: int, colours: int) -> NDArray[np.float64]:
     )
 
 
-def _whole(H: NDArray[np.float64]) -> tuple[int, int] | None:
+def _whole(H: F64) -> tuple[int, int] | None:
     """Return (dy, dx) where H shifts by whole pixels, or None."""
     dx, dy = np.round(H[:2, 2])
     shift = warp.as_homographies([[dy, dx]])[0]
     return (int(dy), int(dx)) if np.allclose(H, shift, rtol=0, atol=1e-9) else None
 
 
-def _back(H: NDArray[np.float64], shown: tuple[slice, slice]) -> NDArray[np.float64]:
+def _back(H: F64, shown: tuple[slice, slice]) -> F64:
     """Return where the pixels of the rectangle `shown` lie in an image that H moves."""
     return np.asarray(np.linalg.inv(H) @ warp.as_homographies([[shown[0].start, shown[1].start]])[0])
 
 
-def _touched(mask: NDArray[np.bool_], back: NDArray[np.float64], size: tuple[int, int]) -> NDArray[np.bool_]:
+def _touched(mask: Mask, back: F64, size: tuple[int, int]) -> Mask:
     """Return where one of the 4 x 4 pixels of a cubic mean is in the mask."""
     wide = maximum_filter(mask.view(np.uint8), size=4, origin=-1)  # from one before to two after
     return warp.before(wide.astype(np.float32), back, size) > 0.5
 
 
-def _mask_moved(
-    mask: NDArray[np.bool_], H: NDArray[np.float64], shown: tuple[slice, slice]
-) -> NDArray[np.bool_]:
+def _mask_moved(mask: Mask, H: F64, shown: tuple[slice, slice]) -> Mask:
     if (whole := _whole(H)) is not None:
         return mask[tuple(slice(s.start - d, s.stop - d) for s, d in zip(shown, whole, strict=True))]
     size = (shown[0].stop - shown[0].start, shown[1].stop - shown[1].start)

@@ -11,11 +11,10 @@ noise  (H, W, C)           what one level more would add to the value
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_response, as_stack, as_times, levels
 from hdrlab.core.optional import skimage_transform as transform
-from hdrlab.core.types import F32, F64, Array, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 
 GAMMA = 2.2
 # levels

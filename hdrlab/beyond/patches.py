@@ -22,7 +22,6 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.beyond import synthesis
 from hdrlab.beyond.bidirectional import Search, search, similarity, vote
@@ -31,7 +30,7 @@ from hdrlab.beyond.patchmatch import identity_field
 from hdrlab.beyond.synthesis import Ramp, Scene
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64, Array, Indices
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Indices
 
 # where the search of both ways begins
 Fields = tuple[Indices, tuple[Indices, ...]]

@@ -20,7 +20,6 @@ from itertools import cycle
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.beyond import ldr_values
 from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
@@ -28,7 +27,7 @@ from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_table, as_times, levels
-from hdrlab.core.types import F32, Array, Mask
+from hdrlab.core.types import F32, Array, ArrayLike, Mask
 
 # of values: a neighbour that is farther off counts for nothing
 VALUE_TOLERANCE = np.float32(16 / 255)

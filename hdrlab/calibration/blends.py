@@ -15,10 +15,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 # The paper's typical range of brightnesses that are measurements.
 MIN_BRIGHTNESS, MAX_BRIGHTNESS = 15 / 255, 240 / 255

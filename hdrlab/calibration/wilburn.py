@@ -20,7 +20,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
-from numpy.typing import ArrayLike
 from scipy.optimize import minimize
 
 from hdrlab.calibration.blends import (
@@ -32,7 +31,7 @@ from hdrlab.calibration.blends import (
     select_blends,
 )
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 # Places at which the slope must be positive.
 GRID = np.linspace(0, 1, 257)

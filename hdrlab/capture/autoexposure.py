@@ -14,14 +14,13 @@ from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.capture import camera, exposure
 from hdrlab.capture.metering import MIDDLE_GRAY, At, correction, reading, weights
 from hdrlab.capture.sensor import Seed
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64
+from hdrlab.core.types import F32, F64, ArrayLike
 
 # stops: the loop ends when it asks for less than this
 STOP_TOLERANCE = 1 / 12

@@ -10,11 +10,10 @@ the pixels, not the photograph.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.filters import warp
-from hdrlab.core.types import F64, Array
+from hdrlab.core.types import F64, Array, ArrayLike
 
 Seed = int | np.random.Generator | None
 

@@ -7,11 +7,10 @@ A little of all light is scattered, and lies over the picture as veiling glare.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 FINGERPRINTS = GlareSpread(0.05)
 

@@ -16,10 +16,9 @@ photographs is taken because dust, vignetting and unlike pixels are the same in 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, Array, Mask
+from hdrlab.core.types import F64, Array, ArrayLike, Mask
 
 # levels^2: what rounding to whole levels adds
 ROUNDING_VARIANCE = 1 / 12

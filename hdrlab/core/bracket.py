@@ -5,10 +5,9 @@ from typing import NamedTuple
 from zlib import crc32
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_mask, as_stack, as_times
-from hdrlab.core.types import Array
+from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
 
 
 class Bracket(NamedTuple):
@@ -26,9 +25,9 @@ class Bracket(NamedTuple):
     """
 
     images: Array
-    times: NDArray[np.float64]
+    times: F64
     names: tuple[str, ...]
-    valid: NDArray[np.bool_] | None = None
+    valid: Mask | None = None
     linear: bool = False
 
 
@@ -66,7 +65,7 @@ def bracket(
     return Bracket(images, times, names, mask, linear)
 
 
-def short_to_long(images: Array, times: NDArray[np.float64]) -> NDArray[np.intp]:
+def short_to_long(images: Array, times: F64) -> Indices:
     """Return the order of the frames (P,) that makes all that follows independent of the order given.
 
     Frames of one time are ordered by their checksums, for even a sum depends on its order in the last bit.

@@ -19,12 +19,11 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import uniform_filter
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.colour import LUMINANCE
-from hdrlab.core.types import F32, F64, Mask
+from hdrlab.core.types import F32, F64, ArrayLike, Mask
 
 SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)  # ITU-R BT.709, white D65
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])

@@ -8,11 +8,10 @@ p        share of the pixels at each level
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_picture
 from hdrlab.core.colour import LUMINANCE
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 
 class Statistics(NamedTuple):

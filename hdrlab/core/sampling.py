@@ -13,10 +13,9 @@ spends its samples where the pictures have pixels.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_stack, to_256
-from hdrlab.core.types import Array, Indices, Mask
+from hdrlab.core.types import Array, ArrayLike, Indices, Mask
 
 # an even choice of about so many ranks a frame as well as all of it
 PIXELS = 1_000_000

@@ -14,10 +14,9 @@ level, though the count belongs to the step's upper edge: so m + 1/2 is paired w
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_stack, describe, levels
-from hdrlab.core.types import F64, Array
+from hdrlab.core.types import F64, Array, ArrayLike
 
 
 def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> Array:

@@ -9,9 +9,8 @@ much, validity says whether.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 
 def hat(n: int = 256) -> F64:

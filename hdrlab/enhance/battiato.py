@@ -16,11 +16,10 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import correlate1d, laplace
 
 from hdrlab.core.arrays import as_picture, describe
-from hdrlab.core.types import F64, Array, Mask
+from hdrlab.core.types import F64, Array, ArrayLike, Mask
 from hdrlab.enhance import relight, skin
 
 # levels: 2 sigma of the Laplacian of noise of 2.2; the norm of its weights is sqrt 20

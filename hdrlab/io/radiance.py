@@ -5,11 +5,10 @@ from pathlib import Path
 from types import ModuleType
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 from hdrlab.io.files import require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff
 

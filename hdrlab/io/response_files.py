@@ -14,10 +14,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import LARGEST_LN_EXPOSURE, describe
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.io import pfscurves
 from hdrlab.io.emor import MAX_FILE_BYTES
 from hdrlab.io.files import replacing, require_suffix

@@ -18,10 +18,9 @@ from enum import IntFlag
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_response, as_stack, as_table, as_times, levels
-from hdrlab.core.types import F32, F64, Array, Flags, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.core.weights import hat
 from hdrlab.radiance.stuck import repair_stuck
 

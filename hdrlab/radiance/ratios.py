@@ -21,12 +21,11 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_stack
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
-from hdrlab.core.types import F64, Array, Mask
+from hdrlab.core.types import F64, Array, ArrayLike, Mask
 
 # of the top level: above, noise hides clipped pixels
 SATURATED = 0.98

@@ -10,11 +10,10 @@ other thing in the scene knows where that is.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 # of the pixels: the steepest edges of the mirrored lights
 EDGES = 2e-3

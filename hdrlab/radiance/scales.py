@@ -10,12 +10,11 @@ saw, then k I must point along M, for all pixels together.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from hdrlab.core.arrays import as_radiance, describe
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 
 def chromaticity(M: ArrayLike) -> F64:

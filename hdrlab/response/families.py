@@ -17,10 +17,9 @@ cubic       X = (M + k M^3) / (1 + k)                       nearly linear sensor
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 
 def power(M: F64, gamma: float) -> F64:

@@ -18,11 +18,10 @@ they know instead of being cut.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.sparse import csr_array
 from scipy.special import ndtr
 
-from hdrlab.core.types import F64, Indices
+from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response.mitsunaga import terms, value
 from hdrlab.response.polynomial import brightness, slope
 

@@ -7,17 +7,17 @@ g   ln f^-1   (n,), n = 256 or 65536: at 16 bits each level has its own, lest da
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_stack, as_times, levels
+from hdrlab.core.types import F64, ArrayLike
 
 
-def curve(n: int = 256) -> NDArray[np.float64]:
+def curve(n: int = 256) -> F64:
     """Return g(z) = ln(z / (n / 2)); level 0, which stands for anything below 1/2, gets ln of 1/4."""
     return np.log(np.maximum(np.arange(n), 0.25) / (n // 2))
 
 
-def recover(images: ArrayLike, times: ArrayLike, **_: object) -> NDArray[np.float64]:
+def recover(images: ArrayLike, times: ArrayLike, **_: object) -> F64:
     """Return g of a linear camera with the images' levels; the photographs are checked, not consulted.
 
     Parameters

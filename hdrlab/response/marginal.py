@@ -19,13 +19,12 @@ from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_stack, describe
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64, Indices
+from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response import likelihood
 from hdrlab.response.mitsunaga import curve
 from hdrlab.response.polynomial import GRID, limit_slope, slope

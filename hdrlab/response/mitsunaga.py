@@ -24,9 +24,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
-from numpy.typing import ArrayLike
 
-from hdrlab.core.types import F64, Indices, Mask
+from hdrlab.core.types import F64, ArrayLike, Indices, Mask
 
 # of the trace of H: where the samples constrain less, the straight line is kept
 RIDGE = 1e-7

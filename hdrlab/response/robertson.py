@@ -21,12 +21,11 @@ from collections.abc import Callable, Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_stack
 from hdrlab.core.sampling import by_rank, require_two_exposures
-from hdrlab.core.types import F64, Indices
+from hdrlab.core.types import F64, ArrayLike, Indices
 
 
 class State(NamedTuple):

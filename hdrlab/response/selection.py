@@ -17,21 +17,18 @@ do not.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import uniform_filter
 from scipy.stats import chi2, f
 
 from hdrlab.core.arrays import as_stack, describe, to_256
-
-Float = NDArray[np.float64]
-Mask = NDArray[np.bool_]
+from hdrlab.core.types import F64, ArrayLike, Mask
 
 
 class Average(NamedTuple):
     """The mean (H, W) of t frames, the variance (H, W) of one frame, and t."""
 
-    mean: Float
-    variance: Float
+    mean: F64
+    variance: F64
     t: int
 
 
@@ -44,7 +41,7 @@ def temporal_average(A: ArrayLike, *, sigma: float = 0.01) -> Average:
     return Average(A.mean(axis=0), variance, len(A))
 
 
-def spatial_average(mean: ArrayLike, *, size: int = 5) -> tuple[Float, Float]:
+def spatial_average(mean: ArrayLike, *, size: int = 5) -> tuple[F64, F64]:
     """Return mean and variance sigma_s^2 over the s = size^2 pixels around each pixel, both (H, W)."""
     mean = np.asarray(mean, np.float64)
     middle = mean.mean()  # taken off first, lest squares drown the differences
@@ -106,7 +103,7 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     return passed & _inner(passed.shape, size // 2)
 
 
-def radius(shape: tuple[int, int]) -> Float:
+def radius(shape: tuple[int, int]) -> F64:
     """Return each pixel's distance from the middle of the picture, (H, W) pixels."""
     y, x = (np.arange(extent) - (extent - 1) / 2 for extent in shape)
     return np.hypot(y[:, None], x)

@@ -13,12 +13,11 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.capture.movers import Figure, compose_moment
 from hdrlab.core.arrays import describe
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, F64
+from hdrlab.core.types import F32, F64, ArrayLike
 from hdrlab.io.maps.layers import read_layers
 
 Shape = tuple[int, int]

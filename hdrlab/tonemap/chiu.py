@@ -18,14 +18,13 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.extremes import positive_median, robust_maximum
 from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 # sigma of the blur, of the longer side: narrower, every place is as bright as every other

@@ -18,12 +18,11 @@ from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.core.types import F32, Array
+from hdrlab.core.types import F32, Array, ArrayLike
 
 LAWS = ("monotone", "exposure")
 

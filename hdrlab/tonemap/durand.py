@@ -19,13 +19,12 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.extremes import positive_median
 from hdrlab.core.filters.bilateral import Filtered, bilateral
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 # sigma_s, of the longer side

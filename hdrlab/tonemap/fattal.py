@@ -20,11 +20,10 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.filters import poisson, pyramid
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 SATURATION = 0.6  # gradients of luminance were compressed, those of colour were not [Fattal02]

@@ -16,12 +16,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.filters import pyramid
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 # of the display, nats, and the fraction of pixels beyond it at either end: those of Paris's program

@@ -21,13 +21,12 @@ and 1.4 for the square root of 2 in tau.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import correlate1d
 from scipy.special import ndtr
 
 from hdrlab.core.arrays import as_luminance, describe
 from hdrlab.core.picture import gray
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 FREQUENCIES = (16.0, 8.0, 4.0, 2.0, 1.0)  # finest scale first
 WEIGHTS = (0.0448, 0.2856, 0.3001, 0.2363, 0.1333)  # of the scales, from experiments on multi-scale SSIM

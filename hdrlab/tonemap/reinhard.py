@@ -18,10 +18,9 @@ from itertools import pairwise
 from typing import Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.types import F32, Array, Flags, Mask
+from hdrlab.core.types import F32, Array, ArrayLike, Flags, Mask
 
 LAWS = ("monotone", "exposure")
 # eight centres, and the surround of the last

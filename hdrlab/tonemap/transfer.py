@@ -13,10 +13,9 @@ logarithm, and each display makes of E what its white allows.
 from collections.abc import Callable
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 # cd/m2, of PQ's largest code
 BRIGHTEST = 10_000

@@ -19,12 +19,11 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64
+from hdrlab.core.types import F32, F64, ArrayLike
 
 LAWS = ("monotone", "exposure")
 TINY = np.finfo(np.float32).tiny

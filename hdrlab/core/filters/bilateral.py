@@ -9,9 +9,8 @@ k        sum of all weights    (H, W), sum of g w: how many pixels a mean rests 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 # beyond the edge: too different from any pixel to have weight
 FAR = 1e9

@@ -6,10 +6,9 @@ g      kernel, exp(-(x^2 + y^2) / (2 sigma^2)), sum 1, cut off at 4 sigma
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 
 
 def gaussian(image: ArrayLike, sigma: float) -> F32:

@@ -14,10 +14,9 @@ alike; here one answer holds for a whole window: beside an edge fine detail stay
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import uniform_filter
 
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 
 
 class Lines(NamedTuple):

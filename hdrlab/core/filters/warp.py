@@ -11,12 +11,11 @@ Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV a
 from collections.abc import Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import linprog
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.optional import skimage_transform as transform
-from hdrlab.core.types import F64, Array
+from hdrlab.core.types import F64, Array, ArrayLike
 
 # pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has sides, too
 SLACK = 1e-3

@@ -15,11 +15,10 @@ from threading import Lock
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.optional import OpenEXR
-from hdrlab.core.types import F32, Array
+from hdrlab.core.types import F32, Array, ArrayLike, Labels
 from hdrlab.io.files import check_size, replacing
 
 LARGEST_HALF = 65504.0
@@ -200,7 +199,7 @@ def _quiet_stderr() -> Iterator[None]:
         yield
 
 
-def _window(path: str | Path, window: tuple[NDArray[np.int32], NDArray[np.int32]], channels: int) -> Window:
+def _window(path: str | Path, window: tuple[Labels, Labels], channels: int) -> Window:
     """Return the Window of an attribute (left, top), (right, bottom), after a look at its size."""
     (left, top), (right, bottom) = (corner.tolist() for corner in window)
     height, width = bottom - top + 1, right - left + 1

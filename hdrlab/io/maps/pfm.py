@@ -11,10 +11,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_radiance
-from hdrlab.core.types import F32, Array
+from hdrlab.core.types import F32, Array, ArrayLike
 from hdrlab.io.files import check_size, replacing, reserve
 
 # one white space, and not more, stands between the scale and the values, whose first byte may look like one

@@ -8,11 +8,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.optional import tifffile
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 from hdrlab.io import decode
 from hdrlab.io.files import check_size, replacing
 

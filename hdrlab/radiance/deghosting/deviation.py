@@ -15,11 +15,10 @@ what is tolerated, tau + 2 s + edge r.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import maximum_filter
 
 from hdrlab.core.arrays import as_table
-from hdrlab.core.types import F32, Array, Mask
+from hdrlab.core.types import F32, Array, ArrayLike, Mask
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import ROWS
 

@@ -15,11 +15,10 @@ LARGEST; and a frame is trusted as far as its pixels agree. Most pixels have to 
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import ndimage
 
 from hdrlab.core.arrays import as_mask, as_radiance
-from hdrlab.core.types import F64, Array, Indices, Labels, Mask
+from hdrlab.core.types import F64, Array, ArrayLike, Indices, Labels, Mask
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of the levels; each has a bias and a spread

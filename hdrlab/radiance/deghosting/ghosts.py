@@ -20,13 +20,12 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy import ndimage
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_mask, as_stack, levels
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, Flags, Indices, Labels, Mask
+from hdrlab.core.types import F32, ArrayLike, Flags, Indices, Labels, Mask
 from hdrlab.radiance.deghosting import reference, regions
 from hdrlab.radiance.deghosting.deviation import (
     Deviation,

@@ -1,10 +1,9 @@
 """Numbers in a reader's words: stops, shares and offsets, with true minus signs and no false rounding."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.colour import LUMINANCE, luminance
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 from hdrlab.pipeline.stages import CONTRADICTION
 from hdrlab.radiance.merge import Quality
 

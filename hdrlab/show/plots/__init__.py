@@ -16,11 +16,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe, to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import Array
+from hdrlab.core.types import Array, ArrayLike
 from hdrlab.show.plots import reuse
 
 Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure

@@ -15,11 +15,10 @@ import matplotlib
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_table
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS, radiance_errors, response_rmse
-from hdrlab.core.types import F64
+from hdrlab.core.types import F32, F64, ArrayLike, Mask
 from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show import plots
@@ -116,10 +115,10 @@ def _channels(g: F64) -> F64:
     return as_table(g, 256).reshape(256, -1)
 
 
-def apart(maps: Mapping[str, NDArray[np.float32]], well: NDArray[np.bool_]) -> dict[tuple[str, str], float]:
+def apart(maps: Mapping[str, F32], well: Mask) -> dict[tuple[str, str], float]:
     """Return by how many stops each two maps differ: the median over the well exposed pixels."""
 
-    def between(E: NDArray[np.float32], other: NDArray[np.float32]) -> float:
+    def between(E: F32, other: F32) -> float:
         ratio = 1 + radiance_errors(E, other, well)[well]
         return float(np.median(np.abs(np.log2(ratio[ratio > 0]))))
 

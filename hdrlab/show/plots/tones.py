@@ -18,16 +18,14 @@ from matplotlib.axes import Axes
 from matplotlib.colors import BoundaryNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.colour import encode_srgb
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.show.plots import axes, scaled_axes, with_legend
 from hdrlab.show.plots.curves import LINES
 from hdrlab.show.plots.figures import MISSING, fit
 from hdrlab.show.plots.nearest import show
-
-Float = NDArray[np.float64]
 
 SIDE = 600  # pixels: a larger map is drawn by means of k x k pixels
 SCALE, SIGNED = "viridis", "PuOr_r"
@@ -130,7 +128,7 @@ def bands(
     return with_legend(ax, "upper left")
 
 
-def _arrays(each: Mapping[str, ArrayLike]) -> list[Float]:
+def _arrays(each: Mapping[str, ArrayLike]) -> list[F64]:
     arrays = [np.asarray(v, np.float64) for v in each.values()]
     if not 1 <= len(arrays) <= 3 or any(v.ndim != 2 or v.shape != arrays[0].shape for v in arrays):
         got = ", ".join(describe(v) for v in arrays) or "none"
@@ -139,7 +137,7 @@ def _arrays(each: Mapping[str, ArrayLike]) -> list[Float]:
 
 
 def _scale(
-    arrays: list[Float], span: tuple[float, float] | None, signed: bool, classes: int
+    arrays: list[F64], span: tuple[float, float] | None, signed: bool, classes: int
 ) -> tuple[Normalize, Any]:
     colours = matplotlib.colormaps[SIGNED if signed else SCALE].with_extremes(bad=MISSING)
     if classes:
@@ -152,7 +150,7 @@ def _scale(
     return Normalize(low, high if high > low else low + 1), colours
 
 
-def _row(arrays: list[Float], *, titled: bool) -> list[Axes]:
+def _row(arrays: list[F64], *, titled: bool) -> list[Axes]:
     """Return Axes for maps, and for their scale; one map is 5.4 inches wide, several have less each."""
     count, (h, w) = len(arrays), arrays[0].shape
     width = 5.4 if count == 1 else 3.4 * count

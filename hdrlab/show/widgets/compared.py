@@ -12,10 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import traitlets
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import Array
+from hdrlab.core.types import Array, ArrayLike
 from hdrlab.io import web
 from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit

@@ -14,9 +14,8 @@ from itertools import islice
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.types import F64, Indices
+from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms, value
 from hdrlab.response.polynomial import GRID, brightness, misfit
 from hdrlab.response.self_calibration import average

@@ -13,13 +13,12 @@ from collections.abc import Mapping
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.show.plots import SAMPLES, axes, with_legend
 from hdrlab.show.plots.curves import LINES
 
-Float = NDArray[np.float64]
 SIZE = (4.4, 4.4)  # inches: a step across is as long as one up
 RINGS = (1.05, 1.2, 1.5, 2, 3, 4, 6, 9)  # of the least residual, or of 1/4 where that is less
 
@@ -100,5 +99,5 @@ def _plane(reach: float, across: str, up: str) -> Axes:
     return ax
 
 
-def _marks(marks: ArrayLike | None) -> Float:
+def _marks(marks: ArrayLike | None) -> F64:
     return np.eye(2) if marks is None else np.asarray(marks, np.float64)

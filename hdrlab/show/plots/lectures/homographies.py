@@ -12,12 +12,12 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.align.cerman import State
 from hdrlab.align.light import differences as compare
 from hdrlab.align.light import error, lattice
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.show.plots import bare, picture_axes
 from hdrlab.show.plots.figures import false_colour
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
@@ -28,7 +28,7 @@ COLOURS = "PuOr_r"
 LINE, POINT = "#0072B2", "#D55E00"
 
 
-def differences(X: ArrayLike, H: ArrayLike) -> tuple[NDArray[np.float64], float]:
+def differences(X: ArrayLike, H: ArrayLike) -> tuple[F64, float]:
     """Return d of every pixel (h, w), and the error e."""
     light = np.asarray(X, np.float32)
     if light.ndim != 3 or len(light) != 2:

@@ -11,10 +11,9 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
 
 from hdrlab.calibration.blends import Blend, InverseResponse, difference
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.show.plots import SAMPLES, axes, with_legend
 from hdrlab.show.plots.curves import LINES
 

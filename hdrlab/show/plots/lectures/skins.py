@@ -6,9 +6,9 @@ x    chrominance (..., 2), (Cb, Cr) at level 128;  r, g  shares of red and green
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.enhance import skin
 from hdrlab.show.plots import axes, with_legend
 
@@ -16,7 +16,7 @@ MOST = 2000  # pixels: more dots hide one another
 PALE, DARK, RUST = "#56B4E9", "#1A1A1A", "#D55E00"
 
 
-def _pixels(Z: ArrayLike) -> NDArray[np.float64]:
+def _pixels(Z: ArrayLike) -> F64:
     """Return up to MOST pixels (N, 3), evenly from the whole."""
     Z = np.asarray(Z, np.float64)
     if Z.shape[-1:] != (3,) or Z.size == 0:
