@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import threadpoolctl
 from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from PIL import Image
@@ -22,6 +23,7 @@ from hdrlab.course.site import execute
 pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
 settings.load_profile("hdrlab")
+THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
 SCRATCH = tempfile.TemporaryDirectory(
     prefix="hypothesis-"
 )  # it keeps notes of its own, even without a database
@@ -37,12 +39,18 @@ def pytest_addoption(parser):
 
 
 def pytest_configure(config):
-    """Choose the tier, and let Ctrl-C reach what tests start, also where a script ignores it."""
+    """Choose the tier, let Ctrl-C reach what tests start, also where a script ignores it; keep to a core."""
     if config.option.tier is None:
         named = config.args_source is pytest.Config.ArgsSource.ARGS
         config.option.tier = ALL if named else QUICK
     if threading.current_thread() is threading.main_thread():
         signal.signal(signal.SIGINT, signal.default_int_handler)
+    # a worker has a core: had it threads for all, they would wait for one another, and such waiting computes
+    threadpoolctl.threadpool_limits(1)
+    for name in THREADS:
+        os.environ.setdefault(
+            name, "1"
+        )  # for the workers, which begin after this, and for all that a test starts
 
 
 def pytest_ignore_collect(collection_path, config):

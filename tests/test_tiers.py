@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 import results
+import threadpoolctl
 from tiers import ALL, QUICK, TIERS, may_hold, tier_of
 
 ROOT = Path(__file__).parents[1]
@@ -49,6 +50,16 @@ def test_ctrl_c_reaches_what_a_test_starts():
     code = "import signal; print(signal.getsignal(signal.SIGINT) is signal.default_int_handler)"
     ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
     assert ran.stdout == "True\n" and signal.getsignal(signal.SIGINT) is not signal.SIG_IGN
+
+
+def test_linear_algebra_keeps_to_one_core_here_and_in_what_a_test_starts():
+    """Two workers with two threads each take many times as long: a thread that waits computes."""
+    code = "import numpy.linalg, scipy.linalg, threadpoolctl\n"
+    code += "print({library['num_threads'] for library in threadpoolctl.threadpool_info()})"
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert ran.stdout == "{1}\n"
+    here = {library["num_threads"] for library in threadpoolctl.threadpool_info()}
+    assert here == {1}
 
 
 REPORT = """<testsuites><testsuite>

@@ -9,6 +9,7 @@ import re
 import imageio.v3 as iio
 import numpy as np
 import pytest
+import threadpoolctl
 from matplotlib.figure import Figure
 
 from hdrlab.io import web
@@ -468,7 +469,9 @@ def test_a_slider_computes_on_one_thread():
         seen.extend(pool["num_threads"] for pool in widgets.THREADS.info())
         return np.full((4, 4), k, np.uint8)
 
-    widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
+    with threadpoolctl.threadpool_limits(2):
+        assert {pool["num_threads"] for pool in widgets.THREADS.info()} == {2}
+        widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
     assert seen and set(seen) == {1}
 
 
