@@ -39,8 +39,8 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     Examples
     --------
     >>> from hdrlab.course import plan
-    >>> cells = texts(plan.read().homeworks["hw2"], ["gsolve_lambda_inverted"])
-    >>> "gsolve_of_debevec(Z, B, 1 / smoothness, w)" in cells["gsolve"], "hdrlab" in "".join(cells.values())
+    >>> cells = texts(plan.read().homeworks["hw2"], ["recover_one_curve_for_all"])
+    >>> "recover_of_mitsunaga(gray, times" in cells["recover"], "hdrlab" in "".join(cells.values())
     (True, False)
     """
     mistakes = list(mistakes)
