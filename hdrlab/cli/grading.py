@@ -1,4 +1,4 @@
-"""Commands about assignments: a student's check, an instructor's grade, and the course itself."""
+"""Commands about assignments: a student's check, and an instructor's grade."""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -104,7 +104,7 @@ def grade(
 
     if student and secret_file is None:
         raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
-    secret, note = _secret(secret_file)
+    secret, note = secret_of(secret_file)
     conditions = Conditions(tier, student, secret, hidden, timeout)
     if submission.is_dir():
         from hdrlab.cli import classroom
@@ -137,80 +137,6 @@ def doctor() -> None:
             click.echo(f"{'':<10}{remedy}")
 
 
-@click.group(cls=common.Group)
-def course() -> None:
-    """Make the course: its handouts, and other systems' forms of it."""
-
-
-@course.command()
-@click.option("--sources", type=FOLDER, default="solutions", help="The prose, a file for each homework.")
-@click.option("--out", type=common.OUT, default="assignments", help="Folder for the handouts.")
-@click.option("--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it.")
-@click.option("--jobs", type=click.IntRange(1), default=2, help="How many notebooks run at a time.")
-@PLAN
-def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Path | None) -> None:
-    """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates."""
-    from hdrlab.course import plan as plans
-    from hdrlab.course.material import handouts
-    from hdrlab.course.site import execute
-
-    try:
-        made = handouts.build_steps(plans.read(plan), sources, out, solutions, jobs=jobs)
-        for file in common.progress(made, "handouts"):
-            click.echo(file)
-    except execute.NotebookError as error:
-        raise click.ClickException(str(error)) from None
-    except ImportError as error:
-        raise ValueError(f'expected {error.name}: pip install "hdrlab[course]"') from None
-
-
-@course.command()
-@click.option("--nbgrader", type=common.OUT, metavar="DIR", help="A course for nbgrader, in this folder.")
-@click.option("--gradescope", type=common.OUT, metavar="DIR", help="An autograder zip for each homework.")
-@click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
-@SECRET
-@PLAN
-def export(
-    nbgrader: Path | None,
-    gradescope: Path | None,
-    hidden: Path | None,
-    secret_file: Path | None,
-    plan: Path | None,
-) -> None:
-    """Write the course in the form of another system, whose tests call the same checks."""
-    from hdrlab.course import plan as plans
-    from hdrlab.course.export import gradescope as to_gradescope
-    from hdrlab.course.export import nbgrader as to_nbgrader
-
-    if nbgrader is None and gradescope is None:
-        raise ValueError("expected --nbgrader DIR or --gradescope DIR")
-    read = plans.read(plan)
-    if nbgrader is not None:
-        for file in to_nbgrader.export(read, nbgrader):
-            click.echo(file)
-    if gradescope is not None:
-        secret, note = _secret(secret_file)
-        click.echo(note, nl=bool(note), err=True)
-        for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
-            click.echo(file)
-
-
-@course.command()
-@click.argument("folder", type=common.FILE)
-def toy(folder: Path) -> None:
-    """Make a toy class in FOLDER: a dozen submissions of hw2, good, late, wrong and hostile, to be graded."""
-    from hdrlab.course.classroom import toy as classes
-    from hdrlab.course.sandbox import doctor
-
-    made = classes.write(folder)
-    click.echo(f"{folder / 'README.md'}: what each of {len(made)} submissions of {classes.HOMEWORK} is")
-    command, strict = classes.COMMAND.format(folder=folder), doctor.examine("strict")
-    if not strict.works:
-        click.echo(f"note: {common.no_tier(strict.says)}", err=True)
-        command += " --tier practice"
-    click.echo(f"to grade it: {command}")
-
-
 def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homework":
     """Return the homework that is asked for, or the one whose name stands in the file's."""
     from hdrlab.course import plan as plans
@@ -227,13 +153,13 @@ def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homewor
     return homeworks[name]
 
 
-def _secret(file: Path | None) -> tuple[str, str]:
+def secret_of(file: Path | None) -> tuple[str, str]:
     """Return the course's secret, and a note where it was made, or where there is none."""
     from hdrlab.course import plan as plans
 
     if file is None:
         return "", "note: for practice: without --secret-file the inputs are public"
-    secret, made = plans.read_secret(file)
+    secret, made = plans.readsecret_of(file)
     return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
 
 

@@ -85,7 +85,7 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
     if conditions.hidden is not None and not conditions.hidden.is_dir():
         raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
     tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
-    files = _files(homework, conditions.hidden)
+    files = files_of(homework, conditions.hidden)
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
         job = _job(folder, read, homework, conditions)
@@ -99,13 +99,17 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
     yield _result(heard, read, homework, conditions, files)
 
 
-def _files(homework: Homework, hidden: Path | None) -> list[Path]:
+def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
     """Return the files with the checks of a homework, in its order, the hidden ones after each task's own."""
-    folders = [SPECIFICATION, *([] if hidden is None else [hidden.resolve()])]
-    files = [folder / f"test_{task.id}.py" for task in homework.tasks for folder in folders]
+    homes = [SPECIFICATION if task.own is None else task.own.parent for task in homework.tasks]
+    files = [
+        folder / f"test_{task.id}.py"
+        for task, home in zip(homework.tasks, homes, strict=True)
+        for folder in (home, *([] if hidden is None else [hidden.resolve()]))
+    ]
     if present := [file for file in files if file.is_file()]:
         return present
-    raise ValueError(f"expected checks for {homework.name} in {SPECIFICATION}, got none")
+    raise ValueError(f"expected checks for {homework.name} in {homes[0]}, got none")
 
 
 def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions) -> Path:
@@ -116,7 +120,8 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
         "seeds": _seeds(homework, conditions),
         "timeout": conditions.timeout,
         "draw": conditions.draw,
-        "specification": str(SPECIFICATION),
+        "hidden": "" if conditions.hidden is None else str(conditions.hidden.resolve()),
+        "functions": {task.id: task.function for task in homework.tasks},
         "out": str(folder / "lines"),
         "grader": os.getpid(),
     }

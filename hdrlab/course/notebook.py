@@ -5,9 +5,11 @@ the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and
 """
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any
 
-from hdrlab.course import grading, plan
+from hdrlab.course import grading
+from hdrlab.course import plan as plans
 from hdrlab.course.code import closure
 from hdrlab.course.code.closure import Cell
 from hdrlab.course.code.names import imported
@@ -81,12 +83,15 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     return Feedback(result, homework)
 
 
-def use_plan(name: str, at_most: float | None = None, **points: float) -> None:
+def use_plan(
+    name: str, at_most: float | None = None, *, plan: str | Path | None = None, **points: float
+) -> None:
     """Take a homework's tasks and points from its sheet; without any, from hdrlab's own plan.
 
-    Of the points, `at_most` so many count.
+    Of the points, `at_most` so many count. Tasks that are not hdrlab's stand in the file `plan`, with their
+    checks beside it.
     """
-    own = plan.read()
+    own = plans.read(plan)
     tasks = tuple(own.task(id)._replace(points=float(worth)) for id, worth in points.items())
     known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(name=name, title=name)
     _plan[name] = known._replace(tasks=tasks, at_most=at_most) if tasks else known
@@ -94,7 +99,7 @@ def use_plan(name: str, at_most: float | None = None, **points: float) -> None:
 
 def find_tasks(name: str) -> tuple[Homework, list[str]]:
     """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
-    homeworks = _plan | {key: one for key, one in plan.read().homeworks.items() if key not in _plan}
+    homeworks = _plan | {key: one for key, one in plans.read().homeworks.items() if key not in _plan}
     if name in homeworks:
         return homeworks[name], [task.id for task in homeworks[name].tasks]
     for homework in homeworks.values():

@@ -2,11 +2,13 @@
 
 An instructor changes plan.toml, or gives the path of another. A task is a function of hdrlab: the solution is
 that function, the handout its signature, and the checks are in
-course/checks/specification/test_<id>.py.
+course/checks/specification/test_<id>.py. Or it is a function of the instructor's own, "vignette.py:vignette",
+in a file beside the plan; its checks are test_<id>.py in the same folder, and its mistakes in `mistakes`.
 """
 
 import hmac
 import os
+import runpy
 import secrets
 import tomllib
 from collections.abc import Callable
@@ -24,7 +26,8 @@ PLAN = Path(__file__).with_name("plan.toml")
 class Task(NamedTuple):
     """One function to write: what it is called in the checks, where the library has it, and its points.
 
-    `minimum` marks what everybody is to write, also those who write little.
+    A function that is not the library's is written as the path of its file, a colon, and its name. `minimum`
+    marks what everybody is to write, also those who write little.
     """
 
     id: str
@@ -35,7 +38,13 @@ class Task(NamedTuple):
     @property
     def name(self) -> str:
         """The function's own name."""
-        return self.function.rpartition(".")[2]
+        return self.function.replace(":", ".").rpartition(".")[2]
+
+    @property
+    def own(self) -> Path | None:
+        """The file of a function that is not the library's, or None."""
+        file = self.function.rpartition(":")[0]
+        return Path(file) if file else None
 
 
 class ByHand(NamedTuple):
@@ -126,7 +135,7 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     here = f"[{name:.80}]"
     try:
         tasks = tuple(
-            Task(one["id"], one["function"], float(one["points"]), one.get("minimum") is True)
+            Task(one["id"], _placed(one["function"], path), float(one["points"]), one.get("minimum") is True)
             for one in sheet["tasks"]
         )
         by_hand = tuple(
@@ -148,8 +157,18 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     return made
 
 
+def _placed(function: str, plan: Path) -> str:
+    """Return a function as a plan names it, the file of one that is not the library's with its folder."""
+    file, colon, name = function.rpartition(":")
+    if colon and not (file.endswith(".py") and file == Path(file).name and name):
+        raise ValueError(f"expected a function of hdrlab, or FILE.py:NAME beside the plan, got {function}")
+    return f"{plan.resolve().parent / file}:{name}" if colon else function
+
+
 def function(task: Task) -> Callable[..., Any]:
-    """Return the library's own function for a task, which is its solution."""
+    """Return the function of a task that is its solution: the library's own, or the instructor's."""
+    if task.own is not None:
+        return runpy.run_path(str(task.own))[task.name]
     module, _, name = task.function.rpartition(".")
     found: Callable[..., Any] = getattr(import_module(f"hdrlab.{module}"), name)
     return found

@@ -48,7 +48,8 @@ def score(task, subject, seed=0):
     As in grading: a well-known mistake that explains all answers costs half at most.
     """
     said = answered(task, subject, seed)
-    found = misconceptions.closest(task, subject.calls[: plugin.CALLS]) if any(said.values()) else None
+    asked = plan.read().task(task)
+    found = misconceptions.closest(asked, subject.calls[: plugin.CALLS]) if any(said.values()) else None
     worth = [Fraction(str(points)) for _, _, points, *_ in checks(task)]
     each = [
         Check(task, name, name, Fraction(), points, "fails" if said[name] else "holds")

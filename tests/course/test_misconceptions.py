@@ -55,7 +55,7 @@ def test_nine_in_ten_are_recognised_by_name_for_any_student():
         missed = []
         for one in KNOWN:
             calls = [(given, named, roughened(came)) for given, named, came in asked(one, student)[1]]
-            found = misconceptions.closest(one.task, calls)
+            found = misconceptions.closest(PLAN.task(one.task), calls)
             missed += [] if found is not None and found.name == one.name else [one.name]
         assert len(missed) <= 0.1 * len(KNOWN), missed
 
@@ -64,11 +64,11 @@ def test_nine_in_ten_are_recognised_by_name_for_any_student():
 def test_the_library_has_no_misconception_nor_has_a_blank_stub(task):
     subject = inprocess.library()
     scoring.score(task, subject)
-    assert misconceptions.closest(task, subject.calls) is None
+    assert misconceptions.closest(PLAN.task(task), subject.calls) is None
     stub = inprocess.Subject({task: lambda *given, **named: None})
     scoring.score(task, stub)
-    assert misconceptions.closest(task, stub.calls) is None
-    assert misconceptions.closest(task, []) is None
+    assert misconceptions.closest(PLAN.task(task), stub.calls) is None
+    assert misconceptions.closest(PLAN.task(task), []) is None
 
 
 def test_nonsense_is_no_known_mistake():
@@ -76,7 +76,7 @@ def test_nonsense_is_no_known_mistake():
     given = (Z, np.arange(4.0), 10.0, np.ones(256))
     answers = (np.arange(256.0), np.zeros(30)), (np.zeros(3), np.zeros(2)), "no", [1.0], (np.zeros(256),)
     for answer in answers:
-        assert misconceptions.closest("gsolve", [(given, {}, answer)]) is None
+        assert misconceptions.closest(PLAN.task("gsolve"), [(given, {}, answer)]) is None
 
 
 def unscaled(one):
@@ -102,7 +102,7 @@ def test_a_mistake_is_named_in_every_scale_and_gauge_that_the_checks_accept(name
     one = KNOWN[NAMES.index(name)]
     subject = inprocess.Subject({one.task: unscaled(one)})
     scoring.answered(one.task, subject, plan.seed("secret", "ada", one.task))
-    assert misconceptions.closest(one.task, subject.calls[:20]) == one
+    assert misconceptions.closest(PLAN.task(one.task), subject.calls[:20]) == one
 
 
 @pytest.mark.parametrize("one", [one for one in KNOWN if one.once], ids=lambda one: one.name)

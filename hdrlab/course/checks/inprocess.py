@@ -30,7 +30,7 @@ class Subject:
         return ask
 
 
-def library():
-    """Return the Subject whose functions are the library's own."""
-    tasks = [task for homework in plan.read().homeworks.values() for task in homework.tasks]
+def library(own=None):
+    """Return the Subject whose functions are the library's, or the solutions of a plan of one's own."""
+    tasks = [task for homework in (own or plan.read()).homeworks.values() for task in homework.tasks]
     return Subject({task.id: plan.function(task) for task in tasks})

@@ -2,8 +2,9 @@
 
 A mistake's name begins with the id of its task. Many are one place of the solution written otherwise, in
 `mistakes/changes.toml`; where more is wrong, it is a file in `mistakes`: a docstring that says to the student
-what it is, and the wrong function. All are asked what the student was asked; wrong functions are ours, and
-run here. Answers are compared in the gauge or scale that the checks leave free.
+what it is, and the wrong function. A task of an instructor's own has such
+files beside it. All are asked what the student was asked; wrong functions are ours, and run here. Answers
+are compared in the gauge or scale that the checks leave free.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
@@ -23,6 +24,7 @@ from hdrlab.course import plan
 from hdrlab.course.checks import MISTAKES
 from hdrlab.course.checks.compare import as_listed, plain
 from hdrlab.course.code import inline
+from hdrlab.course.plan import Task
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
@@ -54,10 +56,18 @@ def known() -> tuple[Misconception, ...]:
     return tuple(sorted([*map(_read, MISTAKES.rglob("*.py")), *changed], key=lambda one: one.name))
 
 
-def _read(path: Path) -> Misconception:
-    names = runpy.run_path(str(path))
-    task, sentence = task_of(path.stem), " ".join(names["__doc__"].split())
-    return Misconception(path.stem, task, sentence, names[task], path.parent == MISTAKES)
+def of_task(task: Task) -> Sequence[Misconception]:
+    """Return the mistakes of a task: those that come with hdrlab, or with an instructor's own task."""
+    if task.own is None:
+        return [one for one in known() if one.task == task.id]
+    files = sorted((task.own.parent / "mistakes").rglob(f"{task.id}_*.py"))
+    return [_read(path, task.id) for path in files]
+
+
+def _read(path: Path, task: str = "") -> Misconception:
+    names, task = runpy.run_path(str(path)), task or task_of(path.stem)
+    sentence = " ".join(names["__doc__"].split())
+    return Misconception(path.stem, task, sentence, names[task], path.parent.name != "method")
 
 
 def task_of(name: str) -> str:
@@ -103,18 +113,18 @@ def _ask_changed(name: str, *given: Any, **named: Any) -> Any:
     return _changed(name)(*given, **named)
 
 
-def closest(task: str, calls: Sequence[Call]) -> Misconception | None:
+def closest(asked: Task, calls: Sequence[Call]) -> Misconception | None:
     """Return the misconception whose answers are those of the student in every call, or None.
 
     Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.
     """
-    right = plan.function(plan.read().task(task))
+    right, task = plan.function(asked), asked.id
     calls = [(given, named, in_gauge(task, came)) for given, named, came in calls]
     truths = [in_gauge(task, call_quietly(right, given, named)) for given, named, _ in calls]
     far = [difference(call[2], truth) for call, truth in zip(calls, truths, strict=True)]
     if max(far, default=0) <= ROUNDING or all(came is None for _, _, came in calls):
         return None
-    scores = [(_distance(one, calls, far), one) for one in known() if one.task == task]
+    scores = [(_distance(one, calls, far), one) for one in of_task(asked)]
     agreeing = [(score, one) for score, one in scores if score is not None]
     return min(agreeing, key=lambda pair: pair[0])[1] if agreeing else None
 

@@ -141,7 +141,8 @@ class Checking:
         """Write down which well-known mistakes the answers show."""
         for task in sorted(self.failed):
             with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
-                if found := misconceptions.closest(task, self.calls.get(task, [])):
+                asked = plan.Task(task, self.job["functions"][task], 0)
+                if found := misconceptions.closest(asked, self.calls.get(task, [])):
                     self._write(recognised=task, sentence=found.sentence, once=found.once)
 
     def pytest_unconfigure(self) -> None:
@@ -149,7 +150,7 @@ class Checking:
         self.open.close()
 
     def _is_hidden(self, item: pytest.Item) -> bool:
-        return item.path.parent != Path(self.job["specification"])
+        return str(item.path.parent) == self.job["hidden"]
 
     def _write(self, **line: Any) -> None:
         with open(self.job["out"], "a", encoding="utf8") as out:

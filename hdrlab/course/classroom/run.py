@@ -15,7 +15,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course import grading
-from hdrlab.course.checks import SPECIFICATION
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.journal import Done, Piece
@@ -133,9 +132,7 @@ def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
 
 def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
-    folders = [SPECIFICATION, *([conditions.hidden] if conditions.hidden else [])]
-    checks = [folder / f"test_{task.id}.py" for folder in folders for task in homework.tasks]
-    files = grading.specification([check for check in checks if check.is_file()])
+    files = grading.specification(grading.files_of(homework, conditions.hidden))
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
     return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
 

@@ -6,6 +6,7 @@ that need them. Two definitions of one name, from two modules, part by the modul
 """
 
 import ast
+import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import NamedTuple
 
@@ -130,7 +131,7 @@ def _names(wanted: dict[Key, str], needed: Sequence[Key]) -> dict[Key, str]:
         if key in names:
             continue
         source = _text(key, {})
-        home = key.module.rsplit(".", 1)[-1]
+        home = re.split(r"[./\\]", key.module.removesuffix(".py"))[-1]
         for name in (key.name, f"{key.name}_{home}", f"{key.name}_{key.module.replace('.', '_')}"):
             if name not in local.get(key, ()) and taken.setdefault(name, source) == source:
                 names[key] = name

@@ -24,7 +24,7 @@ GUARDS = ("require_", "check_")
 
 
 class Key(NamedTuple):
-    """A definition's place: the dotted module, and the name in it."""
+    """A definition's place: the dotted module, or the path of a file, and the name in it."""
 
     module: str
     name: str
@@ -40,18 +40,26 @@ class Module(NamedTuple):
 
 
 def key_of(function: str) -> Key:
-    """Return the place of a function that is given dotted under hdrlab."""
-    home, _, name = function.rpartition(".")
-    return Key(f"{HOUSE}.{home}", name)
+    """Return the place of a function that is given dotted under hdrlab, or as FILE.py:NAME."""
+    file, _, name = function.rpartition(":")
+    home, _, name = ("", "", name) if file else function.rpartition(".")
+    return Key(file or f"{HOUSE}.{home}", name)
+
+
+def written(key: Key) -> str:
+    """Return the place of a definition in the form that `key_of` takes."""
+    home = key.module
+    return f"{home}:{key.name}" if home.endswith(".py") else f"{home}.{key.name}".partition(".")[2]
 
 
 @cache
 def module(dotted: str) -> Module:
-    """Return the Module of a dotted name, read and not imported."""
-    spec = find_spec(dotted)
-    if spec is None or spec.origin is None:
+    """Return the Module of a dotted name, or of a file's path, read and not imported."""
+    spec = None if dotted.endswith(".py") else find_spec(dotted)
+    origin = dotted if spec is None else spec.origin
+    if origin is None or not origin.endswith(".py"):
         raise ValueError(f"expected a module of the library, got {dotted!r}")
-    typed = Path(spec.origin).read_text(encoding="utf8")
+    typed = Path(origin).read_text(encoding="utf8")
     functions = [one for one in ast.parse(typed).body if isinstance(one, ast.FunctionDef)]
     returns = {one.name: one.returns for one in functions if one.returns}
     text = on_the_board(typed)

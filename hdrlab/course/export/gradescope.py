@@ -13,7 +13,7 @@ from pathlib import Path
 import hdrlab
 from hdrlab.course import plan as plans
 from hdrlab.course.material import materials
-from hdrlab.course.plan import Plan
+from hdrlab.course.plan import Plan, Task
 from hdrlab.io.files import replacing
 
 LIBRARY = Path(hdrlab.__file__).parent
@@ -46,8 +46,18 @@ def export(
             "plan.toml": (plan_file or plans.PLAN).read_bytes(),
             "settings.json": json.dumps({"homework": name, "secret": secret}).encode(),
             **{f"hidden/{one.name}": one.read_bytes() for one in own},
+            **{name: data for task in plan.homeworks[name].tasks for name, data in _own(task)},
         }
         yield _zipped(folder / f"{name}_autograder.zip", files)
+
+
+def _own(task: Task) -> Iterator[tuple[str, bytes]]:
+    """Yield the files of a task that is not hdrlab's, beside the plan: solution, checks and mistakes."""
+    if task.own is not None:
+        home = task.own.parent
+        mistakes = sorted(home.glob(f"mistakes/**/{task.id}_*.py"))
+        for file in (task.own, home / f"test_{task.id}.py", *mistakes):
+            yield file.relative_to(home).as_posix(), file.read_bytes()
 
 
 def requirements() -> list[str]:

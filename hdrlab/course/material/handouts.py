@@ -32,6 +32,10 @@ KERNEL = {
 }
 
 
+# folder beside the sheet, for the checks of tasks that are not hdrlab's
+CHECKS = "{}-checks"
+
+
 class Handout(NamedTuple):
     """A homework's two notebooks, as JSON holds them: to be filled in, and filled in."""
 
@@ -95,7 +99,11 @@ def _planned(text: str, homework: Homework) -> str:
     points = ", ".join(f"{task.id}={task.points:g}" for task in homework.tasks)
     if homework.at_most is not None:
         points = f"at_most={homework.at_most:g}, {points}"
-    said = textwrap.fill(f'use_plan("{homework.name}", {points})', 96, subsequent_indent=9 * " ")
+    if any(task.own for task in homework.tasks):
+        points = f'plan="{CHECKS.format(homework.name)}/plan.toml", {points}'
+    said = textwrap.fill(
+        f'use_plan("{homework.name}", {points})', 96, subsequent_indent=9 * " ", break_on_hyphens=False
+    )
     return text.replace(f'use_plan("{homework.name}")', said)
 
 
@@ -176,20 +184,36 @@ def build_steps(
         made.append(handout(source.read_text(encoding="utf8"), homework, lateness(plan)))
     for one in made:
         yield write_text(assignments / f"{one.homework}.ipynb", to_text(one.assignment))
+        yield from _own_checks(plan.homeworks[one.homework], assignments)
     if solutions is not None:
-        yield from _solved(made, solutions, jobs)
+        yield from _solved(made, assignments, solutions, jobs)
 
 
-def _solved(made: Sequence[Handout], solutions: Path, jobs: int) -> Iterator[Path]:
+def _own_checks(homework: Homework, folder: Path) -> Iterator[Path]:
+    """Copy the plan and the checks of tasks that are not hdrlab's, no solution, and yield each file."""
+    own = [(task.own.parent, f"test_{task.id}.py") for task in homework.tasks if task.own]
+    for file in dict.fromkeys(home / name for home, check in own for name in ("plan.toml", check)):
+        copy = folder / CHECKS.format(homework.name) / file.name
+        yield write_text(copy, file.read_text(encoding="utf8"))
+
+
+def _solved(made: Sequence[Handout], assignments: Path, solutions: Path, jobs: int) -> Iterator[Path]:
     """Run the solutions, and yield each file when it is written."""
+    near = {one.homework: f"{CHECKS.format(one.homework)}/plan.toml" for one in made}
+    far = {name: (assignments / plan).resolve().as_posix() for name, plan in near.items()}  # run elsewhere
     from hdrlab.course.site import execute
 
     scratch = Path(tempfile.mkdtemp(prefix="hdrlab-solutions-"))
     try:
-        sources = [write_text(scratch / f"{one.homework}.ipynb", to_text(one.solution)) for one in made]
+        texts = {one.homework: to_text(one.solution) for one in made}
+        sources = [
+            write_text(scratch / f"{name}.ipynb", text.replace(near[name], far[name]))
+            for name, text in texts.items()
+        ]
         for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
             ran = json.loads(done.executed.read_text(encoding="utf8"))
-            yield write_text(solutions / done.source.name, to_text(_tidy(ran)))
+            name = done.source.stem
+            yield write_text(solutions / done.source.name, to_text(_tidy(ran)).replace(far[name], near[name]))
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
 

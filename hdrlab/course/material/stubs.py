@@ -23,7 +23,7 @@ def classes(function: str) -> tuple[str, ...]:
     returns = source.module(key.module).returns.get(key.name)
     keys = source.definitions_in(key.module, returns) if returns is not None else []
     found = [one for one in keys if isinstance(source.statements(one)[-1], ast.ClassDef)]
-    return tuple(f"{one.module}.{one.name}".partition(".")[2] for one in found)
+    return tuple(map(source.written, found))
 
 
 def definition(function: str) -> ast.FunctionDef:

@@ -1,0 +1,95 @@
+"""Commands that make the course: its handouts, other systems' forms of it, tasks of an instructor's own."""
+
+from pathlib import Path
+
+import click
+
+from hdrlab.cli import common
+from hdrlab.cli.grading import FOLDER, PLAN, SECRET, secret_of
+
+
+@click.group(cls=common.Group)
+def course() -> None:
+    """Make the course: its handouts, and other systems' forms of it."""
+
+
+@course.command()
+@click.option("--sources", type=FOLDER, default="solutions", help="The prose, a file for each homework.")
+@click.option("--out", type=common.OUT, default="assignments", help="Folder for the handouts.")
+@click.option("--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it.")
+@click.option("--jobs", type=click.IntRange(1), default=2, help="How many notebooks run at a time.")
+@PLAN
+def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Path | None) -> None:
+    """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates."""
+    from hdrlab.course import plan as plans
+    from hdrlab.course.material import handouts
+    from hdrlab.course.site import execute
+
+    try:
+        made = handouts.build_steps(plans.read(plan), sources, out, solutions, jobs=jobs)
+        for file in common.progress(made, "handouts"):
+            click.echo(file)
+    except execute.NotebookError as error:
+        raise click.ClickException(str(error)) from None
+    except ImportError as error:
+        raise ValueError(f'expected {error.name}: pip install "hdrlab[course]"') from None
+
+
+@course.command()
+@click.option("--nbgrader", type=common.OUT, metavar="DIR", help="A course for nbgrader, in this folder.")
+@click.option("--gradescope", type=common.OUT, metavar="DIR", help="An autograder zip for each homework.")
+@click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
+@SECRET
+@PLAN
+def export(
+    nbgrader: Path | None,
+    gradescope: Path | None,
+    hidden: Path | None,
+    secret_file: Path | None,
+    plan: Path | None,
+) -> None:
+    """Write the course in the form of another system, whose tests call the same checks."""
+    from hdrlab.course import plan as plans
+    from hdrlab.course.export import gradescope as to_gradescope
+    from hdrlab.course.export import nbgrader as to_nbgrader
+
+    if nbgrader is None and gradescope is None:
+        raise ValueError("expected --nbgrader DIR or --gradescope DIR")
+    read = plans.read(plan)
+    if nbgrader is not None:
+        for file in to_nbgrader.export(read, nbgrader):
+            click.echo(file)
+    if gradescope is not None:
+        secret, note = secret_of(secret_file)
+        click.echo(note, nl=bool(note), err=True)
+        for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
+            click.echo(file)
+
+
+@course.command("new-task")
+@click.argument("task")
+@click.option("--folder", type=common.FILE, default="our-tasks", help="Its place, beside the package.")
+@click.option("--homework", default="extra", help="The homework that it belongs to.")
+def new_task(task: str, folder: Path, homework: str) -> None:
+    """Begin a task of your own: an example that works, whole, to be changed file by file."""
+    from hdrlab.course.material import own_task
+
+    for file in own_task.write(folder, task, homework):
+        click.echo(file)
+    click.echo(f"to try it: python -m pytest {folder}")
+
+
+@course.command()
+@click.argument("folder", type=common.FILE)
+def toy(folder: Path) -> None:
+    """Make a toy class in FOLDER: a dozen submissions of hw2, good, late, wrong and hostile, to be graded."""
+    from hdrlab.course.classroom import toy as classes
+    from hdrlab.course.sandbox import doctor
+
+    made = classes.write(folder)
+    click.echo(f"{folder / 'README.md'}: what each of {len(made)} submissions of {classes.HOMEWORK} is")
+    command, strict = classes.COMMAND.format(folder=folder), doctor.examine("strict")
+    if not strict.works:
+        click.echo(f"note: {common.no_tier(strict.says)}", err=True)
+        command += " --tier practice"
+    click.echo(f"to grade it: {command}")

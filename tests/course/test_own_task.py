@@ -1,0 +1,126 @@
+"""A task of an instructor's own: the example works whole, and so do sheet, checks and grading made of it."""
+
+import json
+import subprocess
+import sys
+import zipfile
+
+import pytest
+
+from hdrlab.course import grading, notebook, plan
+from hdrlab.course.checks import misconceptions
+from hdrlab.course.code import inline
+from hdrlab.course.export import gradescope
+from hdrlab.course.grading import Conditions
+from hdrlab.course.material import handouts, own_task, stubs
+
+WRONG = "def flat_field(Z, flat):\n    return Z / flat\n"
+FILE = "flat_field.py:flat_field"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """A folder with the example, as the command writes it."""
+    assert list(own_task.write(tmp_path / "ours", "flat_field", "extra"))
+    return tmp_path / "ours"
+
+
+def extra(folder):
+    """Return the homework of the example."""
+    return plan.read(folder / "plan.toml").homeworks["extra"]
+
+
+def test_a_task_of_the_plan_may_be_a_function_beside_it(folder):
+    (task,) = extra(folder).tasks
+    assert task.own == folder / "flat_field.py" and task.name == "flat_field"
+    assert plan.function(task)(4.0, [2.0, 2.0]).tolist() == [4.0, 4.0]
+    assert plan.read().task("gsolve").own is None
+
+
+@pytest.mark.parametrize("function", ["../x.py:x", "ours/x.py:x", "x:x", "x.py:"])
+def test_a_function_elsewhere_is_refused(folder, function):
+    text = (folder / "plan.toml").read_text()
+    (folder / "plan.toml").write_text(text.replace(FILE, function))
+    with pytest.raises(ValueError, match="beside the plan"):
+        plan.read(folder / "plan.toml")
+
+
+def test_a_second_task_joins_the_first_and_a_third_begins_another_homework(folder):
+    for name, homework in (("dark", "extra"), ("white", "more")):
+        assert folder / f"{name}.py" in list(own_task.write(folder, name, homework))
+    homeworks = plan.read(folder / "plan.toml").homeworks
+    assert [[task.id for task in one.tasks] for one in homeworks.values()] == [
+        ["flat_field", "dark"],
+        ["white"],
+    ]
+    assert (folder / "sheets" / "extra.py").read_text().count("# %% task=") == 2
+
+
+@pytest.mark.parametrize("name", ["flat_field", "extra", "Dark", "dark-frame", "class", "../dark"])
+def test_a_name_that_is_there_or_that_no_function_can_have_is_refused(folder, name):
+    with pytest.raises(ValueError, match="expected"):
+        list(own_task.write(folder, name, "extra"))
+
+
+def test_the_sheet_has_stub_prose_and_points_and_its_checks_beside_it(folder, tmp_path, monkeypatch):
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    out = tmp_path / "handout"
+    made = list(handouts.build_steps(plan.read(folder / "plan.toml"), folder / "sheets", out, None))
+    checks = out / "extra-checks"
+    assert made == [out / "extra.ipynb", checks / "plan.toml", checks / "test_flat_field.py"]
+    cells = ["".join(cell["source"]) for cell in json.loads(made[0].read_text())["cells"]]
+    assert any(cell.startswith("def flat_field(Z, flat):") for cell in cells)
+    (given,) = [cell for cell in cells if "use_plan(" in cell]
+    assert given.endswith('use_plan("extra", plan="extra-checks/plan.toml", flat_field=10)')
+    monkeypatch.setattr(notebook, "_plan", {})
+    monkeypatch.chdir(out)
+    exec(given[given.index("use_plan(") :], {"use_plan": notebook.use_plan})
+    homework, tasks = notebook.find_tasks("flat_field")
+    assert tasks == ["flat_field"] and grading.files_of(homework, None) == [checks / "test_flat_field.py"]
+
+
+def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, tmp_path):
+    (tmp_path / "extra.py").write_text(WRONG)
+    conditions = Conditions("practice", hidden=folder / "hidden")
+    found = grading.grade(tmp_path / "extra.py", extra(folder), conditions)
+    (task,) = extra(folder).tasks
+    says = {one.name: one.sentence for one in misconceptions.of_task(task)}
+    assert found.misconceptions == {"flat_field": says["flat_field_mean_forgotten"]}
+    assert 5 <= found.score < 10 and [one.hidden for one in found.checks] == [False] * 3 + [True]
+
+
+def test_without_solution_and_mistakes_a_student_is_told_what_does_not_hold(folder, tmp_path):
+    (task,) = extra(folder).tasks
+    task.own.unlink()
+    (tmp_path / "extra.py").write_text(WRONG)
+    found = grading.grade(tmp_path / "extra.py", extra(folder), Conditions("practice"))
+    assert found.misconceptions == {} and found.score < 10
+    assert any("the corrected wall: expected" in one.message for one in found.checks)
+
+
+def test_gradescope_gets_the_task_its_checks_and_its_mistakes(folder, tmp_path):
+    read = plan.read(folder / "plan.toml")
+    (file,) = gradescope.export(read, tmp_path / "zips", plan_file=folder / "plan.toml")
+    zipfile.ZipFile(file).extractall(
+        tmp_path / "source", ["plan.toml", "flat_field.py", "test_flat_field.py"]
+    )
+    held = zipfile.ZipFile(file).namelist()
+    assert "mistakes/flat_field_multiplied.py" in held and not any(one.startswith("hidden/") for one in held)
+    assert grading.files_of(extra(tmp_path / "source"), None)[0].is_file()
+
+
+def test_a_solution_may_use_the_library_and_its_stub_does_not_show_it(folder):
+    task = extra(folder).tasks[0]
+    text = (folder / "flat_field.py").read_text()
+    text = text.replace("import numpy as np", "import numpy as np\n\nfrom hdrlab.core.weights import hat")
+    task.own.write_text(text.replace("flat.mean() / flat", "hat().max() * flat.mean() / flat"))
+    block = inline.inlined({task.id: task.function})[task.id].text
+    assert "def hat(" in block and "hdrlab" not in block
+    assert "hat" not in stubs.stub(task)
+
+
+def test_its_own_tests_hold_as_written(folder):
+    ran = subprocess.run(
+        [sys.executable, "-m", "pytest", "-q", str(folder)], cwd=folder, capture_output=True, text=True
+    )
+    assert ran.returncode == 0 and "15 passed" in ran.stdout, ran.stdout
