@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import tarfile
 import venv
 import zipfile
 from pathlib import Path
@@ -31,7 +32,7 @@ IN = (
     "hdrlab/scenes/tripod/img-1.jpeg",
     "hdrlab/course/plan.toml",
     "hdrlab/course/checks/specification/test_gsolve.py",
-    "hdrlab/course/checks/mistakes/gsolve_lambda_inverted.py",
+    "hdrlab/course/checks/mistakes/changes.toml",
     "hdrlab/course/gallery/web/templates/base.html",
     "hdrlab/show/widgets/blink.js",
 )
@@ -55,6 +56,16 @@ def test_the_wheel_carries_no_attack_and_no_full_answer(wheel):
     foreign = {path.read_bytes() for folder in kept for path in folder.rglob("*.py")} - {b""}
     opened = zipfile.ZipFile(wheel)
     assert not [name for name in opened.namelist() if opened.read(name) in foreign]
+
+
+def test_neither_the_wheel_nor_the_source_distribution_holds_a_model_solution(wheel, tmp_path):
+    """The worked sheets are in the clone; a pack of them is written on asking, by `hdrlab course pack`."""
+    command = [sys.executable, "-m", "build", "--sdist", "--no-isolation", "--outdir", tmp_path, ROOT]
+    subprocess.run(command, check=True, capture_output=True)
+    with tarfile.open(next(tmp_path.glob("hdrlab-*.tar.gz"))) as sdist:
+        held = sdist.getnames() + zipfile.ZipFile(wheel).namelist()
+    assert any(name.endswith("course/material/solutions.py") for name in held)
+    assert not [name for name in held if "/solutions/" in name or "/fairness/right/" in name]
 
 
 def installed(wheel, tmp_path, words):

@@ -81,6 +81,18 @@ def new_task(task: str, folder: Path, homework: str) -> None:
 
 @course.command()
 @click.argument("folder", type=common.FILE)
+@PLAN
+def pack(folder: Path, plan: Path | None) -> None:
+    """Write the model solutions into FOLDER: each homework filled in with the library's functions."""
+    from hdrlab.course import plan as plans
+    from hdrlab.course.material import solutions
+
+    for file in solutions.write(plans.read(plan), folder):
+        click.echo(file)
+
+
+@course.command()
+@click.argument("folder", type=common.FILE)
 def toy(folder: Path) -> None:
     """Make a toy class in FOLDER: a dozen submissions of hw2, good, late, wrong and hostile, to be graded."""
     from hdrlab.course.classroom import toy as classes

@@ -1,0 +1,43 @@
+"""The pack of model solutions: written on asking, each of some ten to thirty lines, in full points."""
+
+import pytest
+import scoring
+
+from hdrlab.course import plan
+from hdrlab.course.checks import inprocess
+from hdrlab.course.material import solutions
+
+PLAN = plan.read()
+
+
+@pytest.fixture(scope="module")
+def pack(tmp_path_factory):
+    """The folder of the pack."""
+    folder = tmp_path_factory.mktemp("pack")
+    assert list(solutions.write(PLAN, folder))
+    return folder
+
+
+def test_the_pack_has_a_notebook_and_a_file_for_each_homework_and_a_table_of_the_tasks(pack):
+    names = {f"{name}.{kind}" for name in PLAN.homeworks for kind in ("py", "ipynb")}
+    assert {file.name for file in pack.iterdir()} == names | {"README.md"}
+    table = (pack / "README.md").read_text()
+    assert all(
+        f"| `{task.id}` | {task.points:g} |" in table for one in PLAN.homeworks.values() for task in one.tasks
+    )
+
+
+@pytest.mark.parametrize("name", PLAN.homeworks)
+def test_what_stands_in_it_runs_without_the_library_and_is_whole(pack, name):
+    text = (pack / f"{name}.py").read_text()
+    scope = {"__name__": "pack"}
+    exec(compile(text, name, "exec"), scope)
+    assert "hdrlab" not in text and {task.id for task in PLAN.homeworks[name].tasks} <= scope.keys()
+
+
+@pytest.mark.parametrize("task", ["hat", "bound", "compress", "pq"])
+def test_a_function_of_it_keeps_every_promise(pack, task):
+    (name,) = [name for name, one in PLAN.homeworks.items() if task in [own.id for own in one.tasks]]
+    scope = {"__name__": "pack"}
+    exec((pack / f"{name}.py").read_text(), scope)
+    assert scoring.score(task, inprocess.Subject({task: scope[task]}))[0] == 1
