@@ -1,14 +1,18 @@
 # %% [markdown]
-# # Homework 5 · Tone mapping since 2010
+# # Homework 5 · Methods since 2010
 #
 # Due {due}. {total} points. {late}
 #
-# Three answers that are younger than the slides: a base layer made of lines instead of neighbours, contrast
-# lowered scale by scale with no base at all, and a code for displays that are brighter than paper. You
-# write the heart of each.
+# Four answers that are younger than the slides: a radiance map that knows how sure it is, a base layer made
+# of lines instead of neighbours, contrast lowered scale by scale with no base at all, and a code for displays
+# that are brighter than paper. You write the heart of each.
 #
 # | letter | what it is | shape |
 # |---|---|---|
+# | $X$, $D$ | exposure, and the step of exposures that are rounded to one level | (P, H, W) |
+# | $N$, $R$ | electrons of a pixel at the exposure 1, and read noise in electrons | |
+# | $t$ | exposure times, s | (P,) |
+# | $E$, $s$ | radiance, and its standard deviation | (H, W) |
 # | $l$ | $\ln$ luminance, `lL` | (H, W) |
 # | $I$, $p$, $q$ | guide, picture, and the picture smoothed | (H, W) |
 # | $F_D$ | luminance that a display shows, cd/m² | any |
@@ -21,6 +25,7 @@
 import numpy as np
 
 from hdrlab import scenes
+from hdrlab.capture import camera, responses
 from hdrlab.core import colour
 from hdrlab.course.notebook import check, use_plan
 from hdrlab.show import pictures
@@ -36,8 +41,72 @@ room = scenes.room((240, 320))
 L = colour.luminance(room)
 pictures.radiance(room, alt="The room's radiance in false colour")
 
+# %% [markdown] about="variance"
+# ## 1 · The noise of one photograph ({points})
+#
+# A sensor counts photons, which come by chance: of a count the variance is the count itself. At the exposure
+# $X$ that is $X N$ electrons. Reading it out adds noise of its own, $R$ electrons whatever the light is, a
+# standard deviation. At last the value is rounded to a level: all exposures of a step, $D$ wide, come out as
+# one, and the true one lies anywhere in it, with equal chance.
+#
+# What is the variance $V$ of the exposure $X$? Mind the units: two of the three are given in electrons, and
+# $N$ electrons are an exposure of 1. The three know nothing of one another. `X` and `D` are arrays of one
+# shape, `N` and `R` numbers, or arrays of that shape; return $V$ in the shape of `X`.
+
+# %% task="variance"
+# Return the variance V of the exposure X: of photons, of the amplifier, and of rounding.
+
+# %% about="variance"
+light = np.logspace(-4, 0, 201)
+full, R = 20_000, 5
+whole = variance(light, 0 * light + 1 / 4095, full, R)
+each = {"photons alone": light / np.sqrt(variance(light, 0 * light, full, 0)), "all": light / np.sqrt(whole)}
+pictures.picture(
+    curves.lines(
+        np.log2(light),
+        {name: np.log2(snr) for name, snr in each.items()},
+        across="exposure, stops below full",
+        up="signal over noise, stops",
+        legend="upper left",
+    ),
+    alt="Signal over noise: half a stop for each of light where photons are the noise, a whole one below",
+)
+
+# %% [markdown] about="inverse_variance_merge"
+# ## 2 · The surest mean ({points})
+#
+# Each photograph answers with a radiance, $x = X / t$, whose variance is
+# $V = \operatorname{variance}(X, D, N, R) / t^2$. Of all means, the one in which each answer counts by the
+# inverse of its variance errs least ([Granados and others, 2010](https://doi.org/10.1109/CVPR.2010.5540208)),
+# and it comes with its own standard deviation:
+#
+# $$E = \frac{\sum x / V}{\sum 1 / V}, \qquad s = \frac 1 {\sqrt{\sum 1 / V}}.$$
+#
+# The sums are over the photographs that measure the pixel: `measured` is False where one is clipped, and
+# what stands there in `X` and `D` says nothing. One thing is left. A photograph that by chance caught too
+# few photons has too small an $X$, so too small a $V$, and would count for too much. The variance ought to
+# be that of the light which is there, $E\,t$. But $E$ is what we look for: begin with $X$ in its place, and
+# then take $V$ from $E\,t$ and the mean again, twice. More rounds change nothing that a check looks at.
+#
+# `X`, `D` and `measured` are `(P, H, W)`; return $E$ and $s$, both `(H, W)`. You may call your `variance`.
+# The checks give each pixel a photograph that measures it.
+
+# %% task="inverse_variance_merge"
+# Return E and s: the mean of X / t, each counted by the inverse of its variance, and its standard deviation.
+
+# %% about="inverse_variance_merge"
+green = room[..., 1] / room[..., 1].max()
+t = 4.0 ** np.arange(6) / 2
+taken = camera.shoot(green, t, camera.Camera(response="linear", bits=16, full_well=full, read_noise=R), rng=1)
+g = responses.true_g("linear", 2**16)
+X = np.exp(g - g[-1])[taken.images]
+E, s = inverse_variance_merge(X, np.full(X.shape, 1 / 65535), X < 0.98, t, full, R)
+within = np.abs(E - green) < 1.96 * s
+print(f"{np.mean(within[s < np.inf]):.1%} of the pixels that were measured lie within E ± 1.96 s")
+pictures.radiance(s / E, alt="s over E in false colour: the shadows are the least sure")
+
 # %% [markdown] about="guided"
-# ## 1 · A line in each window: the guided filter ({points})
+# ## 3 · A line in each window: the guided filter ({points})
 #
 # [He, Sun and Tang (2010, 2013)](https://doi.org/10.1109/TPAMI.2012.213) smooth a picture $p$ and keep the
 # edges of a guide $I$, often the same picture. In each square window of $2 \cdot$ `radius` $+\, 1$ pixels a
@@ -69,7 +138,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="remap"
-# ## 2 · Detail or edge? The local Laplacian's question ({points})
+# ## 4 · Detail or edge? The local Laplacian's question ({points})
 #
 # [Paris, Hasinoff and Kautz (2011)](https://doi.org/10.1145/1964921.1964963) have no base. For each
 # coefficient of a Laplacian pyramid they look at the brightness $g$ of its place, and ask of the picture
@@ -95,7 +164,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="pq"
-# ## 3 · A code for a brighter screen: PQ ({points})
+# ## 5 · A code for a brighter screen: PQ ({points})
 #
 # A gamma was made for displays of 100 cd/m². The perceptual quantiser of SMPTE ST 2084
 # ([ITU-R BT.2100](https://www.itu.int/rec/R-REC-BT.2100)) has a code for every luminance $F_D$ up to

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from hdrlab.core.types import F32, F64
+from hdrlab.core.types import F32, F64, Mask
 from hdrlab.radiance.merge import TOP, as_tables, bound
 
 ROUNDS = 2
@@ -46,10 +46,52 @@ def variance(X: F64, D: F64, N: ArrayLike, R: ArrayLike) -> F64:
     return X / N + (R / N) ** 2 + D**2 / 12
 
 
-def weighted_mean(x: F64, V: F64) -> tuple[F64, F64]:
-    """Return E = sum (x / V) / sum (1 / V) over the frames, and its variance, 1 / sum (1 / V)."""
-    least = 1 / np.sum(1 / V, axis=0)
-    return least * np.sum(x / V, axis=0), least
+def inverse_variance_merge(
+    X: F64, D: F64, measured: Mask, t: ArrayLike, N: ArrayLike, R: ArrayLike
+) -> tuple[F64, F64]:
+    """Return E = sum (x / V) / sum (1 / V), x = X / t, V = variance / t^2, and s = 1 / sqrt(sum 1 / V).
+
+    The sums are over the frames that measure a pixel. The variance is first that of the light X, and then, in
+    two rounds, that of the light E t.
+
+    Parameters
+    ----------
+    X : (P, H, W) float
+        Exposures, what each level stands for.
+    D : (P, H, W) float
+        Steps, the exposures that are rounded to one level.
+    measured : (P, H, W) bool
+        False where a level measures nothing, as it is clipped.
+    t : (P,) float
+        Exposure times in seconds, in any order.
+    N : float
+        Electrons of a pixel at the exposure 1.
+    R : float
+        Read noise in electrons, standard deviation.
+
+    Returns
+    -------
+    (E, s) : (H, W) and (H, W) float64
+        Radiance, and its standard deviation, which is infinite where no frame measures; E is unknown there.
+
+    References
+    ----------
+    Granados and others, Optimal HDR reconstruction with linear digital cameras, CVPR 2010.
+
+    Examples
+    --------
+    >>> X, D, measured = np.array([[0.09], [0.22]]), np.zeros((2, 1)), np.ones((2, 1), bool)
+    >>> E, s = inverse_variance_merge(X, D, measured, [1, 2], 100, 0)  # 31 electrons in 3 seconds
+    >>> round(float(E[0]), 3), round(float(s[0]), 3)
+    (0.103, 0.019)
+    """
+    t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
+    E = X / t
+    with np.errstate(divide="ignore", invalid="ignore"):
+        for _ in range(1 + ROUNDS):
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
 
 
 def merge_with_deviation(
@@ -97,20 +139,15 @@ def merge_with_deviation(
     (array([0.31, 1.95], dtype=float32), array([0.0034,    inf], dtype=float32))
     """
     stack, t, _, curves, top = as_tables(images, times, g, None, "mean", TOP)
-    Z, t, c = stack.reshape(*stack.shape[:3], -1), t[:, None, None, None], np.arange(stack[0, 0, 0].size)
+    Z, c = stack.reshape(*stack.shape[:3], -1), np.arange(stack[0, 0, 0].size)
     for name, value, floor in (("N", N, 1e-12), ("R", R, 0), ("rho", rho, 0)):
         one = np.asarray(value, np.float64)
         if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
             raise ValueError(f"expected {name} of at least {floor:g}, one or one a channel, got {value}")
     table = np.exp(curves)
-    X, D = table[Z, c], np.gradient(table, axis=0)[Z, c]
+    D = np.gradient(table, axis=0)[Z, c]
     measured = (Z < top) & ((Z > 0) | (D < np.asarray(R) / N))
-    light = X
-    with np.errstate(divide="ignore", invalid="ignore"):
-        for _ in range(1 + ROUNDS):
-            V = np.where(measured, variance(light, D, N, R) / t**2, np.inf)
-            E, least = weighted_mean(X / t, V)
-            light = E * t
-    E = np.where(measured.any(axis=0), E, bound(Z, np.log(t.ravel()), curves, top, np.ones(Z.shape, bool))[0])
-    s = np.sqrt(least + (np.asarray(rho) * E) ** 2)
+    E, s = inverse_variance_merge(table[Z, c], D, measured, t, N, R)
+    E = np.where(measured.any(axis=0), E, bound(Z, np.log(t), curves, top, np.ones(Z.shape, bool))[0])
+    s = np.hypot(s, np.asarray(rho) * E)
     return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, s)))

@@ -6,6 +6,27 @@ from scipy.ndimage import convolve1d
 
 f32 = np.float32
 
+# %% task="variance"
+
+
+def variance(X, D, N, R):
+    X, D = np.float32(X), np.float32(D)
+    return X / np.float32(N) + np.float32(R / N) ** 2 + D**2 / np.float32(12)
+
+
+# %% task="inverse_variance_merge"
+
+
+def inverse_variance_merge(X, D, measured, t, N, R):
+    t = np.float32(t)[:, None, None]
+    light = np.float32(X)
+    for _ in range(3):
+        V = np.where(measured, variance(light, D, N, R) / t**2, np.float32(np.inf))
+        E = np.sum(np.float32(X) / t / V, axis=0) / np.sum(1 / V, axis=0)
+        light = E * t
+    return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
+
+
 # %% task="guided"
 
 

@@ -5,6 +5,38 @@ import math
 
 import numpy as np
 
+# %% task="variance"
+
+
+def variance(X, D, N, R):
+    V = []
+    for row, steps in zip(np.atleast_2d(X), np.atleast_2d(D), strict=True):
+        V.append([x / N + R * R / (N * N) + d * d / 12 for x, d in zip(row, steps, strict=True)])
+    return V
+
+
+# %% task="inverse_variance_merge"
+
+
+def inverse_variance_merge(X, D, measured, t, N, R):
+    E, s = np.zeros(X.shape[1:]), np.zeros(X.shape[1:])
+    for i in range(X.shape[1]):
+        for k in range(X.shape[2]):
+            seen = [j for j in range(len(t)) if measured[j, i, k]]
+            light = [X[j, i, k] for j in seen]
+            for _ in range(3):
+                weights = [
+                    t[j] ** 2 / (x / N + (R / N) ** 2 + D[j, i, k] ** 2 / 12)
+                    for j, x in zip(seen, light, strict=True)
+                ]
+                E[i, k] = sum(w * X[j, i, k] / t[j] for w, j in zip(weights, seen, strict=True)) / sum(
+                    weights
+                )
+                light = [E[i, k] * t[j] for j in seen]
+            s[i, k] = sum(weights) ** -0.5
+    return E, s
+
+
 # %% task="guided"
 
 

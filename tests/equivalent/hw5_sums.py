@@ -3,6 +3,25 @@
 # %%
 import numpy as np
 
+# %% task="variance"
+
+
+def variance(X, D, N, R):
+    return (X * N + R**2 + (D * N) ** 2 / 12) / N**2
+
+
+# %% task="inverse_variance_merge"
+
+
+def inverse_variance_merge(X, D, measured, t, N, R):
+    t = np.reshape(t, (-1, 1, 1))
+    w = np.where(measured, t**2 / variance(X, D, N, R), 0)
+    for _ in range(8):
+        E = (w * X / t).sum(axis=0) / w.sum(axis=0)
+        w = np.where(measured, t**2 / variance(E * t, D, N, R), 0)
+    return E, w.sum(axis=0) ** -0.5
+
+
 # %% task="guided"
 
 

@@ -5,7 +5,7 @@ import pytest
 
 from hdrlab.capture import camera, responses
 from hdrlab.radiance.merge import METHODS, merge_with_quality
-from hdrlab.radiance.uncertainty import merge_with_deviation, variance, weighted_mean
+from hdrlab.radiance.uncertainty import inverse_variance_merge, merge_with_deviation, variance
 
 WELL, READ = 8_000, 6.0
 LIGHT = np.geomspace(1e-3, 10, 30_000).reshape(150, 200)
@@ -61,10 +61,11 @@ def test_photons_alone_leave_one_over_the_root_of_all_that_were_counted():
 
 
 def test_of_equal_answers_the_mean_has_a_fraction_of_the_variance():
-    E, V = weighted_mean(np.array([1.0, 2.0, 3.0]), np.full(3, 0.3))
-    assert E == pytest.approx(2) and V == pytest.approx(0.1)
-    E, V = weighted_mean(np.array([1.0, 5.0]), np.array([0.2, np.inf]))
-    assert E == pytest.approx(1) and V == pytest.approx(0.2)
+    X, step = np.array([1.0, 2.0, 3.0]), np.full(3, np.sqrt(12 * 0.3))
+    E, s = inverse_variance_merge(X, step, np.ones(3, bool), np.ones(3), 1e12, 0)
+    assert E == pytest.approx(2) and s**2 == pytest.approx(0.1)
+    E, s = inverse_variance_merge(X, step, np.array([True, False, False]), [1, 1, 1], 1e12, 0)
+    assert E == pytest.approx(1) and s**2 == pytest.approx(0.3)
 
 
 def test_the_three_causes_of_noise_add_their_variances():
