@@ -159,7 +159,7 @@ def secret_of(file: Path | None) -> tuple[str, str]:
 
     if file is None:
         return "", "note: for practice: without --secret-file the inputs are public"
-    secret, made = plans.readsecret_of(file)
+    secret, made = plans.read_secret(file)
     return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
 
 
