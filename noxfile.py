@@ -15,19 +15,20 @@ sys.path.insert(0, str(HERE / "tests"))
 from tiers import QUICK, TIERS  # noqa: E402
 
 nox.options.sessions = [QUICK]
-EXTRAS = {"scenes": "test,scenes", "papers": "test,bench"}
+EXTRAS = {"scenes": "test,scenes", "papers": "test,bench", "coverage": "test,cover"}
 # in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
 # (in a browser they need not: what is dear there, the site, is one for all workers)
 TOGETHER = ("jupyterlab", "grading", "papers", "scenes", "wheel")
 
 
-def test(session: nox.Session, tier: str) -> None:
+def test(session: nox.Session, tier: str, *options: str) -> None:
     """Run the tests of a tier; what stands behind -- goes to pytest."""
     if session.virtualenv.is_sandboxed:
-        session.install("--editable", f".[{EXTRAS.get(tier, 'test')}]")
-    options = ["--dist=loadscope"] if tier in TOGETHER else []
+        session.install("--editable", f".[{EXTRAS.get(session.name, 'test')}]")
+    if tier in TOGETHER:
+        options = (*options, "--dist=loadscope")
     if results := os.environ.get("HDRLAB_RESULTS"):
-        options.append(f"--junitxml={results}/{tier}.xml")
+        options = (*options, f"--junitxml={results}/{tier}.xml")
     session.run("python", "-m", "pytest", f"--tier={tier}", *options, *session.posargs)
 
 
@@ -37,11 +38,8 @@ for tier in TIERS:
 
 @nox.session
 def coverage(session: nox.Session) -> None:
-    """Print which branches of hdrlab the quick tier takes, file by file, and in all."""
-    if session.virtualenv.is_sandboxed:
-        session.install("--editable", ".[test,cover]")
-    report = ["--cov=hdrlab", "--cov-branch", "--cov-report=term:skip-covered"]
-    session.run("python", "-m", "pytest", f"--tier={QUICK}", *report, *session.posargs)
+    """Run the quick tier, and print which branches of hdrlab it takes, file by file, and in all."""
+    test(session, QUICK, "--cov=hdrlab", "--cov-branch", "--cov-report=term:skip-covered")
 
 
 @nox.session(venv_backend="uv")
