@@ -5,7 +5,7 @@ from importlib.resources import files
 from typing import Any
 
 import pytest
-from laboratory import Absent, Lab, chromium, jupyterlab
+from laboratory import PATIENCE, Absent, Lab, chromium, jupyterlab
 
 # what is right stays in the page: of a long one it takes longer to send than to find
 RUN = """async (part) => {
@@ -27,6 +27,7 @@ def browser() -> Iterator[Any]:
 def page(browser: Any) -> Iterator[Any]:
     """A page at 1280 px that keeps its console errors in `problems` and its requests in `requests`."""
     context = browser.new_context(viewport={"width": 1280, "height": 900}, has_touch=True)
+    context.set_default_timeout(PATIENCE)
     page = context.new_page()
     page.problems, page.requests = [], []
     page.on("pageerror", lambda error: page.problems.append(str(error)))

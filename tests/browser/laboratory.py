@@ -100,7 +100,7 @@ class Lab(NamedTuple):
                 const session = window.jupyterapp?.shell?.currentWidget?.sessionContext;
                 return session?.isReady && session.session?.kernel?.status === "idle";
             }""",
-            timeout=60_000,
+            timeout=PATIENCE,
         )
 
     def run_all(self, page: Any, *, timeout: float = 100) -> None:
@@ -194,7 +194,7 @@ def open_widget(page: Any, widget: anywidget.AnyWidget) -> None:
         const canvas = document.querySelector("canvas");  // a question may have none
         return canvas ? canvas.getAttribute("aria-label") : document.querySelector(".hdrlab-note");
     }"""
-    page.wait_for_function(shown, timeout=20_000)
+    page.wait_for_function(shown)
 
 
 def changed_by(page: Any, widget: Any, move: Callable[[], object]) -> None:

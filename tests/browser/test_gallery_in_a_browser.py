@@ -190,9 +190,8 @@ def test_two_pictures_are_moved_as_one(served, page):
     before = page.evaluate(part)
     page.keyboard.press("ArrowRight")
     page.wait_for_function(f"(before) => {part}[1] > before + 0.01", arg=before[1])
-    page.wait_for_timeout(300)  # until the first has come to rest
-    now = page.evaluate(part)
-    assert before[0] > 0 and now[0] > before[0] and abs(now[0] - now[1]) < 0.02
+    page.wait_for_function(f"() => {{ const [one, other] = {part}; return Math.abs(one - other) < 0.02; }}")
+    assert 0 < before[0] < page.evaluate(part)[0]
 
 
 def test_the_results_are_told_after_the_end(served, page, axe, tmp_path):
