@@ -22,7 +22,8 @@ BELOW["__init__"] = set()
 
 ONLY_IN = {  # package -> rooms
     **dict.fromkeys(
-        ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "exifread"], {"io"}
+        ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "exifread", "pillow"],
+        {"io"},
     ),
     **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets"], {"show"}),
     "IPython": {"show", "course"},

@@ -92,6 +92,11 @@ def read_photo(path: Path) -> None:
     photos.read_photo(path)
 
 
+def read_other(path: Path) -> None:
+    """Read a photograph of a kind that is not cleaned for the class."""
+    _each(lambda: describe_file(path), lambda: photos.read_photo(path))
+
+
 def read_exif(path: Path) -> None:
     """Read EXIF, and what it tells."""
     _each(lambda: exif.list_personal_data(path.read_bytes()))
@@ -167,6 +172,10 @@ ALL: Sequence[Reader] = (
     Reader("jpeg", ".jpg", seeds.photographs, read_photo),
     Reader("png", ".png", seeds.photographs, read_photo),
     Reader("tiff", ".tif", seeds.photographs, read_photo, damaged="tiff"),
+    Reader("photo-webp", ".webp", seeds.telephones, read_other),
+    Reader("avif", ".avif", seeds.telephones, read_other),
+    Reader("heic", ".heic", seeds.telephones, read_other, needs="pillow_heif"),
+    Reader("motion", ".jpg", seeds.telephones, read_photo),
     Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng", printed=LIBRAW),
     Reader("gif", ".gif", seeds.films, lambda path: [*_frames(path)], damaged="gif"),
     Reader("film", ".mp4", seeds.films, lambda path: [*_frames(path)], needs="av"),

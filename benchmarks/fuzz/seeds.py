@@ -3,13 +3,15 @@
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
+from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import tifffile
 from PIL import Image
 
-from hdrlab.core.optional import OpenEXR
+from hdrlab.core.optional import OpenEXR, imagecodecs
 from hdrlab.io import photos, radiance, response_files, sequence, web
 from hdrlab.io.maps import rgbe
 
@@ -55,6 +57,25 @@ def maps(folder: Path) -> None:
             header = {"type": OpenEXR.scanlineimage, "compression": getattr(OpenEXR, f"{kind}_COMPRESSION")}
             with OpenEXR.File(header, {"RGBA": np.dstack([E, E[..., 0]]).astype(np.float16)}) as file:
                 file.write(str(folder / f"{kind}.exr"))
+
+
+def telephones(folder: Path) -> None:
+    """Write photographs as telephones do: other formats, colour profiles, a film behind."""
+    image = Image.fromarray(RGB)
+    how: dict[str, Any] = {"exif": _exif(), "icc_profile": imagecodecs.cms_profile("adobergb")}
+    for suffix in (".webp", ".avif"):
+        image.save(folder / f"small{suffix}", **how)
+        image.convert("RGBA").save(folder / f"alpha{suffix}")
+    if find_spec("pillow_heif"):
+        import pillow_heif
+
+        pillow_heif.from_pillow(image).save(folder / "small.heic", exif=_exif().tobytes())
+    ten_bits: dict[str, Any] = {"bitspersample": 10, "primaries": 1, "transfer": 13, "matrix": 0}
+    deep = RGB.astype(np.uint16) * 4
+    (folder / "deep.avif").write_bytes(imagecodecs.avif_encode(deep, pixelformat="444", **ten_bits))
+    image.save(folder / "moving.jpg", **how)
+    with open(folder / "moving.jpg", "ab") as file:
+        file.write(bytes(4) + b"ftypmp42" + np.random.default_rng(1).bytes(600))
 
 
 def _exif() -> Image.Exif:

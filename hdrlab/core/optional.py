@@ -7,14 +7,19 @@
     (True, 14, False)
     >>> cooking.stir()
     Traceback (most recent call last):
-    ModuleNotFoundError: this part of hdrlab needs cooking: pip install cooking
+    hdrlab.core.optional.MissingPackageError: this part of hdrlab needs cooking: pip install cooking
 """
 
 from importlib import import_module
 from importlib.util import find_spec
 from typing import Any
 
-PACKAGES = {"skimage": "scikit-image"}  # where pip knows a module under another name
+# where pip knows a module under another name, or as an extra
+PACKAGES = {"skimage": "scikit-image", "rawpy": '"hdrlab[raw]"', "pillow_heif": '"hdrlab[heic]"'}
+
+
+class MissingPackageError(ModuleNotFoundError, ValueError):
+    """A file needs a package that is not installed; the message says what to install."""
 
 
 class OptionalModule:
@@ -29,12 +34,12 @@ class OptionalModule:
     def __getattr__(self, attribute: str) -> Any:
         if not self:
             package = PACKAGES.get(self._root, self._root)
-            why = f"this part of hdrlab needs {package}: pip install {package}"
-            raise ModuleNotFoundError(why, name=self._root)
+            why = f"this part of hdrlab needs {self._root}: pip install {package}"
+            raise MissingPackageError(why, name=self._root)
         return getattr(import_module(self._name), attribute)
 
 
 def __getattr__(name: str) -> OptionalModule:
     if name.startswith("_"):
         raise AttributeError(name)
-    return OptionalModule(name.replace("_", "."))
+    return OptionalModule(name if name in PACKAGES else name.replace("_", "."))

@@ -1,12 +1,14 @@
 """One photograph, in two steps: look at its header, then decode its pixels straight into their place.
 
-JPEG and PNG are decoded by imagecodecs, which keeps all 16 bits (Pillow cuts RGB to 8) and writes into an
-array that is there; TIFF by tifffile; RAW by hdrlab.io.raw. Pillow reads EXIF.
+What a file is, its first bytes say and not its suffix. JPEG and PNG are decoded by imagecodecs, which keeps
+all 16 bits (Pillow cuts RGB to 8) and writes into an array that is there; so is AVIF of more
+bits than 8. Pillow decodes WebP and other AVIF, pillow-heif HEIC, tifffile TIFF, hdrlab.io.raw RAW. Pillow
+reads EXIF. Colours of another space than sRGB are converted by their ICC profile, see hdrlab.io.profiles.
 """
 
 import io
 import logging
-import struct
+import re
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -15,36 +17,42 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import ExifTags, Image
 
-from hdrlab.core.optional import imagecodecs, tifffile
+from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
 from hdrlab.core.types import Array
-from hdrlab.io import raw
+from hdrlab.io import profiles, raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import check_size
 
 for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong
     logging.getLogger(codec).addHandler(logging.NullHandler())
 
-Exif = tuple[int, Exposure]  # the orientation and the exposure
-Looks = tuple[str, tuple[int, ...], np.dtype[Any], Exif]  # kind, shape as it is stored, dtype
-
+# what the first bytes of a file of each kind are
+MAGIC = {"TIFF": rb"II\*\0|MM\0\*", "JPEG": rb"\xff\xd8\xff", "PNG": rb"\x89PNG\r\n\x1a\n"}
+MAGIC |= {"WEBP": rb"RIFF....WEBP", "AVIF": rb"....ftyp.*avi[fs]", "HEIF": rb"....ftyp(he[iv]|mif1|msf1)"}
 # bytes of a picture in one of the file: more than any of these formats reaches
 BEST_COMPRESSION_RATIO = 1 << 12
+# ... and these, of which a black photograph takes hardly a kilobyte
+RATIOS = dict.fromkeys(("WEBP", "AVIF", "HEIF"), 1 << 16)
+# words that stand near the beginning of a file with a gain map: Adobe's, ISO 21496-1, Apple's
+GAIN_MAPS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
+LONGEST_HEADER = 1 << 18
+# of JPEG: what is neither a byte of coded pixels nor a restart within them
+MARKER = re.compile(rb"\xff([\x01-\xcf\xd8-\xfe])")
 MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
+# EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of Apple]
+BLENDED = (2, 3, 6, 7)
 MODES |= {"F": "floating point", "I": "32-bit integers"}
-UPRIGHT: dict[int, Callable[[Array], Array]] = {  # the EXIF orientations
-    1: lambda a: a,
-    2: lambda a: a[:, ::-1],
-    3: lambda a: a[::-1, ::-1],
-    4: lambda a: a[::-1],
-    5: lambda a: a.swapaxes(0, 1),
-    6: lambda a: a.swapaxes(0, 1)[:, ::-1],
-    7: lambda a: a.swapaxes(0, 1)[::-1, ::-1],
-    8: lambda a: a.swapaxes(0, 1)[::-1],
-}
+
+
+class OtherPixels(ValueError):
+    """A picture that is no photograph of a bracket: with a palette, of CMYK, of floats, ..."""
 
 
 class Header(NamedTuple):
-    """What a photograph says before its pixels; `shape` is upright, (H, W) or (H, W, 3)."""
+    """What a photograph says before its pixels; `shape` is upright, (H, W) or (H, W, 3).
+
+    `icc` is the profile of its colours, empty for sRGB; `processing` says what makes it useless in a bracket.
+    """
 
     path: Path
     kind: str
@@ -52,6 +60,8 @@ class Header(NamedTuple):
     dtype: np.dtype[Any]
     orientation: int = 1
     exposure: Exposure = Exposure()
+    icc: bytes = b""
+    processing: str = ""
 
 
 def look(path: str | Path) -> Header:
@@ -61,18 +71,18 @@ def look(path: str | Path) -> Header:
         size, exposure = raw.look(path)
         return Header(path, "RAW", size, np.dtype(np.uint16), 1, exposure)
     with open(path, "rb") as file:
-        head = file.read(32)
-    if head[:4] in (b"II*\0", b"MM\0*"):
-        kind, shape, dtype, exif = _look_tiff(path)
-    elif head[:3] == b"\xff\xd8\xff" or head[:8] == b"\x89PNG\r\n\x1a\n":
-        kind, shape, dtype, exif = _look_pillow(path, head)
-    else:
-        raise ValueError(f"{path}: expected a JPEG, PNG or TIFF photograph, got {head[:8]!r}")
-    orientation, exposure = exif
-    check_size(path, shape[0], shape[1], int(np.prod(shape)) * dtype.itemsize // BEST_COMPRESSION_RATIO)
-    if orientation > 4:
+        head = file.read(LONGEST_HEADER)
+    kind = next((kind for kind, magic in MAGIC.items() if re.match(magic, head[:32], re.DOTALL)), "")
+    if not kind:
+        raise ValueError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
+    header = (_look_tiff if kind == "TIFF" else _look_pillow)(path, kind, head)
+    shape, ratio = header.shape, RATIOS.get(kind, BEST_COMPRESSION_RATIO)
+    check_size(path, shape[0], shape[1], int(np.prod(shape)) * header.dtype.itemsize // ratio)
+    if header.orientation > 4:
         shape = (shape[1], shape[0], *shape[2:])
-    return Header(path, kind, shape, dtype, orientation, exposure)
+    gains = any(word in head for word in GAIN_MAPS)
+    processing = "has a gain map: the picture in it was tone-mapped locally" if gains else header.processing
+    return header._replace(shape=shape, processing=processing)
 
 
 def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) -> None:
@@ -81,7 +91,9 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
         pixels = raw.decode(header.path, balance)
     else:
         stored = stored_pixels(header.path, header.kind, out if header.orientation == 1 else None)
-        pixels = UPRIGHT[header.orientation](stored)
+        pixels = upright(opaque(header.path, stored), header.orientation)
+        if header.icc:
+            pixels = profiles.to_srgb(header.path, pixels, header.icc)
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
         got = f"{pixels.shape} {pixels.dtype}"
         raise ValueError(f"{header.path}: expected {out.shape} {out.dtype}, got {got}")
@@ -101,21 +113,77 @@ def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
         raise ValueError(f"{path}: it is cut short or damaged ({why})") from None
 
 
+def upright(pixels: Array, orientation: int) -> Array:
+    """Return stored pixels as they are to be seen: an EXIF orientation above 4 lies on its side."""
+    turned = pixels.swapaxes(0, 1) if orientation > 4 else pixels
+    down, across = orientation in (3, 4, 7, 8), orientation in (2, 3, 6, 7)
+    return pixels if orientation == 1 else turned[:: -1 if down else 1, :: -1 if across else 1]
+
+
+def opaque(path: Path, pixels: Array) -> Array:
+    """Return pixels without their alpha channel, or raise a ValueError where some are transparent."""
+    if pixels.ndim < 3 or pixels.shape[2] not in (2, 4):
+        return pixels
+    if (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
+        raise ValueError(f"{path}: expected gray or RGB, got an alpha channel with transparent pixels")
+    return pixels[..., 0] if pixels.shape[2] == 2 else pixels[..., :3]
+
+
+def jpeg_end(data: bytes, start: int = 0) -> int:
+    """Return where the JPEG that begins at `start` ends, whatever follows, such as a film or a gain map.
+
+    Raises
+    ------
+    ValueError
+        Where it has no end: libjpeg fills what is missing with gray, and only warns.
+    """
+    at = start + 2
+    while found := MARKER.search(data, at):
+        at = found.end()
+        if found[1] == b"\xd9":
+            return at
+        at += int.from_bytes(data[at : at + 2])
+    raise ValueError("no end of image after its last scan")
+
+
 def _jpeg(data: bytes, out: Array | None) -> Array:
-    # libjpeg fills what is missing with gray and only warns; a marker cannot stand inside coded pixels
-    if data.rfind(b"\xff\xd9") < data.rfind(b"\xff\xda"):
-        raise ValueError("no end of image after its last scan")
+    data = data[: jpeg_end(data)]
     return imagecodecs.jpeg8_decode(data, out=out) if imagecodecs else _pillow(data)
 
 
 def _png(data: bytes, out: Array | None) -> Array:
+    out = None if data[25] & 4 else out  # of the colour type: it has alpha, which `out` has not
     return imagecodecs.png_decode(data, out=out) if imagecodecs or data[24] > 8 else _pillow(data)
 
 
-def _pillow(data: bytes) -> Array:
-    """Decode 8 bits a channel where imagecodecs is not installed."""
-    with Image.open(io.BytesIO(data), formats=("JPEG", "PNG")) as image:
+def _pillow(data: bytes, out: Array | None = None) -> Array:
+    """Decode 8 bits a channel: WebP and AVIF, and the others where imagecodecs is not installed."""
+    with Image.open(io.BytesIO(data), formats=("JPEG", "PNG", "WEBP", "AVIF")) as image:
         return np.asarray(image)
+
+
+def _avif(data: bytes, out: Array | None) -> Array:
+    if (depth := avif_depth(data)) == 8 and not imagecodecs:
+        return _pillow(data)
+    pixels = imagecodecs.avif_decode(data, index=0)
+    return pixels if depth == 8 else _fill(pixels << (16 - depth), depth)
+
+
+def avif_depth(data: bytes) -> int:
+    """Return 8, 10 or 12 bits a channel: the flags high_bitdepth and twelve_bit [AV1-ISOBMFF 2.3]."""
+    at = data.find(b"av1C") + 6
+    return 8 + 2 * (data[at] >> 6 & 1) * (1 + (data[at] >> 5 & 1))
+
+
+def _heic(data: bytes, out: Array | None) -> Array:
+    image = pillow_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False)
+    pixels = np.asarray(image)
+    return pixels if pixels.dtype == np.uint8 else _fill(pixels, image.info["bit_depth"])
+
+
+def _fill(pixels: Array, depth: int) -> Array:
+    """Return levels of `depth` bits, which are the upper ones of 16, spread over all: white is 65535."""
+    return pixels | pixels >> depth
 
 
 def _tiff(data: bytes, out: Array | None) -> Array:
@@ -130,29 +198,34 @@ def _tiff(data: bytes, out: Array | None) -> Array:
     return pixels.astype(pixels.dtype.newbyteorder("="), copy=False)
 
 
-DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff}
+DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff, "WEBP": _pillow, "AVIF": _avif, "HEIF": _heic}
 
 
-def _look_pillow(path: Path, head: bytes) -> Looks:
-    """Return what is stated by the header of a JPEG or PNG file."""
+def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
+    """Return what is stated by the header of a file that Pillow opens."""
+    if kind == "HEIF":
+        pillow_heif.register_heif_opener()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")  # of sizes, which check_size judges, and of odd EXIF
-            with Image.open(path, formats=("JPEG", "PNG")) as image:
-                kind, (width, height), mode, info = image.format, image.size, image.mode, dict(image.info)
+            with Image.open(path, formats=(kind,)) as image:
+                (width, height), mode, info = image.size, image.mode, dict(image.info)
+        depth = {"PNG": lambda: head[24], "AVIF": lambda: avif_depth(head)}.get(kind, lambda: 8)()
     except Image.DecompressionBombError as error:
         raise ValueError(f"{path}: its header claims an absurd size ({error})") from None
     except Exception as error:  # on damaged files Pillow raises what it likes
         raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
-    depth = struct.unpack_from(">B", head, 24)[0] if kind == "PNG" else 8
-    if mode.endswith("A") or "transparency" in info:
+    depth = info.get("bit_depth", depth)
+    if "transparency" in info:
         mode = "an alpha channel"
-    if depth not in (8, 16) or mode not in ("L", "RGB", "I;16"):
-        what = MODES.get(mode, mode) if depth in (8, 16) else f"{depth}-bit pixels"
-        raise ValueError(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
-    shape = (height, width) if mode != "RGB" else (height, width, 3)
-    exif = _exif(lambda exif: exif.load(info.get("exif", b"")))
-    return "PNG" if kind == "PNG" else "JPEG", shape, np.dtype(f"u{depth // 8}"), exif
+    if depth < 8 or mode not in ("L", "LA", "RGB", "RGBA", "I;16"):
+        what = MODES.get(mode, mode) if depth >= 8 else f"{depth}-bit pixels"
+        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
+    colour = head[25] & 2 if kind == "PNG" else mode.startswith("RGB")  # of deep gray Pillow makes RGBA
+    shape = (height, width, 3) if colour else (height, width)
+    dtype = np.dtype(np.uint8 if depth == 8 else np.uint16)
+    exif = _exif(lambda exif: exif.load(info.get("exif") or b""), info.get("icc_profile"))
+    return Header(path, kind, shape, dtype, **exif)
 
 
 class TiffPage(NamedTuple):
@@ -166,6 +239,7 @@ class TiffPage(NamedTuple):
     dtype: np.dtype[Any]
     kind: str
     description: str
+    icc: bytes
 
 
 def tiff_page(path: str | Path) -> TiffPage:
@@ -177,35 +251,45 @@ def tiff_page(path: str | Path) -> TiffPage:
             kind = str(getattr(page.photometric, "name", page.photometric))[:40]
             size = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
             channels = int(page.samplesperpixel), len(page.extrasamples)
-            return TiffPage(*size, *channels, np.dtype(page.dtype), kind, page.description)
+            return TiffPage(
+                *size, *channels, np.dtype(page.dtype), kind, page.description, page.iccprofile or b""
+            )
     except Exception as error:  # on damaged files tifffile raises what it likes
         raise ValueError(
             f"{path}: expected a photograph, its header is damaged ({str(error)[:200]})"
         ) from None
 
 
-def _look_tiff(path: Path) -> Looks:
+def _look_tiff(path: Path, form: str, head: bytes) -> Header:
     """Return what is stated by the first page of a TIFF file."""
     page = tiff_page(path)
-    kind = "an alpha channel" if page.alpha else page.kind
-    if (kind, page.channels) not in (("MINISBLACK", 1), ("RGB", 3)) or page.dtype not in ("u1", "u2"):
+    channels = page.channels - (page.alpha == 1)
+    kind = "an alpha channel" if page.alpha > 1 else page.kind
+    if (kind, channels) not in (("MINISBLACK", 1), ("RGB", 3)) or page.dtype not in ("u1", "u2"):
         what = f"{page.channels} x {page.dtype}, {kind}"
-        raise ValueError(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
+        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
     if page.depth != 1:
-        raise ValueError(f"{path}: expected one picture, got {page.depth} on one another")
+        raise OtherPixels(f"{path}: expected one picture, got {page.depth} on one another")
     with open(path, "rb") as stream:
-        exif = _exif(lambda exif: exif.load_from_fp(stream))
-    return "TIFF", (page.height, page.width, 3)[: 2 + (page.channels == 3)], page.dtype, exif
+        exif = _exif(lambda exif: exif.load_from_fp(stream), page.icc)
+    return Header(path, form, (page.height, page.width, 3)[: 2 + (channels == 3)], page.dtype, **exif)
 
 
-def _exif(load: Callable[[Image.Exif], None]) -> Exif:
-    """Return orientation and Exposure; EXIF that cannot be read says nothing, the photograph may be good."""
+def _exif(load: Callable[[Image.Exif], None], icc: bytes | None) -> dict[str, Any]:
+    """Return what EXIF adds to a Header; one that cannot be read adds nothing, the photograph may be good."""
     exif = Image.Exif()
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
             load(exif)
             orientation, exposure = exif.get(ExifTags.Base.Orientation, 1), exif_exposure(exif)
+            adobe = exif.get_ifd(ExifTags.IFD.Interop).get(1) == "R03"  # [DCF 2.0]
+            blended = exif.get_ifd(ExifTags.IFD.Exif).get(ExifTags.Base.CustomRendered) in BLENDED
     except Exception:
-        return 1, Exposure()
-    return (orientation if orientation in UPRIGHT else 1), exposure
+        return {"icc": icc or b""}
+    return {
+        "orientation": orientation if orientation in range(1, 9) else 1,
+        "exposure": exposure,
+        "icc": icc or (profiles.ADOBE if adobe else b""),
+        "processing": "was put together by the camera out of several exposures" if blended else "",
+    }

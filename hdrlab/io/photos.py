@@ -22,7 +22,8 @@ from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
-SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
+SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
+SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif"}
 PICTURES: dict[str, dict[str, Any]] = {
     ".png": {"compress_level": 1},  # a quarter of the time for a sixth more bytes
     ".jpg": {"quality": 95, "subsampling": 0},
@@ -39,7 +40,8 @@ def read_photo(path: str | Path) -> Array:
 
     Parameters
     ----------
-    path : a JPEG, PNG or TIFF file, gray or RGB, of 8 or 16 bits, or a RAW file
+    path : a JPEG, PNG, TIFF, WebP, AVIF or HEIC file, gray or RGB, of 8 to 16 bits, or a RAW file;
+        colours of another space than sRGB are converted by the file's profile
 
     Returns
     -------

@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from hdrlab.core.optional import rawpy
 from hdrlab.core.types import F32
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
@@ -61,7 +62,6 @@ def balance(path: str | Path) -> Balance:
 
 def decode(path: str | Path, white_balance: Balance | None = None) -> NDArray[np.uint16]:
     """Return Z, linear sRGB (H, W, 3); the photograph's own white balance serves where none is given."""
-    rawpy = _rawpy()
     white_balance = balance(path) if white_balance is None else white_balance
     with _open(path) as file:
         matrix = file.color_matrix[:, :3].astype(np.float32)
@@ -83,7 +83,6 @@ def to_srgb(camera: NDArray[np.uint16], matrix: F32) -> NDArray[np.uint16]:
 
 @contextmanager
 def _open(path: str | Path) -> Iterator[Any]:
-    rawpy = _rawpy()
     with open(path, "rb"):  # a missing file is a FileNotFoundError here as elsewhere
         pass
     try:
@@ -92,11 +91,3 @@ def _open(path: str | Path) -> Iterator[Any]:
     except (rawpy.LibRawError, rawpy.NotSupportedError) as error:
         reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
         raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None
-
-
-def _rawpy() -> Any:
-    try:
-        import rawpy
-    except ImportError:
-        raise ValueError('expected rawpy, which reads RAW photographs: pip install "hdrlab[raw]"') from None
-    return rawpy

@@ -140,5 +140,6 @@ def test_a_missing_raw_file_is_missing(tmp_path):
 
 def test_without_rawpy_the_error_says_what_to_install(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "rawpy", None)
+    (tmp_path / "x.dng").write_bytes(b"II*\0")
     with pytest.raises(ValueError, match=r'pip install "hdrlab\[raw\]"'):
         read_photo(tmp_path / "x.dng")

@@ -40,8 +40,8 @@ def prepare(path: str | Path) -> Prepared:
     if (size := path.stat().st_size) > MOST_BYTES:
         raise ValueError(f"{path.name}: expected at most {MOST_BYTES} bytes, got {size}")
     header = look(path)
-    if header.kind == "RAW":
-        raise ValueError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got a RAW photograph")
+    if header.kind not in ("JPEG", "PNG", "TIFF"):
+        raise ValueError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
     if header.shape[0] * header.shape[1] > MOST_PIXELS:
         raise ValueError(
             f"{path.name}: expected at most {MOST_PIXELS} pixels, its header claims {header.shape}"

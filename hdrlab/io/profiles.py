@@ -1,0 +1,55 @@
+"""Colours by their ICC profile, through LittleCMS in imagecodecs.
+
+A profile says how levels become linear light and which colours the primaries have. So levels of Display P3 or
+of Adobe RGB become light by their own curve, that light is mixed anew for the primaries of sRGB, and gets the
+curve of sRGB: the levels that the camera would have written had it been set to sRGB. Where only the curve
+differs, or the picture is gray, the levels stay: a curve is part of the response that a bracket shows.
+"""
+
+import io
+from pathlib import Path
+
+import numpy as np
+from PIL import ImageCms
+
+from hdrlab.core.optional import imagecodecs
+from hdrlab.core.types import Array
+
+# stands for the profile of a camera that says Adobe RGB in EXIF, by R03, and holds none
+ADOBE = b"adobergb"
+# XYZ of red, green and blue under D50, as profiles of sRGB have them [ICC.1:2022 annex E, IEC 61966-2-1]
+SRGB = ((0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141))
+
+
+def to_srgb(path: str | Path, pixels: Array, icc: bytes) -> Array:
+    """Return pixels (H, W, 3) uint8 or uint16 of that profile in sRGB; gray ones as they are.
+
+    Raises
+    ------
+    ValueError
+        For a profile that is damaged or not of RGB.
+    """
+    try:
+        return pixels if pixels.ndim == 2 or _is_srgb(icc) else _convert(pixels, icc)
+    except ModuleNotFoundError:
+        raise
+    except Exception as error:
+        raise ValueError(f"{path}: expected a colour profile of RGB, this one is damaged ({error})") from None
+
+
+def _is_srgb(icc: bytes) -> bool:
+    """Return whether a profile has the primaries of sRGB, whatever its curve."""
+    if icc == ADOBE:
+        return False
+    profile = ImageCms.ImageCmsProfile(io.BytesIO(icc)).profile
+    colorants = (profile.red_colorant, profile.green_colorant, profile.blue_colorant)
+    return all(colorants) and np.allclose([one[0] for one in colorants if one], SRGB, atol=0.005)
+
+
+def _convert(pixels: Array, icc: bytes) -> Array:
+    srgb = imagecodecs.cms_profile("srgb")
+    source = imagecodecs.cms_profile("adobergb") if icc == ADOBE else icc
+    # LittleCMS is quick by tables, which are right to a level of 255 for 8 bits, and off by 19 for 16
+    flags = 0 if pixels.dtype == np.uint8 else imagecodecs.CMS.FLAGS.NOOPTIMIZE
+    how = {"colorspace": "rgb", "outcolorspace": "rgb", "flags": flags}
+    return imagecodecs.cms_transform(np.ascontiguousarray(pixels), source, srgb, **how)
