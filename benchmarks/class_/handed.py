@@ -23,8 +23,9 @@ from typing import NamedTuple
 
 from benchmarks.measure import ROOT
 from hdrlab.course import plan
+from hdrlab.course.archives.packing import packed
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.classroom import imitation, toy
+from hdrlab.course.classroom import imitation
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
@@ -110,8 +111,8 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
 def _right(homework: Homework) -> list[Made]:
     cells = imitation.texts(homework)
     notebook, script = imitation.notebook(homework, cells).encode(), imitation.script(cells).encode()
-    packed = toy.packed({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
-    return [("notebook", ".ipynb", notebook), ("script", ".py", script), ("archive", ".zip", packed)]
+    archive = packed({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
+    return [("notebook", ".ipynb", notebook), ("script", ".py", script), ("archive", ".zip", archive)]
 
 
 @cache

@@ -1,9 +1,12 @@
-"""`hdrlab grade` on a folder: a whole class, with what instructors need afterwards."""
+"""`hdrlab grade` on a folder: a whole class, with what instructors need afterwards.
+
+`asked` holds the options of a class by name, as the command line gave them.
+"""
 
 from collections.abc import Mapping, Sequence
-from datetime import UTC, datetime
+from datetime import UTC
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -17,22 +20,9 @@ if TYPE_CHECKING:
     from hdrlab.course.plan import Homework
 
 
-class Options(NamedTuple):
-    """The options of a class, as they came from the command line."""
-
-    roster: Path | None
-    received: Path | None
-    before: tuple[Path, ...]
-    only: tuple[str, ...]
-    since: datetime | None
-    regrade: bool
-    jobs: int | None
-    cluster: str | None
-
-
-def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> None:
+def grade_folder(folder: Path, out: Path, course: "Course", asked: Any) -> None:
     """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course.classroom import handins, journal, overview
+    from hdrlab.course.classroom import handins, journal, moodle, overview
     from hdrlab.course.classroom import run as classroom
 
     times = handins.read_times(asked.received) if asked.received else {}
@@ -49,12 +39,16 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Options) -> N
             click.echo(f"warning: {said}", err=True)
         counted = overview.tally(classroom.read(out, everything))
         *_, page = overview.write(out, course, found, counted, lost)
+        if asked.moodle:
+            rows = overview.marks_of(course, found, counted)
+            for note in moodle.write(out, asked.moodle, rows, course.roster, course.homework):
+                click.echo(f"note: {note}", err=True)
         _compare(out, course, found.handins)
     fresh = sum(one.fresh for one in done if one.result)
     click.echo(f"{page}: {len(counted.points)} of {len(found.handins)} graded, {fresh} of them now")
 
 
-def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Options) -> "list[Done]":
+def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Any) -> "list[Done]":
     """Return what became of each submission; its feedback is written as soon as its result is there."""
     from hdrlab.course.classroom import journal
     from hdrlab.course.classroom import run as classroom
@@ -86,7 +80,7 @@ def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> No
     list(common.progress(steps, "what is alike", len(handins)))
 
 
-def _executor(course: "Course", asked: Options) -> "Executor":
+def _executor(course: "Course", asked: Any) -> "Executor":
     """Return those who grade: processes of this machine, or the workers of a cluster."""
     from hdrlab.course.classroom import run as classroom
     from hdrlab.course.classroom.executors import processes
@@ -107,7 +101,7 @@ def _executor(course: "Course", asked: Options) -> "Executor":
     return cluster.Cluster(asked.cluster, grader.result, grader.ready)
 
 
-def course_of(homework: "Homework", conditions: "Conditions", plan: Path | None, asked: Options) -> "Course":
+def course_of(homework: "Homework", conditions: "Conditions", plan: Path | None, asked: Any) -> "Course":
     """Return what a class is graded by, read from the files that were named."""
     from hdrlab.course import plan as plans
     from hdrlab.course.classroom import marks

@@ -1,6 +1,7 @@
 """Commands about assignments: a student's check, and an instructor's grade."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -73,6 +74,7 @@ def check(
 @click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
 @click.option("--received", type=FILE, help="Of a class: CSV with file and received, for files' own times.")
 @click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
+@click.option("--moodle", type=FILE, help="Of a class: the assignment's grading worksheet, to be filled in.")
 @click.option("--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable.")
 @click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
 @click.option("--regrade", is_flag=True, help="Of a class, anew what was graded before.")
@@ -109,7 +111,7 @@ def grade(
     if submission.is_dir():
         from hdrlab.cli import classroom
 
-        options = classroom.Options(**of_class)
+        options = SimpleNamespace(**of_class)
         course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
         with temporary_folder():
             classroom.grade_folder(submission, out, course, options)

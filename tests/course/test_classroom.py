@@ -197,7 +197,7 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     assert all((folder / "out" / link).is_file() for link in links)
     assert "<h2>Not handed in</h2><p>b4 (Di)</p>" in page and "<li>b3 (Cy): 3 days, 3 excused" in page
     assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
-    names = {"gradebook.csv", "canvas.csv", "what_if.csv", "class.html"}
+    names = {"gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html"}
     assert names <= {path.name for path in whole}
     feedback = folder / "out" / "feedback"  # a run that was killed may have left any of this
     (feedback / "t" / "feedback.html").unlink()

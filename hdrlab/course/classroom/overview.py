@@ -1,7 +1,7 @@
 """What is written about a whole class, when its submissions are graded.
 
 gradebook.csv   a row for each student: points, days late, penalty, score
-canvas.csv      the scores, as Canvas imports them
+canvas.csv      the scores, as Canvas imports them; moodle.csv, as Moodle's gradebook does
 what_if.csv     what each student's score would be, had the work come so many days late
 class.html      how many hold each promise, which misconceptions were met, and where each student stands
 """
@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote
 
-from hdrlab.course.classroom import journal, marks
+from hdrlab.course.classroom import journal, marks, moodle
 from hdrlab.course.classroom.handins import Found
 from hdrlab.course.classroom.marks import Mark
 from hdrlab.course.classroom.run import Course
@@ -59,6 +59,11 @@ def tally(each: Iterable[Result]) -> Tally:
     return Tally(points, outcomes, met, refused)
 
 
+def marks_of(course: Course, found: Found, counted: Tally) -> list[Mark]:
+    """Return the gradebook's rows, with why a file was refused."""
+    return marks.marks(course, found.handins, counted.points, {**counted.refused, **found.refused})
+
+
 def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequence[str] = ()) -> list[Path]:
     """Write all that is about the whole class, and return the files; a new one has its line here.
 
@@ -68,10 +73,11 @@ def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequenc
     course, found, counted : by what, what was handed in, and what came of it
     lost : what could not be graded
     """
-    rows = marks.marks(course, found.handins, counted.points, {**counted.refused, **found.refused})
+    rows = marks_of(course, found, counted)
     tables: dict[str, tuple[Sequence[str], Sequence[Sequence[sheets.Cell]]]] = {
         "gradebook.csv": (marks.COLUMNS, rows),
         "canvas.csv": marks.canvas(rows, course.homework),
+        "moodle.csv": moodle.gradebook(rows, course.roster, course.homework),
         "what_if.csv": marks.what_if(course, counted.points),
     }
     files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]

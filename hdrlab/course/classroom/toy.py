@@ -9,14 +9,13 @@ FOLDER/
 Nobody in it is a person: the students are called by their numbers.
 """
 
-import io
-import zipfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from datetime import timedelta
 from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course import plan
+from hdrlab.course.archives.packing import packed
 from hdrlab.course.classroom import imitation
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
@@ -70,15 +69,6 @@ def hand_ins(homework: Homework) -> Iterator[Handed]:
     yield Handed(
         "s13_hw2.py", ATTACKS.read_bytes(), -6, "Attacks on the grader in place of functions: 0 points."
     )
-
-
-def packed(files: Mapping[str, bytes]) -> bytes:
-    """Return a zip of these files; the same files give the same bytes."""
-    archive = io.BytesIO()
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as opened:
-        for name, data in files.items():
-            opened.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
-    return archive.getvalue()
 
 
 def write(folder: Path) -> list[Path]:

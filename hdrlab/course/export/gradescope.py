@@ -5,13 +5,13 @@ and the secret in it are for the instructor's eyes: students never see the zip.
 """
 
 import json
-import zipfile
 from collections.abc import Iterator
 from importlib.metadata import requires
 from pathlib import Path
 
 import hdrlab
 from hdrlab.course import plan as plans
+from hdrlab.course.archives.packing import packed
 from hdrlab.course.material import materials
 from hdrlab.course.plan import Plan, Task
 from hdrlab.io.files import replacing
@@ -20,7 +20,7 @@ LIBRARY = Path(hdrlab.__file__).parent
 SKIPPED = (".pyc", ".ipynb")
 LARGE = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")  # no check needs them
 SCRIPTS = Path(__file__).parent / "gradescope_files"  # which Gradescope runs
-EPOCH = (1980, 1, 1, 0, 0, 0)  # the same course gives the same zip
+PROGRAMS = ("setup.sh", "run_autograder")
 
 
 def export(
@@ -48,7 +48,10 @@ def export(
             **{f"hidden/{one.name}": one.read_bytes() for one in own},
             **{name: data for task in plan.homeworks[name].tasks for name, data in _own(task)},
         }
-        yield _zipped(folder / f"{name}_autograder.zip", files)
+        target = folder / f"{name}_autograder.zip"
+        with replacing(target) as temporary:
+            temporary.write_bytes(packed(files, PROGRAMS))
+        yield target
 
 
 def _own(task: Task) -> Iterator[tuple[str, bytes]]:
@@ -73,12 +76,3 @@ def _library() -> Iterator[tuple[str, bytes]]:
             yield f"hdrlab/{name}", file.read_bytes()
     for file in materials.folder("assignments").glob("*.ipynb"):
         yield f"hdrlab/course/assignments/{file.name}", file.read_bytes()
-
-
-def _zipped(target: Path, files: dict[str, bytes]) -> Path:
-    with replacing(target) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name, data in sorted(files.items()):
-            entry = zipfile.ZipInfo(name, EPOCH)
-            entry.external_attr = (0o755 if name in ("setup.sh", "run_autograder") else 0o644) << 16
-            archive.writestr(entry, data, zipfile.ZIP_DEFLATED)
-    return target

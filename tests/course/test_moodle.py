@@ -1,0 +1,113 @@
+"""Moodle's forms of a class's grades, against what its importers ask."""
+
+import csv
+import io
+import zipfile
+from datetime import UTC, datetime, timedelta
+
+import pytest
+
+from hdrlab.course.classroom import marks, moodle
+from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Homework, Late, Task
+from hdrlab.course.reports import sheets
+
+DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
+HOMEWORK = Homework("hw2", "The response curve", DUE, (Task("hat", "core.weights.hat", 100),))
+ROSTER = Roster(
+    (
+        Student("b1", "Ada", "t", "ada@example.edu"),
+        Student("b2", "=Bo", "t"),
+        Student("b3", "Cy", "b3", "cy@example.edu"),
+        Student("b4", "Di", "b4"),
+    )
+)
+HEADER = (
+    *("Identifier", "Full name", "ID number", "Email address", "Status", "Grade", "Maximum grade"),
+    *("Grade can be changed", "Last modified (submission)", "Online text", "Last modified (grade)"),
+    "Feedback comments",
+)
+
+
+def row(number, name, id="", email="", grade="", most="100.00", text=""):
+    return (f"Participant {number}", name, id, email, "Submitted", grade, most, "Yes", "-", text, "-", "Well")
+
+
+WORKSHEET = [
+    row(4711, "Ada L_ovelace", "B1"),
+    row(4712, "Bo", "b2", text="b3"),
+    row(4713, "Cy", email="Cy@Example.edu", grade="12.00"),
+    row(4714, "Eve", "b99", text="b1"),
+    row(4715, "Di", "b4", grade="55.00"),
+]
+
+
+@pytest.fixture
+def rows():
+    course = classroom.Course(ROSTER, HOMEWORK, Conditions(), Late(0, 1.0))
+    came = {
+        "t": Handin("t", ("b1", "b2"), None, DUE + timedelta(days=2), "digest"),
+        "b3": Handin("b3", ("b3",), None, DUE, "digest"),
+    }
+    return marks.marks(course, came, {"t": 90.5})
+
+
+@pytest.fixture
+def write(tmp_path, rows):
+    (tmp_path / "feedback" / "t").mkdir(parents=True)
+    (tmp_path / "feedback" / "t" / "feedback.html").write_text("<p>of t")
+
+    def written(lines=WORKSHEET, header=HEADER):
+        sheets.write_csv(tmp_path / "sheet.csv", header, lines)
+        return moodle.write(tmp_path, tmp_path / "sheet.csv", rows, ROSTER, HOMEWORK)
+
+    return written
+
+
+def importer(name):
+    """Return participant, plugin and file as Moodle's importer reads them from a path."""
+    if name.startswith((".", "~")):
+        return None
+    parts = name.split("_", 4)
+    return (int(parts[1]), parts[2] + "_" + parts[3], parts[4]) if len(parts) == 5 else None
+
+
+def test_the_gradebook_s_table_says_who_in_three_ways_and_the_score_after_its_penalty(rows):
+    header, lines = moodle.gradebook(rows, ROSTER, HOMEWORK)
+    read = list(csv.reader(io.StringIO(sheets.csv_text(header, lines))))
+    assert read[0] == ["ID number", "Username", "Email address", "hw2: The response curve"]
+    assert read[1] == ["b1", "b1", "ada@example.edu", "88.5"]
+    assert [line[3] for line in read[1:]] == ["88.5", "88.5", "0.0", "0.0"]
+
+
+def test_a_worksheet_comes_back_with_the_columns_that_its_importer_needs_and_the_scores(write, tmp_path):
+    write()
+    with open(tmp_path / "moodle_worksheet.csv", encoding="utf-8-sig", newline="") as file:
+        lines = list(csv.DictReader(file))
+    assert {"Identifier", "Grade", "Last modified (grade)"} <= set(lines[0])
+    assert "Feedback comments" not in lines[0]
+    grades = {line["Identifier"].removeprefix("Participant "): line["Grade"] for line in lines}
+    assert grades == {"4711": "88.5", "4712": "88.5", "4713": "12.00", "4714": "", "4715": "55.00"}
+
+
+def test_each_member_of_a_team_gets_its_page_in_an_archive_that_the_importer_can_read(write, tmp_path):
+    write()
+    with zipfile.ZipFile(tmp_path / "moodle_feedback.zip") as archive:
+        found = {importer(name): archive.read(name) for name in archive.namelist()}
+    kind, page = "assignsubmission_file", b"<p>of t"
+    assert found == {(4711, kind, "feedback.html"): page, (4712, kind, "feedback.html"): page}
+
+
+def test_whom_the_roster_does_not_know_is_told_of_and_names_in_a_student_s_text_count_for_nothing(write):
+    (said,) = write()
+    assert "sheet.csv" in said and "'Eve'" in said
+
+
+def test_an_assignment_of_other_points_and_a_table_that_is_no_worksheet_are_refused(write):
+    with pytest.raises(ValueError, match=r"maximum grade of 100 points as hw2 gives, got 10\.00"):
+        write([row(4711, "Ada", "b1", most="10.00")])
+    with pytest.raises(ValueError, match="worksheet in English, got no 'identifier'"):
+        write([("4711", "90")], header=("ID", "Bewertung"))
