@@ -18,6 +18,7 @@ from hdrlab.io import web
 from hdrlab.show.plots import figures, reuse
 
 SIDE = 1000  # pixels
+FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
 DECADE = float(np.log10(2))  # of a stop
 
 
@@ -113,6 +114,28 @@ def strip(
 def encode(drawn: object) -> bytes:
     """Return what a draw function returned as WebP: a plot without loss, a photograph in small."""
     return web.encode_webp(render(drawn), lossless=not isinstance(drawn, np.ndarray))
+
+
+def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
+    """Return `image` as WebP that is painted over `first`: without loss, or in small what is a photograph.
+
+    Without loss it is what differs from the first picture, and transparent elsewhere; or the whole, where
+    that is smaller.
+
+    Examples
+    --------
+    >>> page = np.full((200, 300), 255, np.uint8)
+    >>> len(encode_change(page, page)) < 100
+    True
+    """
+    over = web.as_rgb(image)
+    lossless = len(web.encode_runs(image)) <= web.MAX_RUN_BYTES * over[..., 0].size
+    if first is not None and first.shape == image.shape:
+        changed = (over != web.as_rgb(first)).any(axis=-1)
+        over, lossless = np.dstack([over, np.uint8(255) * changed]), lossless or changed.mean() < FEW_CHANGED
+    if not lossless:
+        return web.encode_webp(image)
+    return min((web.encode_webp(each, lossless=True) for each in (image, over)), key=len)
 
 
 def render(drawn: object) -> NDArray[np.uint8]:

@@ -95,7 +95,7 @@ def test_python_moves_the_step_too(player):
     assert player.get_by_role("slider").input_value() == "3"
 
 
-def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named(tuner):
+def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named_where_not_all_are_stored(tuner):
     slider = tuner.get_by_role("slider", name="level")
     slider.focus()
     tuner.keyboard.press("End")
@@ -105,22 +105,31 @@ def test_without_a_kernel_the_nearest_stored_picture_is_shown_and_named(tuner):
         tuner.keyboard.press("ArrowLeft")
     assert slider.get_attribute("aria-valuetext") == "191"
     status = tuner.get_by_role("status").inner_text()
-    assert status == "No Python answers: the nearest stored picture, level = 200."
+    assert status == "Computed beforehand, at 3 of 201 positions of level; the nearest: level = 200."
     assert tuner.evaluate("window.reached") == []
 
 
-def test_without_a_kernel_each_of_two_sliders_has_its_own_stored_pictures(page):
+def test_without_a_kernel_every_position_of_two_sliders_is_answered(page):
     def shade(level=100, more=0):
-        return square(level + more)
+        picture = square(level)
+        picture[:, 15:] += more  # the rest is as in the first picture, and so it is not stored again
+        return picture
 
-    open_widget(
-        page, widgets.tune(shade, lambda drawn: drawn, alt="Gray", stored=2, level=(0, 200), more=(0, 55))
-    )
-    page.get_by_role("slider", name="level").press("End")
-    until_level(page, 200)
-    page.get_by_role("slider", name="more").press("End")
-    until_level(page, 155)
-    assert alt(page) == "Gray, level = 100, more = 55"
+    ranges = {"level": (0, 200, 50), "more": (0, 50, 10)}
+    open_widget(page, widgets.tune(shade, lambda drawn: drawn, alt="Gray", **ranges))
+    for name, key, expected in (("more", "End", 150), ("level", "Home", 50), ("more", "ArrowLeft", 40)):
+        page.get_by_role("slider", name=name).press(key)
+        until_level(page, expected)
+        assert page.get_by_role("status").inner_text() == "Computed beforehand."
+    assert alt(page) == "Gray, level = 0, more = 40"
+    left = "document.querySelector('canvas').getContext('2d').getImageData(5, 20, 1, 1).data[0]"
+    assert page.evaluate(left) == 0
+
+
+def test_a_page_of_the_site_leads_to_where_python_answers(tuner):
+    tuner.evaluate("window.hdrlab = { running: '../installing.html' }")
+    tuner.get_by_role("slider").press("End")
+    assert tuner.get_by_role("link", name="Run it yourself").get_attribute("href") == "../installing.html"
 
 
 def test_an_answer_replaces_the_stored_picture(tuner):
@@ -128,13 +137,16 @@ def test_an_answer_replaces_the_stored_picture(tuner):
     slider.focus()
     tuner.keyboard.press("End")
     until_level(tuner, 200)
-    tuner.evaluate("""() => {
-        const model = window.model;
-        model.set("frame", model.get("stored")[1]);
-        model.set("shown", model.get("at"));
-        model.set("answers", model.get("answers") + 1);
-    }""")
-    until_level(tuner, 0)  # what the first stored picture beside the start holds
+    tuner.evaluate(
+        """(runs) => {
+            const model = window.model;
+            model.set("frame", new DataView(Uint8Array.from(runs).buffer));
+            model.set("shown", model.get("at"));
+            model.set("answers", model.get("answers") + 1);
+        }""",
+        list(web.encode_runs(square(30))),
+    )
+    until_level(tuner, 30)
     assert tuner.get_by_role("status").inner_text() == ""
     before = tuner.evaluate("window.model.saved")
     tuner.keyboard.press("ArrowLeft")

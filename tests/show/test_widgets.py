@@ -177,13 +177,67 @@ def test_a_function_that_fails_says_so_beside_the_slider_and_recovers():
     assert tuner.problem == "" and level_of(tuner.frame) == 50
 
 
-def test_tune_stores_a_few_positions_of_each_slider_for_a_page_without_a_kernel():
-    tuner = widgets.tune(square, same, alt="A square", stored=3, level=(0, 255), side=[8, 16, 32])
-    stored = [tuple(position) for position in tuner.stored_at]
-    assert set(stored) == {(100, 1), (0, 1), (128, 1), (255, 1), (100, 0), (100, 2)} and len(stored) == 6
-    for (level, side), frame in zip(stored, tuner.stored, strict=True):
+def test_tune_stores_all_positions_for_a_page_without_a_kernel_the_start_first():
+    tuner = widgets.tune(square, same, alt="A square", level=(0, 150, 10), side=[8, 16, 32])
+    assert tuner.stored_at[0] == [10, 1]
+    assert sorted(tuner.stored_at) == [[level, side] for level in range(16) for side in range(3)]
+    for (level, side), frame in zip(tuner.stored_at, tuner.stored, strict=True):
         picture = iio.imread(io.BytesIO(frame))
-        assert picture.shape[0] == [8, 16, 32][side] and level_of(frame) == pytest.approx(level, abs=1)
+        assert picture.shape[0] == [8, 16, 32][side] and level_of(frame) == pytest.approx(10 * level, abs=1)
+
+
+def test_of_many_positions_tune_stores_an_even_grid_with_the_ends_and_the_start():
+    tuner = widgets.tune(square, same, alt="A square", stored=12, level=(0, 255), side=[8, 16, 32])
+    each = [[0, 100, 170, 255], [0, 1, 2]]
+    assert sorted(tuner.stored_at) == [[level, side] for level in each[0] for side in each[1]]
+
+
+def test_words_are_thinned_out_last():
+    def shade(colour="red", level=0):
+        return square(level)
+
+    tuner = widgets.tune(shade, same, alt="Gray", stored=20, colour=["red", "green", "blue"], level=(0, 9))
+    assert {position[0] for position in tuner.stored_at} == {0, 1, 2} and len(tuner.stored_at) == 18
+
+
+def test_the_environment_says_how_many_pictures_are_stored(monkeypatch):
+    monkeypatch.setenv("HDRLAB_STORED", "256")
+    assert len(widgets.tune(square, same, alt="A square", level=(0, 255)).stored) == 256
+    monkeypatch.delenv("HDRLAB_STORED")
+    assert len(widgets.tune(square, same, alt="A square", level=(0, 255)).stored) == 48
+
+
+def test_heavy_photographs_are_stored_at_fewer_positions():
+    noise = np.random.default_rng(1).integers(0, 256, (600, 700, 3), dtype=np.uint8)
+    tuner = widgets.tune(lambda level: noise, same, alt="Noise", stored=400, level=(0, 15))
+    size = len(tuner.stored[0])
+    assert 1 < len(tuner.stored) == 4_000_000 // size < 16
+
+
+def test_a_position_at_which_the_function_fails_has_no_picture():
+    def picky(level=4):
+        return square(60 // abs(level - 6))
+
+    tuner = widgets.tune(picky, same, alt="A square", level=(4, 9))
+    assert sorted(tuner.stored_at) == [[k] for k in (0, 1, 3, 4, 5)] and tuner.problem == ""
+
+
+def painted(first, over):
+    """Return the picture that a page shows: one painted over the other, transparent where it is the same."""
+    over = iio.imread(io.BytesIO(over))
+    if over.shape[2] == 3:
+        return over
+    return np.where(over[..., 3:] == 255, over[..., :3], iio.imread(io.BytesIO(first))[..., :3])
+
+
+def test_plots_are_stored_as_their_changes_to_the_bit():
+    def draw(k):
+        return plots.response(np.arange(256.0) * (k + 1), span=(0, 1000))
+
+    tuner = widgets.tune(lambda k: k, draw, alt="A curve", k=(0, 3))
+    for (k,), frame in zip(tuner.stored_at, tuner.stored, strict=True):
+        assert np.array_equal(painted(tuner.stored[0], frame), render(draw(k)))
+    assert max(map(len, tuner.stored[1:])) < len(tuner.stored[0])
 
 
 def test_tune_stores_the_start_where_nothing_else_is_asked_for():

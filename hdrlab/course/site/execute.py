@@ -20,6 +20,7 @@ from hdrlab.io.files import replacing
 
 LIBRARY = Path(hdrlab.__file__).parent
 PATIENCE = 600  # seconds for a cell
+STORED = "400"  # pictures of a slider, for a page on which no Python answers
 QUIET = ["--IPKernelApp.log_level=40"]  # errors: a kernel warns of its own connections otherwise
 
 
@@ -104,9 +105,8 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
 
     notebook = nbformat.read(source, as_version=4)
-    folder = (
-        cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
-    )  # where a notebook may leave something
+    # where a notebook may leave something
+    folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
     folder.mkdir(parents=True)
     kept.parent.mkdir(parents=True, exist_ok=True)
     client: Any = NotebookClient(notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET)
@@ -132,7 +132,8 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
 def _environment(folder: Path) -> dict[str, str]:
     """Return an environment in which the kernel imports this very hdrlab, and writes nothing at home."""
     path = os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
-    return {**os.environ, "PYTHONPATH": path, "IPYTHONDIR": str(folder / "ipython")}
+    own = {"PYTHONPATH": path, "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": STORED}
+    return {**os.environ, **own}
 
 
 async def _end(client: Any, folder: Path) -> None:

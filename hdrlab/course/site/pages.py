@@ -75,13 +75,8 @@ def build(
     """
     record = cache_of(out) / "made.json"
     sheets = {file.stem: file.read_text("utf-8") for file in handouts}
-    made_of = [
-        library_key(course=True),
-        sorted(one.executed.name for one in done),
-        sheets,
-        dict(more),
-        address,
-    ]
+    ran = sorted(one.executed.name for one in done)
+    made_of = [library_key(course=True), ran, sheets, dict(more), address]
     key = hashlib.sha256(json.dumps(made_of).encode()).hexdigest()
     if record.exists() and (out / "index.html").exists():
         before = json.loads(record.read_text("utf-8"))

@@ -1,7 +1,7 @@
 """Widgets: steps to play, parameters to tune, pictures to compare, and the Detail Brush.
 
 play   draws every state once and moves through the frames in the browser: at once, and with no kernel too
-tune   calls a function on each move of a slider; a few positions are stored for a page that has no kernel
+tune   calls a function on each move of a slider; its pictures are stored for a page that has no kernel
 wipe   two pictures with a movable edge between them: `show.widgets.compared`
 blink  pictures in one place, one after the other: `show.widgets.compared`
 predict  a question that takes the answer before the picture comes: `show.widgets.predict`
@@ -12,8 +12,9 @@ yours), `f` any function, and `draw` returns a uint8 picture (H, W) or (H, W, 3)
 """
 
 import gc
+import os
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from itertools import islice
 from typing import Any, TypeVar
 
@@ -23,7 +24,7 @@ from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
 from hdrlab.io.web import Image
-from hdrlab.show.pictures import Picture, encode, pictured, render, require_alt, short
+from hdrlab.show.pictures import Picture, encode, encode_change, pictured, render, require_alt, short
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
 from hdrlab.show.widgets.compared import Blinker, Wiper, blink, wipe
@@ -35,6 +36,8 @@ __all__ = ["Blinker", "Brush", "Player", "Tuner", "Wiper", "blink", "brush", "pl
 State = TypeVar("State")
 
 THREADS = ThreadpoolController()  # of the linear algebra that is loaded by now
+STORED = 48  # pictures of a slider that are made while a reader waits, for most of them a second
+HEAVIEST = 4_000_000  # bytes of them, on a page where nobody waits and more of them are made
 MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
 
 
@@ -120,7 +123,7 @@ class Tuner(Widget):
     problem = traitlets.Unicode().tag(sync=True)  # what the function raised, in words
     answers = traitlets.Int(0).tag(sync=True)  # counts the pictures, so that each answer is noticed
     stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
-    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)  # JPEG
+    stored = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP; each is painted over the first
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
     area = traitlets.List(traitlets.Float()).tag(sync=True)  # left, top, width, height of what is pressed
 
@@ -157,7 +160,7 @@ def tune(
     /,
     *,
     alt: str,
-    stored: int = 5,
+    stored: int | None = None,
     point: tuple[str, str] | None = None,
     **ranges: Any,
 ) -> Tuner:
@@ -171,8 +174,10 @@ def tune(
         Takes what `f` returns; else as for `play`.
     alt : str
         What the picture shows; the parameters' values are added.
-    stored : int
-        How many positions of each slider are computed now, for a page without a kernel.
+    stored : int, optional
+        The most pictures that are computed now, for a page without a kernel: all positions, or else a grid of
+        them. By default 48, or what the environment variable HDRLAB_STORED says, and at most 4 MB. A position
+        at which `f` fails has none.
     point : (down, right), optional
         Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets, too.
     **ranges : (low, high), (low, high, step), or a list of values
@@ -213,8 +218,12 @@ def tune(
         return reuse.draw_reusing(draw, found, finish, kept)
 
     at = positions.start(f, grids)
-    few = positions.few(grids, at, stored)
-    images = [picture(position) for position in few]
-    kernelless = {"stored_at": few, "stored": [web.encode_jpeg(image) for image in images]}
-    told = {"point": list(point or ()), "area": area, "frame": web.encode_frame(images[0])}
-    return Tuner(picture, grids, at=at, shown=at, alt=alt, **kernelless, **told)
+    most = int(os.environ.get("HDRLAB_STORED", STORED)) if stored is None else stored
+    first = picture(at)
+    stored_at, frames = [at], [encode_change(first)]
+    for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:
+        with suppress(Exception):  # what a student's function refuses is told when it is asked for
+            frames.append(encode_change(picture(position), first))
+            stored_at.append(position)
+    told = {"point": list(point or ()), "area": area, "frame": web.encode_frame(first)}
+    return Tuner(picture, grids, at=at, shown=at, alt=alt, stored_at=stored_at, stored=frames, **told)

@@ -5,6 +5,8 @@ at     one index per parameter
 """
 
 import inspect
+import itertools
+import math
 from collections.abc import Callable, Iterable, Sequence
 from typing import Any
 
@@ -53,10 +55,22 @@ def _nearest(grid: list[Any], value: Any) -> int:
     return int(np.argmin(np.abs(np.array(grid) - value))) if numbers else len(grid) // 2
 
 
-def few(grids: Grids, at: list[int], stored: int) -> list[list[int]]:
-    """Return a few positions along each slider while the others stay at the start, the start among them."""
-    chosen = {tuple(at): None}
-    for k, grid in enumerate(grids.values()):
-        for position in np.linspace(0, len(grid) - 1, min(stored, len(grid))).round().astype(int):
-            chosen[(*at[:k], int(position), *at[k + 1 :])] = None
-    return [list(position) for position in chosen]
+def beforehand(grids: Grids, at: list[int], most: int) -> list[list[int]]:
+    """Return the start, then every other position, or those of an even grid where they are more than `most`.
+
+    A grid has the ends of each range; of the sliders the longest is thinned out first, and words last.
+    """
+    counts, words = list(map(len, grids.values())), [isinstance(each[0], str) for each in grids.values()]
+    while math.prod(counts) > max(most, 1):
+        counts[max(range(len(counts)), key=lambda k: (counts[k] > 2, not words[k], counts[k]))] -= 1
+    axes = [
+        _even(len(each), count, here) for each, count, here in zip(grids.values(), counts, at, strict=True)
+    ]
+    return sorted(map(list, itertools.product(*axes)), key=lambda position: position != at)
+
+
+def _even(length: int, count: int, here: int) -> list[int]:
+    """Return `count` positions from end to end, of which the one nearest to `here` is `here`."""
+    chosen = np.linspace(0, length - 1, count).round().astype(int)
+    chosen[np.argmin(np.abs(chosen - here))] = here
+    return chosen.tolist()

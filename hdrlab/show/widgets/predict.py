@@ -43,9 +43,8 @@ class Prediction(Widget):
 
     def fallback(self) -> tuple[str, str]:
         """Return the question, and its answer to be opened."""
-        opened = (
-            f"<details><summary>Answer</summary>{escape(f'{self.told} {self.because}'.strip())}</details>"
-        )
+        answer = escape(f"{self.told} {self.because}".strip())
+        opened = f"<details><summary>Answer</summary>{answer}</details>"
         return f"<p>{escape(self.question)}</p>{opened}", self.question
 
 
@@ -142,13 +141,8 @@ def curve(
     [0.0, 1.0, -0.3, 2.3]
     """
     x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    if (
-        x.shape != y.shape
-        or x.ndim != 1
-        or len(x) < 2
-        or not np.all(np.diff(x) > 0)
-        or not np.isfinite(y).all()
-    ):
+    drawn = x.shape == y.shape and x.ndim == 1 and len(x) > 1
+    if not drawn or not np.all(np.diff(x) > 0) or not np.isfinite(y).all():
         raise ValueError(f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}")
     few = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int))
     room = 0.15 * (np.ptp(y) or 1.0)

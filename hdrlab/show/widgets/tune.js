@@ -1,4 +1,4 @@
-// Parameters of a function: Python computes each picture. Where no Python answers, the nearest stored picture is shown.
+// Parameters of a function: Python computes each picture. Where no Python answers, the stored ones are shown.
 
 const PATIENCE = 3000; // ms without an answer before a page that had a kernel counts as one without
 
@@ -41,20 +41,47 @@ function render({ model, el }) {
   const controls = element(root, "div", { className: "hdrlab-controls" });
   const bars = names.map((name, k) => slider(controls, name, values[k].length));
   const texts = (at) => at.map((position, k) => `${names[k]} = ${values[k][position]}`).join(", ");
-  let [answered, timer, moved] = [false, null, 0];
+  let [answered, timer, first] = [false, null, null];
 
-  // Stored positions lie along one slider each: the slider that was moved decides which is the nearest.
+  // Stored positions are a grid: the nearest one is so along each slider.
   function distance(a, b) {
     const share = (position, k) => Math.abs(position - b[k]) / (values[k].length - 1);
-    return a.reduce((sum, position, k) => sum + (k === moved ? 100 : 1) * share(position, k), 0);
+    return a.reduce((sum, position, k) => sum + share(position, k), 0);
+  }
+
+  // How many positions of a slider have a picture, where not all of them do.
+  function thinned() {
+    const counts = names.map((_, k) => new Set(model.get("stored_at").map((at) => at[k])).size);
+    const told = names.map((name, k) => `${counts[k]} of ${values[k].length} positions of ${name}`);
+    return told.filter((_, k) => counts[k] < values[k].length).join(", ");
+  }
+
+  // A page of the site says where a reader finds how to run it.
+  function tellStored(nearest) {
+    const at = same(nearest, model.get("at")) ? "" : `, at ${thinned() || "other positions"}; the nearest: ${texts(nearest)}`;
+    note.textContent = `Computed beforehand${at}.`;
+    const address = globalThis.hdrlab?.running;
+    if (address) note.append(" ", element(note, "a", { href: address, textContent: "Run it yourself" }));
+  }
+
+  const opening = (k) => decode(model.get("stored")[k], "image/webp");
+
+  // A picture is painted over the first, of which it may be the changes alone.
+  async function layered(k) {
+    const [under, over] = await Promise.all([(first ??= opening(0)), opening(k)]);
+    const canvas = Object.assign(document.createElement("canvas"), { width: over.width, height: over.height });
+    const context = canvas.getContext("2d");
+    context.drawImage(under, 0, 0);
+    context.drawImage(over, 0, 0);
+    return canvas;
   }
 
   function showStored() {
     const [at, stored] = [model.get("at"), model.get("stored_at")];
     const away = stored.map((other) => distance(other, at));
     const nearest = away.indexOf(Math.min(...away));
-    view.show(decodeJpeg(model.get("stored")[nearest]), `${model.get("alt")}, ${texts(stored[nearest])}`);
-    note.textContent = `No Python answers: the nearest stored picture, ${texts(stored[nearest])}.`;
+    view.show(layered(nearest), `${model.get("alt")}, ${texts(stored[nearest])}`);
+    tellStored(stored[nearest]);
   }
 
   function showBars() {
@@ -87,13 +114,11 @@ function render({ model, el }) {
       const k = names.indexOf(name);
       const away = values[k].map((value) => Math.abs(Number(value) - shares[axis]));
       bars[k].input.value = away.indexOf(Math.min(...away));
-      moved = k;
     });
-    move(moved);
+    move();
   }
 
-  function move(k) {
-    moved = k;
+  function move() {
     model.set("at", bars.map((bar) => Number(bar.input.value)));
     model.save_changes();
     showBars();
@@ -102,7 +127,7 @@ function render({ model, el }) {
     else showStored();
   }
 
-  bars.forEach((bar, k) => bar.input.addEventListener("input", () => move(k)));
+  bars.forEach((bar) => bar.input.addEventListener("input", move));
   if (model.get("point").length) {
     view.canvas.classList.add("hdrlab-point");
     ["pointerdown", "pointermove"].forEach((kind) => view.canvas.addEventListener(kind, point));

@@ -45,6 +45,7 @@
   }
 
   window.hdrlab = {
+    running: `${document.documentElement.dataset.content_root}installing.html`,
     widget(name, content) {
       for (const place of places.get(name) ?? [])
         open(place, content).catch((error) => {
