@@ -42,9 +42,8 @@ def start(f: Callable[..., Any], grids: Grids) -> list[int]:
     takes_any = any(p.kind is p.VAR_KEYWORD for p in parameters.values())
     unknown = [name for name in grids if name not in parameters and not takes_any]
     if unknown:
-        raise ValueError(
-            f"expected parameters of the function, {', '.join(parameters)}; got {', '.join(unknown)}"
-        )
+        known = ", ".join(parameters)
+        raise ValueError(f"expected parameters of the function, {known}; got {', '.join(unknown)}")
     return [_nearest(grid, getattr(parameters.get(name), "default", None)) for name, grid in grids.items()]
 
 

@@ -74,10 +74,8 @@ def choice(
     ['the sky', 'the wall']
     """
     if len(labels) < 2 or truth not in range(len(labels)) or len(pictures) not in (0, len(labels)):
-        got = f"{len(labels)} labels, {len(pictures)} pictures, {truth=}"
-        raise ValueError(
-            f"expected two or more labels, one of them true, and no pictures or one each, got {got}"
-        )
+        wanted = "two or more labels, one of them true, and no pictures or one each"
+        raise ValueError(f"expected {wanted}, got {len(labels)} labels, {len(pictures)} pictures, {truth=}")
     shown = [web.encode_webp(fit(render(one), SIDE // 2), lossless=True) for one in pictures]
     parts = {"labels": list(labels), "alts": list(labels), "pictures": shown}
     return ask("choice", question, int(truth), f"{labels[truth]}.", because, **parts)
