@@ -7,6 +7,7 @@ alt    alt text: what is in the picture, in a sentence
 import sys
 from collections.abc import Callable, Iterable
 from html import escape
+from itertools import repeat
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -18,6 +19,8 @@ from hdrlab.io import web
 from hdrlab.show.plots import figures, reuse
 
 SIDE = 1000  # pixels
+SHARP = 2  # pixels of a plot along a pixel of the page, which many screens show
+COLUMN = 640  # pixels of the page: a smaller picture is shown as wide
 FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
 DECADE = float(np.log10(2))  # of a stop
 
@@ -29,19 +32,21 @@ class Picture(NamedTuple):
     alts: tuple[str, ...]
     captions: tuple[str, ...]
     legend: str = ""  # as HTML, below the pictures
+    density: int = 1  # pixels of a frame along a pixel of the page
 
     def __repr__(self) -> str:
         return "; ".join(self.alts)
 
     def _repr_html_(self) -> str:
-        each = "".join(map(_figure, self.frames, self.alts, self.captions))
-        wide = "repeat(auto-fit,minmax(min(320px,100%),1fr))"
+        each = "".join(map(_figure, self.frames, self.alts, self.captions, repeat(self.density)))
+        least = 220 if self.density == 1 else 320  # pixels of the page: the numbers of a plot stay legible
+        wide = f"repeat(auto-fit,minmax(min({least}px,100%),1fr))"
         return f'<div style="display:grid;grid-template-columns:{wide};gap:0.75em">{each}</div>{self.legend}'
 
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
     """Return `drawn` as a Picture, for the last line of a notebook's cell."""
-    return Picture((encode(drawn),), (require_alt(alt),), (caption,))
+    return Picture((encode(drawn, SHARP),), (require_alt(alt),), (caption,), density=_density(drawn))
 
 
 def radiance(E: ArrayLike, *, alt: str) -> Picture:
@@ -98,7 +103,7 @@ def strip(
     >>> def square(level):
     ...     return np.full((8, 8), level, np.uint8)
     >>> strip(square, lambda picture: picture, alt="A gray square", level=[0, 128])
-    A gray square, level = 0; A gray square, level = 128
+    A gray square, level 0; A gray square, level 128
     """
     if len(values) != 1:
         raise ValueError(f"expected one parameter with its values, got {len(values)}: {', '.join(values)}")
@@ -106,14 +111,20 @@ def strip(
     each = list(each)
     if not each:
         raise ValueError(f"expected at least one value for {name}, got none")
-    frames = tuple(encode(draw(f(**{name: value}))) for value in each)
-    captions = tuple(f"{name} = {short(value)}" for value in each)
-    return Picture(frames, tuple(f"{require_alt(alt)}, {caption}" for caption in captions), captions)
+    drawn = (draw(f(**{name: value})) for value in each)
+    frames, densities = zip(*((encode(one, SHARP), _density(one)) for one in drawn), strict=True)
+    captions = tuple(in_words(name, value) for value in each)
+    alts = tuple(f"{require_alt(alt)}, {caption}" for caption in captions)
+    return Picture(frames, alts, captions, density=max(densities))
 
 
-def encode(drawn: object) -> bytes:
+def encode(drawn: object, density: int = 1) -> bytes:
     """Return what a draw function returned as WebP: a plot without loss, a photograph in small."""
-    return web.encode_webp(render(drawn), lossless=not isinstance(drawn, np.ndarray))
+    return web.encode_webp(render(drawn, density), lossless=not isinstance(drawn, np.ndarray))
+
+
+def _density(drawn: object) -> int:
+    return 1 if isinstance(drawn, np.ndarray) else SHARP
 
 
 def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
@@ -138,11 +149,14 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     return min((web.encode_webp(each, lossless=True) for each in (image, over)), key=len)
 
 
-def render(drawn: object) -> NDArray[np.uint8]:
-    """Return what a draw function returned as a picture (H, W) or (H, W, 3) uint8, or raise a ValueError."""
+def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
+    """Return what a draw function returned as a picture (H, W) or (H, W, 3) uint8, or raise a ValueError.
+
+    A plot has `density` times as many pixels along a side.
+    """
     figure = getattr(drawn, "figure", None)
     if hasattr(figure, "savefig"):
-        return _pixels(figure)
+        return _pixels(figure, density)
     if isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and _is_picture(drawn.shape):
         return drawn
     came = f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
@@ -170,14 +184,35 @@ def short(value: object) -> str:
     return f"{value:.4g}" if isinstance(value, float | np.floating) else str(value)
 
 
+def in_words(name: str, value: object) -> str:
+    """Return a parameter's value as a caption.
+
+    Examples
+    --------
+    >>> [in_words("samples", 3), in_words("read_noise", 5.0), in_words("q", 0.5), in_words("weight", "hat")]
+    ['3 samples', 'read noise 5', 'q = 0.5', 'hat']
+    """
+    words, said = name.replace("_", " "), short(value)
+    if isinstance(value, str | bool):
+        return said if isinstance(value, str) else f"{'with' if value else 'without'} {words}"
+    if len(name) <= 2:
+        return f"{name} = {said}"
+    if not name.endswith("s") or name.endswith(("ss", "us")):
+        return f"{words} {said}"
+    return f"{said} {words[:-1] if said == '1' else words}"
+
+
 def _is_picture(shape: tuple[int, ...]) -> bool:
     return 0 not in shape and (len(shape) == 2 or (len(shape) == 3 and shape[-1] == 3))
 
 
-def _pixels(figure: Any) -> NDArray[np.uint8]:
+def _pixels(figure: Any, density: int) -> NDArray[np.uint8]:
+    dpi = figure.dpi
+    figure.set_dpi(density * dpi)
     known = type(figure.canvas) is FigureCanvasAgg  # which knows the widths of words from the picture before
     canvas = figure.canvas if known else FigureCanvasAgg(figure)
     reuse.paint(canvas)
+    figure.set_dpi(dpi)
     if "matplotlib.pyplot" in sys.modules:  # else a figure of pyplot's is shown once more, below the cell
         sys.modules["matplotlib.pyplot"].close(figure)
     return np.array(canvas.buffer_rgba())[..., :3]
@@ -204,7 +239,11 @@ def _tick(place: float, label: str) -> str:
     return f'<span style="position:absolute;left:{place:.2f}%;transform:translateX(-50%)">{label} </span>'
 
 
-def _figure(frame: bytes, alt: str, caption: str) -> str:
-    image = f'<img alt="{escape(alt)}" src="{web.data_uri(frame)}" style="max-width:100%;height:auto">'
+def _figure(frame: bytes, alt: str, caption: str, density: int) -> str:
+    height, width = (side / density for side in web.decode_picture(frame).shape[:2])
+    wide = max(width, min(COLUMN, COLUMN * width / height))  # an upright picture is not made taller than that
+    style = f"width:100%;max-width:{wide:.0f}px;height:auto;"
+    style += "image-rendering:pixelated;" if width < COLUMN / 4 else ""
+    image = f'<img alt="{escape(alt)}" src="{web.data_uri(frame)}" style="{style}">'
     below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
     return f'<figure style="margin:0">{image}{below}</figure>'

@@ -10,6 +10,7 @@ import pytest
 from skimage.color import rgb2lab
 
 from hdrlab.core.bracket import bracket
+from hdrlab.io import web
 from hdrlab.show import pictures, plots
 
 LINEAR = np.log(np.arange(1, 257) / 129)
@@ -190,12 +191,33 @@ def test_a_drawing_that_is_no_picture_is_refused_with_what_came(drawn, came):
         pictures.render(drawn)
 
 
+def test_a_plot_in_a_page_has_two_pixels_for_one_of_the_page():
+    def curve(part=1.0):
+        return plots.response(part * np.arange(256.0))
+
+    shown = pictures.picture(curve(), alt="A curve")
+    strip = pictures.strip(curve, lambda ax: ax, alt="A curve", part=[0.5, 1.0])
+    for frame in (*shown.frames, *strip.frames):
+        assert web.decode_picture(frame).shape == (720, 1080, 3)
+    assert strip._repr_html_().count("max-width:640px") == 2
+    ax = curve()
+    assert pictures.render(ax, 2).shape == (720, 1080, 3) and pictures.render(ax).shape == (360, 540, 3)
+
+
+@pytest.mark.parametrize(
+    ("size", "width"), [((256, 384), 640), ((384, 256), 427), ((600, 900), 900), ((900, 600), 600)]
+)
+def test_a_small_photograph_fills_a_column_and_no_picture_is_made_smaller(size, width):
+    html = pictures.picture(np.zeros(size, np.uint8), alt="Night")._repr_html_()
+    assert f"width:100%;max-width:{width}px;height:auto" in html and "pixelated" not in html
+
+
 def test_a_strip_has_a_picture_a_caption_and_an_alt_text_per_value():
     def square(level, side=4):
         return np.full((side, side), level, np.uint8)
 
     strip = pictures.strip(square, lambda drawn: drawn, alt="A square", level=[0, 100, 255])
-    assert strip.captions == ("level = 0", "level = 100", "level = 255")
+    assert strip.captions == ("level 0", "level 100", "level 255")
     assert strip.alts == tuple(f"A square, {caption}" for caption in strip.captions)
     assert len(set(strip.frames)) == 3 and strip._repr_html_().count("<img ") == 3
 

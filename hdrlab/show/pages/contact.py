@@ -69,9 +69,7 @@ def entry_steps(
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
-def _methods(
-    operators: Sequence[str] | Mapping[str, Method] | None,
-) -> dict[str, Callable[..., ArrayLike]]:
+def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str, Callable[..., ArrayLike]]:
     """Return label -> function, or raise a ValueError, before the first operator has run."""
     if operators is None:
         operators = catalogue.names("tonemap")

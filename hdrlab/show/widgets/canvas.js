@@ -34,6 +34,9 @@ function slider(parent, name, count) {
   };
 }
 
+const [SMALL, COLUMN] = [480, 640]; // pixels of the page
+const TALLEST = 75; // percent of the screen's height
+
 function picture(parent) {
   const canvas = element(parent, "canvas", { role: "img", "aria-label": "" });
   let asked = 0;
@@ -41,6 +44,8 @@ function picture(parent) {
     const [width, height] = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
     if (canvas.width !== width) canvas.width = width;
     if (canvas.height !== height) canvas.height = height;
+    // A photograph as wide as a column of text, and no taller than the screen.
+    if (width < SMALL) canvas.style.width = `min(${COLUMN}px, ${(TALLEST * width) / height}vh)`;
     if (pixels instanceof ImageData) canvas.getContext("2d").putImageData(pixels, 0, 0);
     else canvas.getContext("2d").drawImage(pixels, 0, 0);
     canvas.setAttribute("aria-label", alt);
