@@ -69,8 +69,8 @@ def test_commands_are_read_from_listings_and_from_running_text():
     assert len(typed(PAGES / "instructors.md")) > 20
 
 
-def test_the_table_of_the_readme_names_every_command_once():
-    table = re.findall(r"^\| (`hdrlab .*?) \|", text_of(README), re.M)
+def test_the_table_of_commands_names_every_one_once():
+    table = re.findall(r"^\| (`hdrlab .*?) \|", text_of(PAGES / "commands.md"), re.M)
     named = [re.match(r"hdrlab (\w+)", one)[1] for row in table for one in re.findall(r"`([^`]+)`", row)]
     hidden = {"doctor", "course"}  # in a row of grade, and in the section for those who teach
     assert sorted(named) == sorted(set(cli.main.commands) - hidden)
