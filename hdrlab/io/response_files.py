@@ -143,7 +143,4 @@ def _read_csv(path: Path) -> F64:
     return pfscurves.squeeze_gray(table[:, 1:])
 
 
-FORMS = {
-    ".csv": Form(_write_csv, _read_csv),
-    ".m": Form(pfscurves.write_pfstools, pfscurves.read_pfstools),
-}
+FORMS = {".csv": Form(_write_csv, _read_csv), ".m": Form(pfscurves.write_pfstools, pfscurves.read_pfstools)}

@@ -46,3 +46,10 @@ def test_no_text_of_the_report_is_smaller_than_a_telephone_can_show(report, page
             .map((el) => parseFloat(getComputedStyle(el).fontSize)))"""
     )
     assert smallest >= 13
+
+
+def test_the_report_is_dark_where_its_reader_likes_it_dark_and_axe_finds_nothing_wrong(report, page, axe):
+    page.emulate_media(color_scheme="dark")
+    page.goto(report.as_uri())
+    assert page.evaluate("getComputedStyle(document.body).backgroundColor") == "rgb(20, 24, 30)"
+    assert axe(page, "html") == []

@@ -106,6 +106,10 @@ def test_the_widgets_of_a_notebook_page_fit_any_screen_pass_axe_and_answer_with_
             assert widget.get_by_role("status").last.inner_text().startswith("The truth: ")
         else:
             changed_by(page, widget, lambda widget=widget: move(page, widget))
+            if widget.get_attribute("data-kind") == "tune":
+                assert widget.get_by_role("status").inner_text().startswith("Computed beforehand")
+                there = widget.get_by_role("link", name="Run it yourself").get_attribute("href")
+                assert there == "../installing.html"
 
 
 @pytest.mark.parametrize("name", OTHERS)
@@ -114,6 +118,21 @@ def test_a_page_fits_a_wide_and_a_narrow_screen_and_axe_finds_nothing_wrong(open
     for place in page.locator(".live").all():
         open_widget(page, place)
     assert_it_fits(page, axe)
+
+
+@pytest.mark.parametrize(
+    "name", ["index", "notebooks/04_response_gsolve", "verdicts", "reference/tonemap.chiu"]
+)
+def test_a_page_is_dark_where_the_reader_likes_it_dark_and_axe_finds_nothing_wrong(opened, axe, name):
+    page = opened(name)
+    page.emulate_media(color_scheme="dark")
+    for place in page.locator(".live").all():
+        open_widget(page, place)
+    light = "Number(getComputedStyle(document.body).backgroundColor.match(/\\d+/)[0])"
+    assert page.evaluate(light) < 40
+    assert_it_fits(page, axe)
+    page.emulate_media(media="print")
+    assert page.evaluate(light) == 255
 
 
 def test_the_brush_follows_the_pointer_and_the_keys(opened, site):

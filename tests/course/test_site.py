@@ -29,6 +29,7 @@ pytestmark = pytest.mark.skipif(
 )
 REFUSED = ("without times", "one photograph", "times the other way round", "two sizes")
 ADDRESS = "https://example.org/course"
+NOTEBOOKS = Path(__file__).parents[2] / "notebooks"
 PATIENCE = 300  # seconds: a limit for errors, not for speed
 
 PLAYED = """import numpy as np
@@ -46,7 +47,8 @@ SHOWN = """pictures.radiance(E, alt="The wedge in false colour")"""
 def notebook(path, title, *cells):
     """Write a notebook of a title, a formula, a link to the other one, and cells of code."""
     words = (
-        f"# {title}\n\nSo $g(Z) = \\ln E$, see [one](01_one.ipynb) and [three](03_three.ipynb).\n\n$$x^2$$"
+        f"# {title}\n\nRun the cells from the top. So $g(Z) = \\ln E$, see [one](01_one.ipynb) and "
+        "[three](03_three.ipynb).\n\n$$x^2$$"
     )
     made = nbformat.v4.new_notebook(metadata={"kernelspec": {"name": "python3", "display_name": "Python 3"}})
     made.cells = [nbformat.v4.new_markdown_cell(words, id="title")]
@@ -190,6 +192,14 @@ def test_formulas_are_drawn_and_spoken(made):
     text = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
     assert text.count("<svg") == text.count("<math") == 2
     assert "\\ln" not in text
+
+
+def test_a_page_does_not_say_how_to_run_what_has_been_run(made):
+    text = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
+    assert "<p>So " in text and "Run the cells" not in text
+    welcome = json.loads((NOTEBOOKS / "00_welcome.ipynb").read_text("utf-8"))["cells"][0]["source"]
+    left = build.OF_RUNNING.sub("", "".join(welcome))
+    assert "How to use a page like this.** The gray boxes" in left and left.endswith("or the arrow keys.")
 
 
 def test_a_link_to_a_notebook_that_the_site_lacks_is_text(made):

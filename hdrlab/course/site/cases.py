@@ -52,11 +52,7 @@ def walker(E: F32) -> list[Array]:
 
 # by the name in the page: the scene, what happens to it, and what the picture shows
 CASES: dict[str, tuple[str, Callable[[F32], list[Array]], str]] = {
-    "times": (
-        "workshop",
-        partial(take_three, gains=(1, 1, 0.25)),
-        "the last is no brighter, in four times the time",
-    ),
+    "times": ("workshop", partial(take_three, gains=(1, 1, 0.25)), "the last is no brighter for its time"),
     "place": ("workshop", by_place, "in each the dark corners of the room were brightened by the camera"),
     "corners": ("chapel", corners, "the corners of the last are darker than those of the others"),
     "turned": ("workshop", turned, "the last is turned by four degrees"),

@@ -44,14 +44,9 @@ class Live(NamedTuple):
         still = f"<p>{escape(self.alt)}</p>"
         if self.picture:
             height, width = web.decode_picture(self.picture).shape[:2]
-            source = f'src="{folder}/{self.name}{suffix(self.picture)}"'
+            source = f'src="{folder}/{self.name}.webp"'
             still = f'<img {source} alt="{escape(self.alt)}" width="{width}" height="{height}">'
         return f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">{still}</div>'
-
-
-def suffix(picture: bytes) -> str:
-    """Return .webp or .jpg, as the bytes say."""
-    return ".webp" if picture[8:12] == b"WEBP" else ".jpg"
 
 
 def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, Live]]:
@@ -107,7 +102,7 @@ def write(one: Live, folder: Path) -> None:
     """Write the files of a widget; what stands there as it should is left alone."""
     write_changed(folder / f"{one.name}.js", one.as_script().encode())
     if one.picture:
-        write_changed(folder / f"{one.name}{suffix(one.picture)}", one.picture)
+        write_changed(folder / f"{one.name}.webp", one.picture)
 
 
 def write_changed(path: Path, content: bytes) -> None:

@@ -27,6 +27,10 @@ MARK = ".nojekyll"  # keeps GitHub's pages from leaving out what begins with _; 
 MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
 WIDGETS = "_widgets"  # where the pages find them
 OWN = ("notebooks", "assignments", "reference", "_modules", WIDGETS)  # folders whose files are all ours
+# what a notebook says of running it, where nothing runs
+OF_RUNNING = re.compile(
+    r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |, and you can break.nothing:.*?it back"
+)
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
 THUMBNAIL = 480  # pixels wide
@@ -91,6 +95,8 @@ def build(
 def _build(
     out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str], address: str
 ) -> Site:
+    import nbformat
+
     source, html = cache_of(out) / "source", cache_of(out) / "html"
     front = next(one for one in done if one.source == FRONT)
     notebooks = {one.source.stem: _read(one) for one in done if one.source != FRONT}
@@ -98,16 +104,17 @@ def _build(
     modules, known = reference.modules(), {*notebooks, *sheets}
     uses = {name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()}
     texts = dict(reference.pages(titles, uses))
+    handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
+    headings = {name: _title(notebook) for name, notebook in handouts.items()}
     widgets = 0
-    for name, notebook in notebooks.items():
-        texts[f"notebooks/{name}.ipynb"], count = _prepared(notebook, name, known, html / WIDGETS)
-        widgets += count
-    handouts = {name: _handout(text, known) for name, text in sheets.items()}
-    texts |= {f"assignments/{name}.ipynb": text for name, (_, text) in handouts.items()}
+    for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
+        for name, notebook in group.items():
+            texts[f"{folder}/{name}.ipynb"], count = _prepared(notebook, name, known, html / WIDGETS)
+            widgets += count
     hero = next(one for _, one in live.widgets(_read(front), "front"))
     live.write(hero, html / WIDGETS)
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
-    texts["index.md"] = _front(hero, titles, {name: title for name, (title, _) in handouts.items()}, html)
+    texts["index.md"] = _front(hero, titles, headings, html)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
     texts |= {page.name: cases.illustrate(_linked(page.read_text("utf-8"), known)) for page in guides}
     texts |= more
@@ -155,7 +162,7 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
         notebook.cells.insert(0, nbformat.v4.new_markdown_cell(f"# {name}"))
     for cell in notebook.cells:
         if cell.cell_type == "markdown":
-            cell.source = _linked(cell.source, known)
+            cell.source = OF_RUNNING.sub("", _linked(cell.source, known))
         if cell.metadata.get("jupyter", {}).get("source_hidden"):  # as JupyterLab has it
             cell.metadata["tags"] = [*cell.metadata.get("tags", ()), "hide-input"]  # as Sphinx has it
     return nbformat.writes(notebook), len(found)
@@ -168,18 +175,6 @@ def _linked(text: str, known: set[str]) -> str:
         return found[0] if found[2] in known else found[1]
 
     return re.sub(r"\[([^\]]+)\]\((?:\.\./)?(?:notebooks/|assignments/)?(\w+)\.ipynb\)", link, text)
-
-
-def _handout(text: str, known: set[str]) -> tuple[str, str]:
-    """Return a handout's title, and its notebook with links to what the site has."""
-    import nbformat
-
-    notebook = nbformat.reads(text, as_version=4)
-    for cell in notebook.cells:
-        if cell.cell_type == "markdown":
-            cell.source = _linked(cell.source, known)
-    notebook.metadata.setdefault("language_info", LANGUAGE)
-    return _title(notebook), nbformat.writes(notebook)
 
 
 def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str], html: Path) -> str:

@@ -11,6 +11,7 @@ import pkgutil
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
+from itertools import groupby, takewhile
 from pathlib import Path
 from typing import Any
 
@@ -80,14 +81,8 @@ def rows() -> list[tuple[str, str]]:
     lines = (hdrlab.__doc__ or "").splitlines()
     ruler = next(index for index, line in enumerate(lines) if line.startswith("---"))
     column = lines[ruler].index(" -") + 1
-    table = []
-    for line in lines[ruler + 1 :]:
-        if not line:
-            break
-        if line.startswith("---"):  # below it stands what goes beyond the course
-            continue
-        table.append((line[:column].strip(), line[column:].strip()))
-    return table
+    table = takewhile(bool, lines[ruler + 1 :])  # below another ruler stands what goes beyond the course
+    return [(line[:column].strip(), line[column:].strip()) for line in table if not line.startswith("---")]
 
 
 def _row(
@@ -128,14 +123,8 @@ def escaped(line: str) -> str:
 
 def laid_out(lines: Sequence[str], *, module: bool) -> list[str]:
     """Return a docstring as Sphinx is to read it; a module's legends become lists."""
-    blocks: list[list[str]] = [[]]
-    for line in lines:
-        if line.strip():
-            blocks[-1].append(line)
-        else:
-            blocks.append([])
     text: list[str] = []
-    for block in blocks:
+    for block in [list(block) for full, block in groupby(lines, lambda line: bool(line.strip())) if full]:
         if any(line.lstrip().startswith(DOCTEST) for line in block):
             text += block
         elif module and _is_legend(block):

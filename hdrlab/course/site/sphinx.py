@@ -3,6 +3,7 @@
 import re
 import textwrap
 import tomllib
+from functools import partial
 from html import escape
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,10 @@ def setup(app: Any) -> dict[str, Any]:
     from hdrlab.course.site.words import Words
 
     app.add_search_language(Words)
-    app.add_html_math_renderer("drawn", (_inline, None), (_display, None))
+    renderers = (
+        (partial(_draw, tag=tag), None) for tag in ("span", "div")
+    )  # in a line of text, and by itself
+    app.add_html_math_renderer("drawn", *renderers)
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # numpydoc comes at 500
     app.connect("autodoc-skip-member", _skip)
     app.connect("missing-reference", _resolve)
@@ -35,21 +39,13 @@ def setup(app: Any) -> dict[str, Any]:
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
 
-def _inline(writer: Any, node: Any) -> None:
-    _draw(writer, node, "span", inline=True)
-
-
-def _display(writer: Any, node: Any) -> None:
-    _draw(writer, node, "div", inline=False)
-
-
-def _draw(writer: Any, node: Any, tag: str, *, inline: bool) -> None:
+def _draw(writer: Any, node: Any, *, tag: str) -> None:
     """Write a formula, or its source with a complaint that names the page: it costs no more."""
     from docutils.nodes import SkipNode
     from sphinx.util import logging
 
     try:
-        html = formulas.formula(node.astext(), inline=inline)
+        html = formulas.formula(node.astext(), inline=tag == "span")
     except Exception as error:  # whatever the parser stumbles over
         logging.getLogger(__name__).warning("formula: %s", error, location=node)
         html = f"<code>{escape(node.astext())}</code>"

@@ -67,7 +67,7 @@
 
   // What is wider than the page is scrolled, so the keyboard must reach it.
   function reach() {
-    for (const each of document.querySelectorAll("pre, .wide, div.math"))
+    for (const each of document.querySelectorAll("pre, table, div.math"))
       if (each.scrollWidth > each.clientWidth + 1) each.tabIndex = 0;
       else each.removeAttribute("tabindex");
   }
