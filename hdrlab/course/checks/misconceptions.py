@@ -1,10 +1,9 @@
 """Which well-known mistake an answer comes from: it agrees with a wrong function, and not with the library.
 
-A mistake's name begins with the id of its task. Many are one place of the solution written otherwise, in
-`mistakes/changes.toml`; where more is wrong, it is a file in `mistakes`: a docstring that says to the student
-what it is, and the wrong function. A task of an instructor's own has such
-files beside it. All are asked what the student was asked; wrong functions are ours, and run here. Answers
-are compared in the gauge or scale that the checks leave free.
+A mistake's name begins with the id of its task. It is a place of the solution written otherwise, in
+`mistakes/changes.toml`. A task of an instructor's own has files beside it: a docstring that says to the
+student what it is, and the wrong function. All are asked what the student was asked; wrong functions are
+ours, and run here. Answers are compared in the gauge or scale that the checks leave free.
 
 call        (arguments, named arguments, answer): what a check asked, and what came; None where nothing came
 difference  between two answers, relative: 0 is the same, 1 about as large as the answer itself
@@ -49,11 +48,10 @@ class Misconception(NamedTuple):
 @cache
 def known() -> tuple[Misconception, ...]:
     """Return all mistakes there are."""
-    changed = [
+    return tuple(
         Misconception(name, task_of(name), one["says"], partial(_ask_changed, name), "misses" not in one)
-        for name, one in CHANGES.items()
-    ]
-    return tuple(sorted([*map(_read, MISTAKES.rglob("*.py")), *changed], key=lambda one: one.name))
+        for name, one in sorted(CHANGES.items())
+    )
 
 
 def of_task(task: Task) -> Sequence[Misconception]:
@@ -64,8 +62,8 @@ def of_task(task: Task) -> Sequence[Misconception]:
     return [_read(path, task.id) for path in files]
 
 
-def _read(path: Path, task: str = "") -> Misconception:
-    names, task = runpy.run_path(str(path)), task or task_of(path.stem)
+def _read(path: Path, task: str) -> Misconception:
+    names = runpy.run_path(str(path))
     sentence = " ".join(names["__doc__"].split())
     return Misconception(path.stem, task, sentence, names[task], path.parent.name != "method")
 
