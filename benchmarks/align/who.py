@@ -17,7 +17,6 @@ from numpy.typing import ArrayLike, NDArray
 from skimage.registration import phase_cross_correlation
 
 from benchmarks import peers
-from hdrlab.align import homography
 from hdrlab.capture.responses import true_g
 from hdrlab.core.filters import warp
 from hdrlab.core.types import Array
@@ -85,7 +84,7 @@ def by_hugin(images: Array, _: Float) -> Answer:
         if subprocess.run(command, cwd=folder, capture_output=True).returncode or not project.exists():
             return np.eye(3), True  # it says that it found no points
         seen = _traced([str(project), "1"], warp.corners(images.shape[1:3]))
-        return homography.through(images.shape[1:3], _traced(["-r", str(project), "0"], seen)), False
+        return warp.through(warp.corners(images.shape[1:3]), _traced(["-r", str(project), "0"], seen)), False
 
 
 def _traced(options: list[str], points: Float) -> Float:

@@ -91,30 +91,17 @@ def consensus(points: F64) -> tuple[F64, Mask]:
 
 def refine(X: F32, H: F64) -> F64:
     """Return H with its corners moved to where the sum of d^2 is least; what lies far out counts little."""
-    shape, p = X.shape[1:], light.lattice(X.shape[1:])
-    start = warp.apply(H, warp.corners(shape))
+    corners, p = warp.corners(X.shape[1:]), light.lattice(X.shape[1:])
+    start = warp.apply(H, corners)
 
     def d(c: F64) -> F64:
-        moved = through(shape, start + c.reshape(4, 2))
+        moved = warp.through(corners, start + c.reshape(4, 2))
         return np.nan_to_num(light.differences(X, moved, p), nan=0.0)
 
     options = {"loss": "soft_l1", "f_scale": 0.1, "diff_step": 0.1, "x_scale": 1.0, "max_nfev": 12}
     found = least_squares(d, np.zeros(8), **options)
-    better = through(shape, start + found.x.reshape(4, 2))
-    return (
-        better
-        if light.error(light.differences(X, better, p)) < light.error(light.differences(X, H, p))
-        else H
-    )
-
-
-def through(shape: tuple[int, ...], c: F64) -> F64:
-    """Return the H that puts the corners of a picture at c (4, 2)."""
-    rows = []
-    for (x, y), (u, v) in zip(warp.corners(shape), c, strict=True):
-        rows += [[x, y, 1, 0, 0, 0, -u * x, -u * y, u], [0, 0, 0, x, y, 1, -v * x, -v * y, v]]
-    system = np.array(rows)
-    return np.append(np.linalg.solve(system[:, :8], system[:, 8]), 1).reshape(3, 3)
+    better = warp.through(corners, start + found.x.reshape(4, 2))
+    return min((H, better), key=lambda one: light.error(light.differences(X, one, p)))
 
 
 def enlarge(H: F64, times: float = 2) -> F64:

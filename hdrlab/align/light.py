@@ -131,6 +131,4 @@ def exposure_ratio(dark: Array, bright: Array, g: F64) -> float:
     if not h.any():
         return 1.0
     steps = np.interp(T, z, g)[both] - g[both]
-    order = np.argsort(steps)
-    below = np.cumsum(h[order])
-    return float(np.exp(steps[order][np.searchsorted(below, below[-1] / 2)]))
+    return float(np.exp(np.quantile(steps, 0.5, weights=h, method="inverted_cdf")))

@@ -26,6 +26,7 @@ from scipy.interpolate import PchipInterpolator
 from hdrlab.calibration import joining
 from hdrlab.calibration.blends import TABLE_SIZE, InverseResponse, make_blend, normalize
 from hdrlab.core.arrays import as_stack, as_times, describe, levels
+from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_draw
 from hdrlab.core.types import F64, ArrayLike
 
@@ -48,9 +49,7 @@ UNIT_SQUARE = np.array([[0, 0], [1, 0], [1, 1], [0, 1.0]])
 
 
 def homography(source: ArrayLike, target: ArrayLike) -> F64:
-    """Return H (3, 3), H[2, 2] = 1, that takes the four points `source` (4, 2) to `target` (4, 2).
-
-    x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear in H.
+    """Return H (3, 3), H[2, 2] = 1, that takes the four corners `source` (4, 2) to `target` (4, 2).
 
     Raises
     ------
@@ -64,11 +63,7 @@ def homography(source: ArrayLike, target: ArrayLike) -> F64:
            [0., 2., 5.],
            [0., 0., 1.]])
     """
-    (u, v), (x, y) = _as_corners(source).T, _as_corners(target).T
-    zero, one = np.zeros(4), np.ones(4)
-    rows_x = np.column_stack([u, v, one, zero, zero, zero, -x * u, -x * v])
-    rows_y = np.column_stack([zero, zero, zero, u, v, one, -y * u, -y * v])
-    return np.append(np.linalg.solve(np.vstack([rows_x, rows_y]), np.r_[x, y]), 1.0).reshape(3, 3)
+    return warp.through(_as_corners(source), _as_corners(target))
 
 
 def _as_corners(points: ArrayLike) -> F64:

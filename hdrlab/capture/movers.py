@@ -19,7 +19,7 @@ from hdrlab.capture.hand_motion import views
 from hdrlab.capture.sensor import Seed
 from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
-from hdrlab.core.types import F32, Mask
+from hdrlab.core.types import F32, Array, Mask
 
 # (y, x, z), where a ball is lit from: above, left and the camera's side
 SUN_DIRECTION = np.array([-0.5, -0.5, 0.7])
@@ -109,7 +109,7 @@ def path(count: int, step: ArrayLike) -> NDArray[np.int64]:
     return np.rint(np.arange(count)[:, None] * stride - (count - 1) / 2 * stride).astype(np.int64)
 
 
-def shift_layer(layer: F32, at: ArrayLike) -> F32:
+def shift_layer(layer: Array, at: ArrayLike) -> Array:
     """Return a layer moved by (dy, dx) whole pixels; what leaves the frame is lost, what enters is 0."""
     (h, w), (dy, dx), out = layer.shape[:2], np.asarray(at).tolist(), np.zeros_like(layer)
     there = layer[max(-dy, 0) : max(h - dy, 0), max(-dx, 0) : max(w - dx, 0)]

@@ -158,12 +158,5 @@ def measure_biases(H: F64, B: F64, found: Fit, *, sizes: bool = False) -> F64:
     for j, c in np.ndindex(*out.shape):
         used = V[j, c] > 0
         if used.any():
-            out[j, c] = _weighted_median(r[j, c][used], V[j, c][used])
+            out[j, c] = np.quantile(r[j, c][used], 0.5, weights=V[j, c][used], method="inverted_cdf")
     return out
-
-
-def _weighted_median(values: F64, weight: F64) -> float:
-    """Return the weighted median."""
-    order = np.argsort(values)
-    total = np.cumsum(weight[order])
-    return float(values[order][np.searchsorted(total, total[-1] / 2)])

@@ -35,6 +35,7 @@ BITS = 16
 OTHERS = (0.83, 0.17)
 # confidence of what is taken from them
 CERTAIN = 0.9
+Curve = ArrayLike | Callable[[], F64 | None] | None  # of one's own, or found where it is asked for
 # from the numbers and the gray photographs of a darker and a brighter one to the pyramid of their light
 AsLight = Callable[[int, int, Array, Array], list[F32]]
 
@@ -55,7 +56,7 @@ def register(
     method: str = "auto",
     *,
     times: ArrayLike | None = None,
-    g: ArrayLike | Callable[[], F64 | None] | None = None,
+    g: Curve = None,
 ) -> Registration:
     """Return the Registration of photographs by a method of METHODS.
 
@@ -90,23 +91,15 @@ def register(
     images = as_stack(images)
     if method not in METHODS:
         raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
-    as_light = (
-        (lambda *pair: light_scale(images, times, g())(*pair))
-        if callable(g)
-        else light_scale(images, times, g)
-    )
+    as_light = light_scale(images, times, g)
     by_light = method in SEARCHES
     by_bits = starmap(best_percentile, photograph_pairs(images))
     pairs = tuple(register_by_light(images, as_light, method) if by_light else by_bits)
     if method == "auto":
         names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]
         if any(one.apart for one in pairs):  # a hand that rotates once does so in every pair
-            found = [
-                improve(*one, B, A, as_light)
-                for one, (_, B, _, A) in zip(
-                    zip(pairs, names, strict=True), photograph_pairs(images), strict=True
-                )
-            ]
+            each = zip(pairs, names, photograph_pairs(images), strict=True)
+            found = [improve(one, name, B, A, as_light) for one, name, (_, B, _, A) in each]
             pairs, names = tuple(one for one, _ in found), [name for _, name in found]
         method = next((name for name in ("homography", "cerman", "mtb") if name in names), "none")
     order = [pairs[0].moving, *(one.fixed for one in pairs)] if pairs else [0]
@@ -174,7 +167,7 @@ def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Va
     return first
 
 
-def light_scale(images: Array, times: ArrayLike | None, g: ArrayLike | None) -> AsLight:
+def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
     """Return the function that brings the light of two photographs to one scale, at every size.
 
     Without a response the darker photograph is brought to the brighter one by histograms alone, both are read
@@ -183,13 +176,13 @@ def light_scale(images: Array, times: ArrayLike | None, g: ArrayLike | None) -> 
     """
     n = levels(images)
     seconds = None if times is None else as_times(times, len(images))
-    table = decode_srgb(np.arange(n) / (n - 1))
-    if g is not None:
-        table = np.exp(as_table(g, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
 
     def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
+        table, curve = decode_srgb(np.arange(n) / (n - 1)), g() if callable(g) else g
+        if curve is not None:
+            table = np.exp(as_table(curve, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
         f_inv = table[:: (n - 1) // np.iinfo(dark.dtype).max]  # an overview has 8 bits
-        if g is None:
+        if curve is None:
             T = brightness_transfer(*histograms([dark, bright])[0])
             T[0], T[-1] = 0, len(f_inv) - 1
             z, known = np.arange(len(f_inv)), np.flatnonzero(np.isfinite(T))

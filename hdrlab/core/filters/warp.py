@@ -68,6 +68,18 @@ def apply(H: ArrayLike, points: ArrayLike) -> F64:
     return np.stack([u / w, v / w], axis=-1)
 
 
+def through(source: F64, target: F64) -> F64:
+    """Return H (3, 3), H[2, 2] = 1, that takes the four points `source` (4, 2) to `target` (4, 2).
+
+    x (h_31 u + h_32 v + 1) = h_11 u + h_12 v + h_13, and so for y: two equations per point, linear in H.
+    """
+    (u, v), (x, y) = source.T, target.T
+    zero, one = np.zeros(4), np.ones(4)
+    rows_x = np.column_stack([u, v, one, zero, zero, zero, -x * u, -x * v])
+    rows_y = np.column_stack([zero, zero, zero, u, v, one, -y * u, -y * v])
+    return np.append(np.linalg.solve(np.vstack([rows_x, rows_y]), np.r_[x, y]), 1.0).reshape(3, 3)
+
+
 def corner_distance(found: ArrayLike, truth: ArrayLike, shape: tuple[int, ...]) -> F64:
     """Return how far two homographies (..., 3, 3) put the worst corner of a picture apart, pixels.
 

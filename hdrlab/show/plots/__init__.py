@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 
 from hdrlab.core.arrays import describe, to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import Array, ArrayLike
+from hdrlab.core.types import ArrayLike
 from hdrlab.show.plots import reuse
 
 Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
@@ -109,7 +109,8 @@ def response(
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
-    for (name, colour, style), curve in zip(_channels(curves.ndim == 2), _columns(curves), strict=True):
+    channels = CHANNELS if curves.ndim == 2 else GRAY
+    for (name, colour, style), curve in zip(channels, curves.reshape(len(curves), -1).T, strict=True):
         ax.plot(
             curve, np.arange(len(curve)), style, color=colour, linewidth=1.8, label=f"{label} {name}".strip()
         )
@@ -172,14 +173,5 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
 
 def _exposure_axes(ax: Axes, span: tuple[float, float] | None, n: int) -> Axes:
     ax.set(xlabel="ln exposure, ln(E t)", ylabel="pixel level Z", ylim=(-0.02 * n, 1.02 * n))
-    if span is not None:
-        ax.set_xlim(*span)
+    fix_limits(ax, span)
     return ax
-
-
-def _channels(coloured: bool) -> tuple[tuple[str, str, str], ...]:
-    return CHANNELS if coloured else GRAY
-
-
-def _columns(table: Array) -> list[Array]:
-    return [table] if table.ndim == 1 else list(table.T)

@@ -8,7 +8,7 @@ A stop is a factor of 2. Functions return lines of text or figures; only `write_
 """
 
 from collections.abc import Mapping, Sequence
-from itertools import cycle, islice
+from itertools import combinations, cycle, islice
 from pathlib import Path
 
 import matplotlib
@@ -95,11 +95,6 @@ def matrix(names: Sequence[str], values: Mapping[tuple[str, str], float], digits
     return lines
 
 
-def pairs(names: Sequence[str]) -> list[tuple[str, str]]:
-    """Return every two names, in order."""
-    return [(one, other) for j, other in enumerate(names) for one in names[:j]]
-
-
 def rmse(curves: Mapping[str, F64]) -> dict[tuple[str, str], float]:
     """Return how far each two responses lie apart: `response_rmse` in percent, of the worst channel."""
 
@@ -107,7 +102,7 @@ def rmse(curves: Mapping[str, F64]) -> dict[tuple[str, str], float]:
         a, b = np.broadcast_arrays(_channels(a), _channels(b))
         return float(max(response_rmse(a, b).max(), response_rmse(b, a).max()))
 
-    return {(one, other): between(curves[one], curves[other]) for one, other in pairs(list(curves))}
+    return {(one, other): between(curves[one], curves[other]) for one, other in combinations(curves, 2)}
 
 
 def _channels(g: F64) -> F64:
@@ -122,7 +117,7 @@ def apart(maps: Mapping[str, F32], well: Mask) -> dict[tuple[str, str], float]:
         ratio = 1 + radiance_errors(E, other, well)[well]
         return float(np.median(np.abs(np.log2(ratio[ratio > 0]))))
 
-    return {(one, other): between(maps[one], maps[other]) for one, other in pairs(list(maps))}
+    return {(one, other): between(maps[one], maps[other]) for one, other in combinations(maps, 2)}
 
 
 def calibration(g: F64, medians: F64, times: ArrayLike, *, title: str = "") -> Figure:

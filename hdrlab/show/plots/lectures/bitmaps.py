@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.align import mtb
 from hdrlab.align.mtb import State
+from hdrlab.capture.movers import shift_layer
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import Mask
 from hdrlab.diagnostics.registration import Validation
@@ -117,12 +118,8 @@ def words(rows: dict[str, ArrayLike]) -> Figure:
 
 
 def _picture(fixed: Mask, moving: Mask, offset: Offset) -> Image:
-    moved = np.zeros_like(moving)
-    (dy, dx), (H, W) = offset, moving.shape[1:]
-    moved[:, max(dy, 0) : max(H + dy, 0), max(dx, 0) : max(W + dx, 0)] = moving[
-        :, max(-dy, 0) : max(H - dy, 0), max(-dx, 0) : max(W - dx, 0)
-    ]
-    return overlay(fixed[0], moved[0], fixed[1] & moved[1])
+    bits, kept = (shift_layer(one, offset) for one in moving)
+    return overlay(fixed[0], bits, fixed[1] & kept)
 
 
 def _under(ratio: float, *, above: float) -> Axes:
