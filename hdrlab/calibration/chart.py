@@ -20,6 +20,8 @@ of 30 is 1.4 % above it for white, 3.3 % below for neutral 5, and 2.2 % above fo
 a chart passes its own R.
 """
 
+from pathlib import Path
+
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
@@ -34,14 +36,7 @@ ROWS, COLUMNS = 4, 6
 # Space between the patches of the classic chart, over a patch's width.
 GAP = 0.15
 # Y of the patches in %, row by row, under illuminant C.
-LUMINANCE = np.array(
-    [
-        [10.05, 35.82, 19.33, 13.29, 24.27, 43.06],
-        [30.05, 12.00, 19.77, 6.56, 44.29, 43.06],
-        [6.11, 23.39, 12.00, 59.10, 19.77, 19.77],
-        [90.01, 59.10, 36.20, 19.77, 9.00, 3.13],
-    ]
-)
+LUMINANCE = np.loadtxt(Path(__file__).with_name("colorchecker.csv"), delimiter=",")
 LUMINANCE.setflags(write=False)
 # R of the gray patches: gray reflects all wavelengths alike, so it is one number for every channel.
 NEUTRAL = LUMINANCE[3] / 100

@@ -11,12 +11,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import as_picture
 from hdrlab.core.bracket import Bracket, bracket
-from hdrlab.core.types import Array, Mask
+from hdrlab.core.types import Array, ArrayLike, Mask
 from hdrlab.io import raw
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing, require_suffix
@@ -178,14 +177,6 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     picture = as_picture(image)
     with replacing(path) as name:
         Image.fromarray(picture).save(name, **PICTURES[suffix])
-
-
-def as_picture(image: ArrayLike) -> NDArray[np.uint8]:
-    """Return a picture for the eye, (H, W) or (H, W, 3) uint8, or raise a ValueError."""
-    array = np.asarray(image)
-    if array.dtype != np.uint8 or array.ndim != 2 and array.shape[2:] != (3,) or not array.size:
-        raise ValueError(f"expected a picture (H, W) or (H, W, 3) of uint8, got {describe(array)}")
-    return array
 
 
 def _check_alike(headers: list[Header]) -> None:

@@ -17,6 +17,7 @@ from typing import Any, cast
 
 import numpy as np
 
+from hdrlab.core.arrays import as_picture
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.core.types import F32, Array
 from hdrlab.io import photos, radiance, web
@@ -170,7 +171,7 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
     require_writable(path)
     if not 0 < rate <= 1000:
         raise ValueError(f"expected a rate above 0 and at most 1000 frames a second, got {rate}")
-    pictures = require_alike((web.as_rgb(photos.as_picture(frame)) for frame in frames), path)
+    pictures = require_alike((web.as_rgb(as_picture(frame)) for frame in frames), path)
     with replacing(path) as name:
         return (_write_film if path.suffix.lower() in FILMS else _write_gif)(name, pictures, rate)
 

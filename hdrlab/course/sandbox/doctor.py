@@ -6,9 +6,10 @@ fails.
 """
 
 import time
+import tomllib
 from contextlib import suppress
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.sandbox import practice, tiers
@@ -29,17 +30,7 @@ def tried(secret, target):
     if child > 0: done.append("a process could be started")
     return done
 """
-SWITCHES = (  # of Linux, which keep ordinary users from namespaces: file, the value that does, what helps
-    ("kernel/apparmor_restrict_unprivileged_userns", "1", "give bwrap a profile of AppArmor with userns"),
-    ("kernel/unprivileged_userns_clone", "0", "sysctl kernel.unprivileged_userns_clone=1"),
-    ("user/max_user_namespaces", "0", "sysctl user.max_user_namespaces=10000"),
-)
-INSTALL = {
-    "bwrap": "install bubblewrap 0.8 or later (Debian, Ubuntu: apt install bubblewrap)",
-    "bubblewrap": "install bubblewrap 0.8 or later; Debian 12 and Ubuntu 24.04 have it",
-    "libseccomp": "install libseccomp (Debian, Ubuntu: apt install libseccomp2) and pip install pyseccomp",
-    "root": "run as root, as in most containers, or use the strict tier",
-}
+REMEDIES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("remedies.toml").read_text("utf8"))
 
 
 class Finding(NamedTuple):
@@ -115,15 +106,15 @@ def remedy(reason: str) -> str:
     >>> remedy("the strict tier needs bubblewrap, and there is no bwrap on the path").partition(" (")[0]
     'install bubblewrap 0.8 or later'
     """
-    known = [help for word, help in INSTALL.items() if word in reason.partition("\n")[0]]
+    known = [help for word, help in REMEDIES["install"].items() if word in reason.partition("\n")[0]]
     if known and "did not start" not in reason:
         return known[0]
     if "strict" not in reason:  # the others need no namespaces
         return ""
-    for name, keeps, help in SWITCHES:
-        file = Path("/proc/sys") / name
-        if file.is_file() and file.read_text().strip() == keeps:
-            return help
+    for switch in REMEDIES["switches"]:
+        file = Path("/proc/sys") / switch["file"]
+        if file.is_file() and file.read_text().strip() == switch["keeps"]:
+            return str(switch["help"])
     if any(Path(mark).exists() for mark in ("/.dockerenv", "/run/.containerenv")):
         return "namespaces rarely nest in containers: use the container tier, as root"
     return ""

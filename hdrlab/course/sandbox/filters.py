@@ -7,34 +7,15 @@ of which are read-only but /dev/null.
 
 import errno
 import os
+import tomllib
 from collections.abc import Iterable
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 from hdrlab.course.sandbox.running import Unavailable
 
-COMPUTING = (  # memory, threads, clocks and itself
-    *("mmap", "munmap", "mremap", "mprotect", "madvise", "brk", "mincore"),
-    *("futex", "set_robust_list", "get_robust_list", "rseq", "membarrier", "set_tid_address", "arch_prctl"),
-    *("rt_sigaction", "rt_sigprocmask", "rt_sigreturn", "sigaltstack", "restart_syscall"),
-    *("alarm", "setitimer", "getitimer", "nanosleep", "clock_nanosleep", "clock_gettime", "clock_getres"),
-    *("gettimeofday", "time", "times", "getrusage", "getrlimit", "getrandom", "uname", "sysinfo", "getcpu"),
-    *("sched_yield", "sched_getaffinity", "sched_getparam", "sched_getscheduler", "getpriority"),
-    *("getpid", "gettid", "getppid", "getpgrp", "getpgid", "getsid", "capget"),
-    *("getuid", "geteuid", "getgid", "getegid", "getresuid", "getresgid", "getgroups"),
-    *("exit", "exit_group"),
-)
-READING = (  # files, and the one socket that it was given
-    *("open", "openat", "close", "close_range", "read", "readv", "pread64", "preadv", "write", "writev"),
-    *("lseek", "dup", "dup2", "dup3", "stat", "fstat", "lstat", "newfstatat", "statx", "statfs", "fstatfs"),
-    *("access", "faccessat", "faccessat2", "getdents", "getdents64", "getcwd", "readlink", "readlinkat"),
-    *("fadvise64", "poll", "ppoll", "select", "pselect6"),
-    *("recvfrom", "sendto", "getsockopt", "getsockname", "shutdown"),
-)
-TENDING = (  # what the supervisor needs beside
-    *("fork", "vfork", "clone", "clone3", "execve", "wait4", "waitid", "kill", "setpgid", "setsid"),
-    *("prctl", "seccomp", "setrlimit", "prlimit64", "recvmsg", "sendmsg", "fcntl", "ioctl"),
-)
+CALLS: dict[str, list[str]] = tomllib.loads(Path(__file__).with_name("syscalls.toml").read_text("utf8"))
 NEW_THREAD = 0x10000
 GET_TERMINAL, NONBLOCKING, CLOSE_ON_EXEC, KEEP_ON_EXEC = 0x5401, 0x5421, 0x5451, 0x5450
 FLAGS = (0, 1, 2, 3, 4, 1030)  # fcntl's: to duplicate, and to get and set flags
@@ -54,7 +35,9 @@ def program(name: str) -> bytes:
     except (ImportError, RuntimeError) as error:
         raise Unavailable(f"the filter of system calls needs pyseccomp and libseccomp: {error}") from None
     rules = pyseccomp.SyscallFilter(pyseccomp.ERRNO(errno.EPERM))
-    _allow(rules, (*COMPUTING, *READING, *(TENDING if name == "supervisor" else ())))
+    _allow(
+        rules, [*CALLS["computing"], *CALLS["reading"], *(CALLS["tending"] if name == "supervisor" else ())]
+    )
     if name == "check":
         _narrow(rules)
     return _exported(rules)

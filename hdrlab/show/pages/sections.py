@@ -9,15 +9,15 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import NDArray
 
 import hdrlab
 from hdrlab.core import colour, metrics
 from hdrlab.core.arrays import to_256
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import Truth
-from hdrlab.core.types import F32, Array
+from hdrlab.core.types import F32, F64, Array, Flags, Labels, Mask
 from hdrlab.diagnostics import consistency
+from hdrlab.io.web import Image
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
 from hdrlab.show.pages import wording
@@ -25,11 +25,8 @@ from hdrlab.show.pages.wording import CLOSE, KINDS, deviation, offset, share, si
 from hdrlab.show.pages.wording import stops as in_stops
 from hdrlab.show.plots import figures
 
-Float = NDArray[np.float64]
-Image = NDArray[np.uint8]
 
-
-def facts(E: Array, quality: Image, medians: Float) -> list[tuple[str, str]]:
+def facts(E: Array, quality: Flags, medians: F64) -> list[tuple[str, str]]:
     """Return the figures that stand beside the picture: (value, what it is)."""
     low, high = np.nanpercentile(figures.stops(E), [0.1, 99.9])
     spread = consistency.measure_spread(medians)
@@ -53,7 +50,7 @@ def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
     return frames
 
 
-def response(g: Float, truth: Truth | None) -> dict[str, Any]:
+def response(g: F64, truth: Truth | None) -> dict[str, Any]:
     """Return the plot of the response, over the true one where that is known, and its reach."""
     ax = plots.axes(4.6, 3.4)
     if truth is not None:
@@ -76,7 +73,7 @@ def radiance(E: Array) -> dict[str, Any]:
     return {"picture": shown, "scale": figures.scale(low, high)}
 
 
-def known(quality: Image, picture: Image) -> dict[str, Any]:
+def known(quality: Flags, picture: Image) -> dict[str, Any]:
     """Return how many pixels are known in which way, and where those stand that were not measured."""
     rows = [
         {
@@ -113,7 +110,7 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
     return {"said": said, "picture": shown, "scale": scale}
 
 
-def moving(labels: NDArray[np.int32] | None, picture: Image) -> dict[str, Any] | None:
+def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
     """Return how much moved, and the picture with its regions; None where nobody asked or nothing did."""
     if labels is None or not labels.any():
         return None
@@ -124,7 +121,7 @@ def moving(labels: NDArray[np.int32] | None, picture: Image) -> dict[str, Any] |
     return {"regions": regions, "share": part, "picture": shown}
 
 
-def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
+def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
     """Return how far each frame departs from what all say, as numbers and as bars."""
     shared = np.isfinite(medians[..., consistency.LEVELS])
     shared &= shared.sum(axis=0) >= 2
@@ -148,7 +145,7 @@ def agreement(photographs: Bracket, medians: Float) -> dict[str, Any]:
     return {"spread": in_stops(spread), "verdict": verdict(spread), "rows": rows}
 
 
-def against(truth: Truth, photographs: Bracket, offsets: Array, g: Float, E: Array) -> dict[str, Any]:
+def against(truth: Truth, photographs: Bracket, offsets: Array, g: F64, E: Array) -> dict[str, Any]:
     """Return how far radiance, response and offsets lie from the truth."""
     well = metrics.well_exposed(photographs.images, photographs.valid)
     apart = np.abs(metrics.radiance_errors(E, truth.E, well))[well]
@@ -166,7 +163,7 @@ def against(truth: Truth, photographs: Bracket, offsets: Array, g: Float, E: Arr
     }
 
 
-def error_map(truth: Truth, E: Array, well: NDArray[np.bool_]) -> dict[str, Any]:
+def error_map(truth: Truth, E: Array, well: Mask) -> dict[str, Any]:
     """Return the errors of luminance in false colour and their scale."""
     ratio = 1 + metrics.radiance_errors(colour.luminance(E), colour.luminance(truth.E), well)
     stops = np.where(well, np.log2(np.maximum(ratio, 2.0**-10)), np.nan)

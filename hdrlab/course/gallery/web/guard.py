@@ -5,8 +5,10 @@ It is written to the interface of ASGI itself, so that a request that is refused
 
 import asyncio
 import time
+import tomllib
 from collections import OrderedDict
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import parse_qsl
 
@@ -17,21 +19,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 BODY = 16_384  # bytes of a form: a ballot has a few hundred
 PATIENCE = 10.0  # seconds for a form to arrive
 FIELDS = 64
-POLICY = (
-    "default-src 'none'; img-src 'self'; style-src 'self'; script-src 'self'; connect-src 'self'; "
-    "form-action 'self'; frame-ancestors 'none'; base-uri 'none'"
-)
-HEADERS = {
-    "Content-Security-Policy": POLICY,
-    "X-Frame-Options": "DENY",
-    "X-Content-Type-Options": "nosniff",
-    "Referrer-Policy": "same-origin",  # no-referrer would take the Origin from our own forms
-    "Cross-Origin-Opener-Policy": "same-origin",
-    "Cross-Origin-Resource-Policy": "same-origin",
-    "Permissions-Policy": "camera=(), microphone=(), geolocation=()",
-    "X-Robots-Tag": "noindex, nofollow",
-    "Cache-Control": "no-store",  # pages; a picture says otherwise
-}
+HEADERS: dict[str, str] = tomllib.loads(Path(__file__).with_name("headers.toml").read_text("utf8"))
 
 
 class Refusal(Exception):

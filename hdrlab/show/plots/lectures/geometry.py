@@ -15,7 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.types import ArrayLike
 from hdrlab.show.plots import SAMPLES, axes, with_legend
 from hdrlab.show.plots.curves import LINES
 
@@ -35,8 +35,9 @@ def circle(A: ArrayLike, *, marks: ArrayLike | None = None, reach: float = 3.0) 
     ring = A @ np.stack([np.cos(angle), np.sin(angle)])
     ax = _plane(reach, "first component", "second component")
     ax.plot(*ring, color="#1A1A1A", linewidth=1.5)
+    ends = np.eye(2) if marks is None else np.asarray(marks, np.float64)
     ax.scatter(ring[0, :-1:20], ring[1, :-1:20], c=np.arange(12), cmap="viridis", s=28, zorder=3)
-    for end, (colour, marker), name in zip(_marks(marks).T, SAMPLES, ("v1", "v2"), strict=False):
+    for end, (colour, marker), name in zip(ends.T, SAMPLES, ("v1", "v2"), strict=False):
         x, y = A @ end
         line = ax.plot([0, x], [0, y], color=colour, linewidth=2, label=f"what became of {name}")
         line[0].set(marker=marker, markevery=[1])
@@ -97,7 +98,3 @@ def _plane(reach: float, across: str, up: str) -> Axes:
     ax.axvline(0, color="#808080", linewidth=0.8)
     ax.set(xlabel=across, ylabel=up, xlim=(-reach, reach), ylim=(-reach, reach))
     return ax
-
-
-def _marks(marks: ArrayLike | None) -> F64:
-    return np.eye(2) if marks is None else np.asarray(marks, np.float64)
