@@ -7,7 +7,7 @@ scenes.photographs()                                  six real photographs, a br
 scenes.probe()                                        a studio from all directions, which lights what is in it
 scenes.decades(E)                                     the range of a scene or of a map
 
-How the places were made: `scenes.models`, and `python -m scenes.render`; the room: `scenes.computed`.
+How they were made: `scenes.models`, and `python -m scenes.render`; room and subjects: `scenes.computed`.
 """
 
 from hdrlab.scenes.places import PLACES, chapel, compose, decades, layers, room, street, workshop

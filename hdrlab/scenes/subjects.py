@@ -4,18 +4,19 @@ E     radiance     (H, W, 3) float32, cd/m^2
 mask  (H, W) bool, the pixels of the subject
 rho   reflectance  of the subject: where its brightness belongs, 0.18 for a gray card
 
-x, y  places (H, W), to the right and up, in heights of the picture, 0 in the middle
+They were computed before, by `scenes/computed`, and are read from OpenEXR files beside this one.
 """
 
 from typing import NamedTuple
 
-import numpy as np
-
 from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32, Mask
-from hdrlab.scenes.textures import Points, cover, look_up, rgb, within
+from hdrlab.io.maps.layers import read_layers
+from hdrlab.scenes.places import FOLDER, Shape, resample
 
 SHAPE = (256, 384)
+# cd/m^2 of a white sheet in the subject's place
+LIGHT = {"backlight": 500.0, "snow": 8000.0, "locomotive": 3000.0}
 
 
 class Subject(NamedTuple):
@@ -26,93 +27,29 @@ class Subject(NamedTuple):
     rho: float
 
 
-def _plane(shape: tuple[int, int]) -> tuple[Points, Points, float]:
-    """Return x and y of each pixel's centre, as points (N,), and a pixel's width."""
-    if len(shape) != 2 or min(shape) < 1:
-        raise ValueError(f"expected a shape (H, W) of positive numbers, got {shape}")
-    height, width = shape
-    y, x = np.mgrid[:height, :width].astype(np.float32)
-    return (x.ravel() + 0.5 - width / 2) / height, (height / 2 - 0.5 - y.ravel()) / height, 1 / height
-
-
-def _scene(shape: tuple[int, int], E: Points, subject: Points, light: float) -> Subject:
-    """Return the Subject of points (3, N), `subject` being the share of a pixel that it covers."""
-    E = np.moveaxis(E.reshape(3, *shape), 0, -1).astype(np.float32)
-    mask = subject.reshape(shape) > 0.99
-    return Subject(E, mask, float(luminance(E)[mask].mean()) / light if mask.any() else 0.0)
-
-
-def _ellipse(x: Points, y: Points, wide: float, high: float) -> Points:
-    """Return the distance inward from an ellipse's edge, to first order."""
-    r = np.hypot(x / wide, y / high)
-    return (1 - r) * min(wide, high)
-
-
-def _texels(name: str, x: Points, y: Points, pixel: float) -> Points:
-    return look_up(name, x + 2, y + 2, np.full(len(x), pixel, np.float32))
-
-
-def backlight(shape: tuple[int, int] = SHAPE) -> Subject:
+def backlight(shape: Shape = SHAPE) -> Subject:
     """Return a woman before a bright evening sky: her face, in the shade, is five stops below it.
 
     The face is the astronaut's, of scikit-image; a white sheet in her place has 500 cd/m^2.
     """
-    x, y, pixel = _plane(shape)
-    shade = 500.0
-    sky = cover(rgb(1500, 2600, 4500), np.exp(np.minimum(-np.abs(y + 0.2), 0) / 0.35), rgb(7000, 6400, 5600))
-    hills = within(-0.18 + 0.04 * np.sin(5 * x + 1) + 0.015 * np.sin(13 * x) - y, 2 * pixel)
-    E = cover(sky, hills, rgb(700, 620, 700) * (0.6 + _texels("grass", x, y, pixel)))
-    u, v = 0.44 + 0.45 * x / 1.0, 0.22 - 0.45 * (y - 0.03)  # the face stands in the middle of the picture
-    portrait = shade * look_up("astronaut", u, v, np.full(len(x), 0.45 * pixel, np.float32))
-    head, neck = _ellipse(x, y - 0.05, 0.27, 0.32), np.minimum(0.12 - np.abs(x), -0.1 - y)
-    shoulders = _ellipse(x, y + 0.75, 0.55, 0.47)
-    person = np.maximum(np.maximum(head, neck), shoulders)
-    E = cover(E, within(person, 2 * pixel), portrait)
-    face = within(_ellipse(x, y - 0.02, 0.11, 0.15), pixel)
-    return _scene(shape, E, face, shade)
+    return _read("backlight", shape)
 
 
-def snow(shape: tuple[int, int] = SHAPE) -> Subject:
+def snow(shape: Shape = SHAPE) -> Subject:
     """Return a snow field in the sun, with a hut far away: most of it reflects 86 % of the light."""
-    x, y, pixel = _plane(shape)
-    light = 8000.0
-    distance = 0.12 / np.maximum(0.32 - y, 0.02)
-    ripple = _texels("gravel", 2.5 * x * distance, 2.5 * distance, 3 * pixel)[0] - 0.25
-    drift = 0.05 * np.sin(9 * x + 14 * distance) + 0.04 * np.sin(23 * x - 9 * distance)
-    E = light * np.clip(0.86 + drift + 0.25 * ripple, 0.4, 0.95) * rgb(0.98, 1.0, 1.04)
-    above = y - 0.32 - 0.05 * np.sin(4 * x + 2) - 0.02 * np.sin(11 * x)
-    E = cover(E, within(above, 2 * pixel), rgb(1500, 2600, 5200) * (1.3 - 0.8 * np.clip(above, 0, 1)))
-    wall = np.minimum(0.06 - np.abs(x - 0.45), 0.04 - np.abs(y - 0.31))
-    roof = np.minimum(0.035 - np.abs(y - 0.375), 0.1 - np.abs(x - 0.45) - 1.2 * (y - 0.36))
-    E = cover(E, within(wall, pixel), light * 0.06 * rgb(1.4, 0.9, 0.6))
-    E = cover(E, within(roof, pixel), light * 0.85 * rgb(1, 1, 1))
-    return _scene(shape, E, within(0.2 - y, pixel), light)
+    return _read("snow", shape)
 
 
-def locomotive(shape: tuple[int, int] = SHAPE) -> Subject:
+def locomotive(shape: Shape = SHAPE) -> Subject:
     """Return a black locomotive, which fills the picture and reflects a twentieth of a dull day's light."""
-    x, y, pixel = _plane(shape)
-    light = 3000.0
-    E = rgb(2200, 2300, 2400) * (0.75 + 0.5 * _texels("grass", 0.4 * x, 0.8 * y, pixel)[:1])
-    ballast = _texels("gravel", 2 * x, 4 * y, 4 * pixel)
-    E = cover(E, within(-0.36 - y, 2 * pixel), light * 0.9 * ballast * rgb(1, 0.95, 0.9))
-    boiler = np.minimum(0.21 - np.abs(y - 0.03), 0.44 - np.abs(x + 0.1))
-    round_ = np.sqrt(np.clip(1 - ((y - 0.03) / 0.22) ** 2, 0, 1))
-    sheen = 0.02 + 0.05 * np.exp(-(((y - 0.14) / 0.035) ** 2)) + 0.02 * round_
-    cab = np.minimum(0.3 - np.abs(y - 0.04), 0.13 - np.abs(x - 0.45))
-    chimney = np.minimum(0.06 - np.abs(x + 0.4), 0.12 - np.abs(y - 0.3))
-    frame = np.minimum(0.03 - np.abs(y + 0.2), 0.62 - np.abs(x))
-    black = np.maximum.reduce([boiler, cab, chimney, frame])
-    E = cover(E, within(np.maximum(frame, cab), pixel), np.full((3, len(x)), 0.03 * light))
-    E = cover(E, within(np.maximum(boiler, chimney), pixel), light * sheen * rgb(0.95, 1, 1.05))
-    wheels = np.max([_ellipse(x - at, y + 0.27, 0.115, 0.115) for at in (-0.42, -0.18, 0.06, 0.3)], axis=0)
-    E = cover(E, within(wheels, pixel), np.full((3, len(x)), 0.025 * light))
-    E = cover(E, within(0.012 - np.abs(wheels - 0.02), pixel), light * 0.09 * rgb(1, 1, 1))
-    rod = np.minimum(0.012 - np.abs(y + 0.25), 0.4 - np.abs(x + 0.06))
-    E = cover(E, within(rod, pixel), light * 0.12 * rgb(1, 1, 1))
-    pane = np.minimum(0.07 - np.abs(x - 0.45), 0.06 - np.abs(y - 0.2))
-    E = cover(E, within(pane, pixel), rgb(500, 520, 560))
-    return _scene(shape, E, within(np.maximum(black, wheels), pixel), light)
+    return _read("locomotive", shape)
 
 
 SUBJECTS = {"backlight": backlight, "snow": snow, "locomotive": locomotive}
+
+
+def _read(name: str, shape: Shape) -> Subject:
+    """Return a Subject; of its pixels those that it covers wholly are its mask."""
+    picture = resample(read_layers(FOLDER / f"{name}.exr")["subject"], shape)
+    E, mask = picture[..., :3], picture[..., 3] > 0.99
+    return Subject(E, mask, float(luminance(E)[mask].mean()) / LIGHT[name] if mask.any() else 0.0)

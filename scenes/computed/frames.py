@@ -5,7 +5,7 @@ rho   reflectance (3, N); u, v  places (N,), w  width of a pixel (N,), all in me
 
 import numpy as np
 
-from hdrlab.scenes.textures import Points, cover, look_up, rgb, within
+from scenes.computed.textures import Points, cover, look_up, rgb, within
 
 
 def margin(u: Points, v: Points, width: float, height: float) -> Points:

@@ -8,7 +8,7 @@ E      radiance (3, N), cd/m^2
 
 import numpy as np
 
-from hdrlab.scenes.textures import Points, cover, look_up, rgb, within
+from scenes.computed.textures import Points, cover, look_up, rgb, within
 
 SUN = rgb(0.2165, 0.175, 1.0)  # the direction of its centre
 SUN_RADIUS = 0.028  # six times the true one, so that it has pixels in a small frame too

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.scenes.textures import Points, rgb
+from scenes.computed.textures import Points, rgb
 
 
 class Box(NamedTuple):

@@ -17,10 +17,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hdrlab.core.types import Mask
-from hdrlab.scenes.textures import Points, cover, look_up, rgb, within
 from scenes.computed.frames import hang, margin
 from scenes.computed.garden import EYE_HEIGHT, SUN, SUN_RADIUS, outside, sky
 from scenes.computed.illumination import Box, facing, from_globe, from_walls, from_window, length
+from scenes.computed.textures import Points, cover, look_up, rgb, within
 
 LEFT, RIGHT, FLOOR, CEILING, FRONT, BACK = range(6)
 

@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hdrlab.core.types import F32
-from hdrlab.scenes.textures import Points
 from scenes.computed.interior import trace
+from scenes.computed.textures import Points
 
 # lines of sight traced at a time: their arrays stay near the processor
 SIGHTS_PER_BAND = 2**16

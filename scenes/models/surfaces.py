@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.scenes.textures import texture
+from scenes.computed.textures import texture
 from scenes.models.place import Colour, Material
 
 Texture = NDArray[np.floating[Any]]
@@ -52,7 +52,7 @@ def bricks(colour: Colour, *, contrast: float = 1.0) -> Texture:
 
 
 def picture(name: str, gain: float = 1.0) -> Texture:
-    """Return a picture of `hdrlab.scenes.textures` in its colours."""
+    """Return a picture of `scenes.computed.textures` in its colours."""
     rho = texture(name)[0]
     return np.clip(gain * np.broadcast_to(rho, (*rho.shape[:2], 3)), 0.003, 0.92)
 

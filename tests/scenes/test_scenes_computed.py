@@ -9,8 +9,8 @@ from numpy.linalg import norm
 
 from hdrlab import scenes
 from hdrlab.core.colour import luminance
-from hdrlab.scenes import textures
-from scenes.computed import illumination, interior, view
+from hdrlab.scenes import subjects as embedded
+from scenes.computed import illumination, interior, subjects, textures, view
 from scenes.computed.__main__ import SAMPLES
 
 
@@ -84,6 +84,13 @@ def test_light_adds_up():
     assert np.allclose(
         lights[3] - lights[0], lights[1] - lights[0] + lights[2] - lights[0], rtol=1e-3, atol=1e-3
     )
+
+
+@pytest.mark.parametrize("name", subjects.SUBJECTS)
+def test_a_subject_that_travels_is_the_one_that_is_computed(name):
+    found, made = embedded.SUBJECTS[name](), subjects.SUBJECTS[name]()
+    assert np.allclose(found.E, made[..., :3], rtol=1e-3)  # half floats hold 11 bits
+    assert np.mean(found.mask != (made[..., 3] > 0.99)) < 1e-3
 
 
 def test_the_room_that_travels_is_the_one_that_is_computed():
