@@ -12,10 +12,9 @@ response or the alignment contradict the pixels; in photographic stops, and fram
 import warnings
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, to_256
-from hdrlab.core.types import F32, F64, Flags
+from hdrlab.core.types import F32, F64, ArrayLike, Flags
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)

@@ -25,10 +25,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_stack, to_256
-from hdrlab.core.types import F64, Array, Indices, Mask
+from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # side of a part of the picture, in patches

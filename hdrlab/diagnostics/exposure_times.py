@@ -13,10 +13,9 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_response, as_stack
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # stops: a time that was this far off is more than rough

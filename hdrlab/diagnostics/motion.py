@@ -13,11 +13,10 @@ what counts is at least two blocks wide and high.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import binary_opening
 
 from hdrlab.core.arrays import as_mask
-from hdrlab.core.types import F32, Array, Mask
+from hdrlab.core.types import F32, Array, ArrayLike, Mask
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of a frame, on an even grid, that stand for the whole

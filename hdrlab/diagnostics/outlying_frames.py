@@ -7,10 +7,9 @@ others agree is the one that is wrong: by its time, or because it shows another 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_stack
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # stops in a typical patch: what contradicts all others, and what agrees

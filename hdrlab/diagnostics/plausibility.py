@@ -16,15 +16,13 @@ that there is no such thing.
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_mask, as_response, as_stack, as_times
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import Array
+from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
 
-Float = NDArray[np.float64]
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8
 NEIGHBOUR_ERROR_LIMIT = 4.0
 # stops, where half of three pairs or more are off by so much
@@ -43,7 +41,7 @@ RANKS, FEWEST_RANKS = 1000, 30
 PIXELS = 2**16
 
 
-def ranks(stack: Array, valid: NDArray[np.bool_] | None) -> NDArray[np.intp]:
+def ranks(stack: Array, valid: Mask | None) -> Indices:
     """Return Z (N, P, C) of an even choice of the pixels."""
     every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     few = slice(None), slice(None, None, every), slice(None, None, every)
@@ -52,7 +50,7 @@ def ranks(stack: Array, valid: NDArray[np.bool_] | None) -> NDArray[np.intp]:
     return Z.reshape(*Z.shape[:2], -1)
 
 
-def neighbour_errors(Z: NDArray[np.intp], t: Float, g: Float) -> tuple[Float, Float]:
+def neighbour_errors(Z: Indices, t: F64, g: F64) -> tuple[F64, F64]:
     """Return error and how often the longer of two frames is the darker one, (P - 1,) each, t rising.
 
     NaN where two frames hold too few ranks between the levels 10 and 250, or have the same time.
@@ -69,9 +67,7 @@ def neighbour_errors(Z: NDArray[np.intp], t: Float, g: Float) -> tuple[Float, Fl
     return error, darker_share
 
 
-def validate_response(
-    g: Float, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None
-) -> Float:
+def validate_response(g: F64, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
     """Return g as it is, or raise a ValueError that says where the photographs contradict it.
 
     Parameters
@@ -127,6 +123,6 @@ def validate_response(
     return g
 
 
-def _pair(t: Float, values: Float) -> str:
+def _pair(t: F64, values: F64) -> str:
     j = int(np.nanargmax(values))
     return f"between {t[j]:.4g} s and {t[j + 1]:.4g} s"

@@ -1,11 +1,10 @@
 """The Detail Brush over a whole picture, counted and read in bands of rows."""
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 from hdrlab.fast import _lookup
 from hdrlab.fast._bands import BAND, banded
 from hdrlab.tonemap import brush

@@ -8,11 +8,10 @@ squared weights: C[i, z] is the sum of w^2 over the frames where sample i has le
 from itertools import product
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.sampling import require_two_exposures
-from hdrlab.core.types import F64, Indices
+from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.fast import with_parts
 from hdrlab.response import debevec
 from hdrlab.response.debevec import Solution

@@ -19,11 +19,10 @@ from itertools import product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask
 from hdrlab.core.bracket import short_to_long
-from hdrlab.core.types import F32, F64, Array, Flags, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
 from hdrlab.radiance.stuck import repair_stuck
 

@@ -10,7 +10,6 @@ from itertools import pairwise, starmap
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.align import cerman, homography, light, mtb
 from hdrlab.core.arrays import as_stack, as_table, as_times, levels
@@ -18,7 +17,7 @@ from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.types import F32, F64, Array
+from hdrlab.core.types import F32, F64, Array, ArrayLike
 from hdrlab.diagnostics import registration as judgement
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.fast.mtb import Photograph

@@ -12,12 +12,11 @@ one; its a and b are found on a coarse grid (He and Sun, Fast guided filter, 201
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.ndimage import uniform_filter
 
 from hdrlab.core import colour
 from hdrlab.core.arrays import as_luminance, as_radiance
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike
 from hdrlab.fast._bands import banded
 from hdrlab.fast.reinhard import LIMIT
 from hdrlab.tonemap.durand import logarithm

@@ -15,14 +15,13 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_mask, as_stack
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics.plausibility import validate_response
 from hdrlab.fast import debevec, robertson
@@ -103,7 +102,7 @@ def split_stripes(bracket: Bracket) -> tuple[Bracket, Bracket]:
     rows = np.arange(0, height, step)
     odd = rows * STRIPES // height % 2 == 1
 
-    def keep(own: NDArray[np.intp]) -> Bracket:
+    def keep(own: Indices) -> Bracket:
         shown = None if valid is None else valid[:, own, ::step]
         return bracket._replace(images=images[:, own, ::step], valid=shown)
 

@@ -8,14 +8,13 @@ these times are true up to a power, and `diagnostics.exposure_times` then improv
 from itertools import pairwise
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.align import light, mtb
 from hdrlab.core.arrays import levels
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.bracket import bracket as make_bracket
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import exposure_times, plausibility
 from hdrlab.diagnostics.exposure_times import Estimate
 from hdrlab.pipeline import recovery

@@ -20,15 +20,13 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_stack, describe
-from hdrlab.core.bracket import short_to_long
-from hdrlab.core.sampling import by_grid
+from hdrlab.core.arrays import describe
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response import likelihood
 from hdrlab.response.mitsunaga import curve
 from hdrlab.response.polynomial import GRID, limit_slope, slope
-from hdrlab.response.self_calibration import HIGHEST
+from hdrlab.response.self_calibration import HIGHEST, levels_by_time
 from hdrlab.response.self_calibration import calibrate as self_calibrate
 
 # slope of f^-1
@@ -181,11 +179,8 @@ def calibrate(
     True
     """
     start = self_calibrate(images, times, order=order, valid=valid)
-    stack, times = as_stack(images), np.asarray(times, dtype=np.float64)
-    by_time = short_to_long(stack, times)
-    Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
-    stated = times[by_time][:-1] / times[by_time][1:]
-    channels = zip(np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0), start.c, strict=True)
+    Z, stated = levels_by_time(images, times, pixels, valid=valid)
+    channels = zip(Z, start.c, strict=True)
     return [fit(own, c, start.R, stated=stated, trust=trust, **knobs) for own, c in channels]
 
 

@@ -17,7 +17,7 @@ from hdrlab.core.arrays import as_mask, as_stack, as_times, describe
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response.mitsunaga import Fit, coefficients, curve, fit_steps, gram, in_range, neighbours
 from hdrlab.response.polynomial import misfit
 
@@ -84,6 +84,17 @@ def choose_order(parts: Sequence[F64], R: ArrayLike) -> int:
     return 1 + int(np.argmax(mean <= mean[best] + max(doubt, FINEST)))
 
 
+def levels_by_time(
+    images: ArrayLike, times: ArrayLike, pixels: int, *, valid: ArrayLike | None
+) -> tuple[Indices, F64]:
+    """Return levels Z (C, N, P) of a grid of pixels, from short to long, and the ratios R of the times."""
+    stack = as_stack(images)
+    times = as_times(times, len(stack), distinct=2)
+    by_time = short_to_long(stack, times)
+    Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
+    return np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0), times[by_time][:-1] / times[by_time][1:]
+
+
 def samples(
     images: ArrayLike, times: ArrayLike, *, pixels: int = 12_000, count: int = 400, valid: ArrayLike | None
 ) -> tuple[list[F64], F64]:
@@ -91,15 +102,11 @@ def samples(
 
     The samples come in PARTS of the picture, M (C, N, P) each: every PARTS-th of its STRIPES.
     """
-    stack = as_stack(images)
-    times = as_times(times, len(stack), distinct=2)
-    by_time = short_to_long(stack, times)
-    Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
-    Z = np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0)
+    Z, R = levels_by_time(images, times, pixels, valid=valid)
     stripes = np.array_split(np.arange(Z.shape[1]), STRIPES)  # the grid's pixels come row by row
     parts = [Z[:, np.concatenate(stripes[k::PARTS])] for k in range(min(PARTS, Z.shape[1]))]
     M = [np.stack([average(one, -(-count // PARTS)) for one in part]) for part in parts]
-    return M, times[by_time][:-1] / times[by_time][1:]
+    return M, R
 
 
 def calibrate(
