@@ -1,11 +1,15 @@
 # %% [markdown]
-# # Homework 5 · Methods since 2010
+# # Homework 5 · Methods since 2010, and more of the lecture
 #
 # Due {due}. {total} points. {late}
 #
-# Four answers that are younger than the slides: a radiance map that knows how sure it is, a base layer made
-# of lines instead of neighbours, contrast lowered scale by scale with no base at all, and a code for displays
-# that are brighter than paper. You write the heart of each.
+# Four answers that are younger than the slides: a radiance map that knows how sure it is, a base layer
+# made of lines instead of neighbours, contrast lowered scale by scale with no base at all, and a code for
+# displays that are brighter than paper. Then four questions of the lecture that no other sheet asks: a
+# sensor's gain, levels that two histograms bring together, how sure a level is, and what a good pixel is.
+# You write the heart of each.
+#
+# {choice}
 #
 # | letter | what it is | shape |
 # |---|---|---|
@@ -16,6 +20,10 @@
 # | $l$ | $\ln$ luminance, `lL` | (H, W) |
 # | $I$, $p$, $q$ | guide, picture, and the picture smoothed | (H, W) |
 # | $F_D$ | luminance that a display shows, cd/m² | any |
+# | $S$, $V$ | signal in levels, and variance in levels², of pairs of photographs | (M,) |
+# | $h_A$, $h_B$; $T$ | histograms of two photographs; the level in $B$ of each level of $A$ | (n,) |
+# | $g$, $w$ | logarithm of each level's exposure, and its weight | (n,) |
+# | $F$, $W$ | a photograph from 0 to 1, its channels as planes; its weight | (3, H, W); (H, W) |
 #
 # Under each task there is a cell `check("...")`: it says, promise by promise, what holds, and draws what
 # differs. Inside a task use numpy, scipy and what this sheet gives; hdrlab itself is not there when your
@@ -96,7 +104,7 @@ pictures.picture(
 
 # %% about="inverse_variance_merge"
 green = room[..., 1] / room[..., 1].max()
-t = 4.0 ** np.arange(6) / 2
+t, full, R = 4.0 ** np.arange(6) / 2, 20_000, 5
 taken = camera.shoot(green, t, camera.Camera(response="linear", bits=16, full_well=full, read_noise=R), rng=1)
 g = responses.true_g("linear", 2**16)
 X = np.exp(g - g[-1])[taken.images]
@@ -186,6 +194,125 @@ signals = {"PQ": pq(light), "gamma 2.4": (light / 10_000) ** (1 / 2.4)}
 pictures.picture(
     curves.lines(np.log10(light), signals, across="log10 of the luminance, cd/m²", up="v"),
     alt="The signal over the logarithm of luminance: PQ is nearly a line, gamma leaves the dark no codes",
+)
+
+# %% [markdown] about="line"
+# ## 6 · Photon transfer: a sensor's gain out of its noise ({points})
+#
+# Of an even wall pairs of photographs were taken, with more light from pair to pair; the first pair is
+# dark, with the lens cap on. $S$ is each pair's signal, in levels above the dark ($S_0 = 0$), and $V$ the
+# variance of its noise, in levels². Photons come by chance: of $N$ electrons the variance is $N$. With
+# $K$ electrons a level,
+#
+# $$V - V_0 = \frac{S}{K},$$
+#
+# a straight line through the dark pair, which is taken for exact. Measured in so many pixels, a variance
+# errs in proportion to itself, so each pair counts by $w = 1 / V^2$. The slope that makes $\sum w\,(V -
+# V_0 - S / K)^2$ smallest is
+#
+# $$\frac{1}{K} = \frac{\sum w\, S\, (V - V_0)}{\sum w\, S^2}.$$
+#
+# ($S$ and $V$ are arrays (M,), with $V$ above 0. The answer is a number, $1 / K$.)
+
+# %% task="line"
+# Return the slope 1 / K of V - V[0] = S / K, by least squares with the weights 1 / V^2.
+
+# %% about="line"
+signal = np.array([0, 200, 400, 800, 1200, 1600, 2400, 3000.0])
+noise = np.array([4.0, 104, 210, 398, 612, 801, 1230, 1690])
+fitted = noise[0] + line(signal, noise) * signal
+pictures.picture(
+    curves.lines(signal, {"measured": noise, "line": fitted}, across="S, levels", up="V, levels²"),
+    alt="Variance over signal: the line from the dark pair on passes below the two brightest, which err most",
+)
+
+# %% [markdown] about="brightness_transfer"
+# ## 7 · Two histograms instead of two aligned photographs ({points})
+#
+# The $k$-th darkest pixel of a photograph $A$ is the $k$-th darkest of $B$, whatever the camera's
+# response, if both show the same scene [(Grossberg and Nayar,
+# 2003)](https://doi.org/10.1109/TPAMI.2003.1240119). So histograms alone say which level $T(m)$ of $B$
+# belongs to level $m$ of $A$, and nothing has to be aligned.
+#
+# A level is a step: level $z$ reaches from $z - \frac{1}{2}$ to $z + \frac{1}{2}$, and its pixels are
+# spread evenly over it. Let $H(z)$ be the share of the pixels below level $z$, with $H(0) = 0$ and $H(n)
+# = 1$: it belongs to the edge at $z - \frac{1}{2}$. The middle of $A$'s level $m$ has the rank
+# $\frac{1}{2}\bigl(H_A(m) + H_A(m + 1)\bigr)$, and $T(m)$ is the place where $H_B$, on straight lines
+# between the edges, reaches that rank.
+#
+# The lowest level of $B$ holds all that is darker, and the highest all that is brighter. So $T(m)$ is NaN
+# where it falls on one of them: below $\frac{1}{2}$ or above $n - \frac{3}{2}$.
+#
+# (`h_A` and `h_B` (n,) are counts of pixels; their sums may differ. $T$ (n,) is not rounded.)
+
+# %% task="brightness_transfer"
+# Return T (n,), the level in B of what has level m in A, NaN where B's outer levels hold it.
+
+# %% about="brightness_transfer"
+exposures = [t * L / np.quantile(L, 0.95) for t in (0.25, 1.0)]
+taken = [np.round(255 * np.clip(X, 0, 1) ** (1 / 2.2)).astype(int) for X in exposures]
+T = brightness_transfer(*(np.bincount(Z.ravel(), minlength=256) for Z in taken))
+inside = np.flatnonzero(np.isfinite(T))
+pictures.picture(
+    curves.lines(inside, {"T": T[inside], "m": inside}, across="m, level in A", up="level in B"),
+    alt="T over m: above the diagonal, rising to the top of B at a bit more than half of A's levels",
+)
+
+# %% [markdown] about="snr"
+# ## 8 · How sure is a level? The signal over its noise ({points})
+#
+# Let the noise in a photograph's levels have one size everywhere. Through the response $f = e^{g}$ it
+# enters the exposure by the slope $f'$, so the signal over the noise [(Mitsunaga and Nayar,
+# 1999)](https://doi.org/10.1109/CVPR.1999.786966) is
+#
+# $$w(z) = \frac{f(z)}{f'(z)}.$$
+#
+# - $f'(z)$ is the slope between the levels $z - s$ and $z + s$ with $s$ = `span`; where one of them is
+#   past an end of the range, the end takes its place.
+# - Where the curve is level the quotient would have no bound: a slope counts at least `least` times the
+#   mean slope, $\bigl(f(n - 1) - f(0)\bigr) / (n - 1)$.
+# - The lowest and the highest level are bounds: $w = 0$ there.
+#
+# (`g` (n,) rises, $n$ is even. The scale of $w$ (n,) is free.)
+
+# %% task="snr"
+# Return w = f / f' (n,), f = exp g, and 0 at both ends.
+
+# %% about="snr"
+levels = np.arange(256)
+sure = {f"gamma {gamma}": snr(gamma * np.log((levels + 0.5) / 256)) for gamma in (1.0, 1.8, 2.6)}
+pictures.picture(
+    curves.lines(levels, sure, across="z, level", up="w"),
+    alt="w over the level: for all three gammas the same straight line, which falls to 0 at both ends",
+)
+
+# %% [markdown] about="weight"
+# ## 9 · What a good pixel is: the weights of exposure fusion ({points})
+#
+# [Mertens, Kautz and Van Reeth (2007)](https://doi.org/10.1109/PG.2007.17) make no radiance map. They
+# blend the photographs themselves, by three measures of each pixel; $F$ is a photograph from 0 to 1, its
+# channels R, G and B as planes:
+#
+# - **contrast** $C = |Y_\text{up} + Y_\text{down} + Y_\text{left} + Y_\text{right} - 4\, Y|$, with the
+#   gray picture $Y = 0.299 R + 0.587 G + 0.114 B$;
+# - **saturation** $S$, the standard deviation of R, G and B, the mean of the squares being their sum over 3;
+# - **exposedness** $E = \prod_{R, G, B} \exp\bigl(-(F - 0.5)^2 / (2 \cdot 0.2^2)\bigr)$.
+#
+# A pixel is to be good in all three: $W = C^{a}\, S^{b}\, E^{c}$, with `powers` $= (a, b, c)$, of which
+# none is negative, and $x^0 = 1$.
+#
+# ($F$ is (3, H, W), $W$ is (H, W). What stands past the edge of the picture is yours to choose, and so is
+# a trace of weight in all pixels, up to 1e-9; the checks look at pixels that do not touch the edge.)
+
+# %% task="weight"
+# Return W = C^a S^b E^c (H, W) of a photograph F (3, H, W) from 0 to 1.
+
+# %% about="weight"
+F = np.moveaxis(np.clip(room / np.quantile(L, 0.9), 0, 1) ** (1 / 2.2), -1, 0).astype(np.float32)
+W = weight(F)
+pictures.picture(
+    colour.to_8bit(np.clip(W / np.quantile(W, 0.99), 0, 1)),
+    alt="The weight of the room's photograph: bright at edges of coloured things, black where it is clipped",
 )
 
 # %% [markdown]

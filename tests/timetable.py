@@ -92,7 +92,10 @@ def with_minutes(text):
         minutes = sum(time for title, time in books.values() if title[:2] in row[2].split(", "))
         sheet = row[4][:3]
         share = sum(one[3].startswith(sheet) for one in weeks)
-        hours = math.ceil(sum(one[2] for one in each.values() if one[0] == sheet) / 60 / share)
+        asked = [(points, minutes) for name, points, minutes in each.values() if name == sheet]
+        whole = sum(points for points, _ in asked)
+        counted = plan_of_the_course().get(sheet, {}).get("at_most", whole)  # of what there is to choose from
+        hours = math.ceil(sum(minutes for _, minutes in asked) * counted / max(whole, 1) / 60 / share)
         also = sum(map(int, re.findall(r"(\d+) hours", row[4])))  # of what is no task
         return f"| {row[1]} | {row[2]} | {minutes} | {row[4]} | {hours + also or row[5]} |"
 
