@@ -27,7 +27,7 @@ PAPERS = {
 HEAD = """# Every system, and where it is
 
 The course rests on five documents: the slides, and four papers. Each system in them has a row here, and so
-have four methods that came later: functions of the library, the sections of a notebook that play it step by
+have five methods that came later: functions of the library, the sections of a notebook that play it step by
 step, and the tasks that check a student's own function, where there is one. Letters say whose it is: """
 
 

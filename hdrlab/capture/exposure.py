@@ -173,7 +173,7 @@ def density(stops: Real) -> Real:
     return np.asarray(stops, np.float64) * np.log10(2)
 
 
-def saturating_luminance(T: Real, *, F: float = 8.0, S: float = 100.0) -> Real:
+def saturating_luminance(T: Real, *, F: float = 8.0, S: Real = 100.0) -> Real:
     """Return L = 78 F^2 / (0.65 S T), cd/m^2, which just fills the levels [ISO 12232, saturation speed].
 
     Examples

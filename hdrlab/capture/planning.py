@@ -8,15 +8,31 @@ T  shutter time    s, of powers of two: what the dial's names really are
 The first photograph clips above L_high, each next one lies R - O stops below, the last holds L_low:
 
     n = 1 + ceil((log2(L_high / L_low) - R) / (R - O)),  at least 1
+
+Which photographs take the least time, if all of the scene shall come out at some signal over noise? In the
+mean by inverse variance the squares of SNR add over the photographs, so their numbers n_j solve an integer
+program (Hasinoff, Durand and Freeman, CVPR 2010):
+
+    least sum_j n_j (t_j + pause)   with   sum_j n_j SNR_j(L)^2 >= SNR^2   for all L from L_low to L_high
+
+Each SNR_j rises with L until its photograph is full. So it is enough to ask at L_low and just above each
+luminance where one is.
 """
 
 import math
 from typing import NamedTuple
 
 import numpy as np
+from scipy.optimize import Bounds, LinearConstraint, milp
 
 from hdrlab.capture import exposure
-from hdrlab.core.types import F64
+from hdrlab.core.silence import silence
+from hdrlab.core.types import F64, ArrayLike
+
+# photographs of one setting
+MOST = 1000
+# of the time, by which a plan may be longer than the shortest, and how far that is looked for
+SEARCH = {"mip_rel_gap": 0.01, "node_limit": 1000}
 
 
 class Plan(NamedTuple):
@@ -26,6 +42,28 @@ class Plan(NamedTuple):
     times: F64  # (n,) s, true
     holds: F64  # (n, 2) cd/m^2, lowest and highest luminance of each photograph
     step: float  # stops from one to the next
+
+
+class Model(NamedTuple):
+    """A camera's noise; the numbers here are those of a good one, and photon transfer finds them."""
+
+    full_well: float = (
+        20_000.0  # electrons of a full pixel at the lowest speed; at twice the speed half of it
+    )
+    read_noise: float = 5.0  # R, electrons, before the amplifier
+    gain: float = 5.0  # K, electrons per level at the lowest speed; at twice the speed half of it
+    converter_noise: float = 0.0  # q, levels, after the amplifier
+    speeds: tuple[float, ...] = (100.0,)  # S, ISO
+    pause: float = 0.2  # s after each photograph
+    aperture: float = 8.0  # F, f-number
+
+
+class Shots(NamedTuple):
+    """Photographs to take, from the shortest: what the dial says, true seconds, and ISO speeds."""
+
+    names: tuple[str, ...]
+    times: F64
+    speeds: F64
 
 
 def count(scene: float, usable: float, overlap: float) -> int:
@@ -84,6 +122,80 @@ def plan(
     times = np.exp2(first + step * np.arange(count(reach, usable, usable - step)))
     holds = np.stack([fills / times * 2.0**-usable, fills / times], axis=1).astype(np.float64)
     return Plan(tuple(_name(t, dial) for t in times), times, holds, step)
+
+
+def squared_snr(L: ArrayLike, times: F64, speeds: F64, camera: Model) -> F64:
+    """Return N^2 / (N + R^2 + K^2 (q^2 + 1 / 12)) of luminances (K,) in photographs (n,); 0 where full."""
+    share = np.asarray(L)[:, None] / exposure.saturating_luminance(times, F=camera.aperture, S=speeds)
+    N, K = (one * min(camera.speeds) / speeds for one in (share * camera.full_well, camera.gain))
+    noise = N + camera.read_noise**2 + K**2 * (camera.converter_noise**2 + 1 / 12)
+    return np.where(share <= 1, N**2 / noise, 0.0)
+
+
+def settings(L_low: float, L_high: float, snr: float, camera: Model) -> tuple[F64, F64]:
+    """Return times and speeds (n,) to choose from: no shorter than photons allow, none full everywhere."""
+    fills = np.array([exposure.saturating_luminance(1, F=camera.aperture, S=one) for one in camera.speeds])
+    first, last = fills.min() / L_high * min(snr**2 / camera.full_well, 1), fills.max() / L_low
+    stops = np.arange(np.floor(np.log2(first)), np.ceil(np.log2(last)) + 1)
+    t, S = np.meshgrid(2.0**stops, camera.speeds, indexing="ij")
+    return t.ravel(), S.ravel()
+
+
+def hardest(L_low: float, L_high: float, times: F64, speeds: F64, camera: Model) -> F64:
+    """Return the luminances where SNR is least: L_low, and just above those that fill a photograph."""
+    full = np.asarray(exposure.saturating_luminance(times, F=camera.aperture, S=speeds))
+    return np.append(L_low, full[(full >= L_low) & (full < L_high)] * (1 + 1e-9))
+
+
+def worst_snr(L_low: float, L_high: float, times: F64, speeds: F64, camera: Model) -> float:
+    """Return the least signal over noise from L_low to L_high, in the mean by inverse variance."""
+    L = hardest(L_low, L_high, times, speeds, camera)
+    return float(np.sqrt(squared_snr(L, times, speeds, camera).sum(axis=1).min()))
+
+
+def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model()) -> Shots:  # noqa: B008
+    """Plan the photographs that take the least time and show all of a scene at some signal over noise.
+
+    Parameters
+    ----------
+    L_low, L_high : cd/m^2, the darkest and brightest luminance
+    snr : signal over noise that each luminance between shall have at least, in the mean by inverse variance
+    camera : Model, its noise; of its speeds each photograph has the best one
+
+    Returns
+    -------
+    shots : Shots
+        Times are powers of two, as on the dial and beyond. No other such photographs take a hundredth less
+        time, unless those are hard to find.
+
+    Raises
+    ------
+    ValueError
+        For luminances, a ratio or a camera that mean nothing, or where MOST photographs are not enough.
+
+    References
+    ----------
+    Hasinoff, Durand and Freeman, Noise-optimal capture for high dynamic range photography, CVPR 2010.
+
+    Examples
+    --------
+    >>> shots = plan_by_noise(0.1, 3000, 20)
+    >>> shots.names, float(shots.times.sum())
+    (('1/125', '1/60', '1', '15'), 17.0234375)
+    """
+    positive = [L_low, snr, camera.full_well, camera.gain]
+    rest = [L_high - L_low, camera.read_noise, camera.converter_noise, camera.pause]
+    if not (min(positive) > 0 <= min(rest) and np.isfinite(positive + rest).all()):
+        raise ValueError(f"expected 0 < low <= high, a ratio, a camera, got {L_low, L_high, snr, camera}")
+    t, S = settings(L_low, L_high, snr, camera)
+    A = np.minimum(squared_snr(hardest(L_low, L_high, t, S, camera), t, S, camera) / snr**2, 1)
+    enough, whole, some = LinearConstraint(A, 1), np.ones(t.size), Bounds(0, MOST)
+    with silence(1):  # HiGHS speaks of its own rounding
+        found = milp(t + camera.pause, constraints=enough, integrality=whole, bounds=some, options=SEARCH)
+    if found.x is None:
+        raise ValueError(f"expected a ratio that {MOST} photographs of each setting reach, got {snr:g}")
+    t, S, dial = *(one.repeat(np.rint(found.x).astype(int)) for one in (t, S)), exposure.shutter_series()
+    return Shots(tuple(_name(one, dial) for one in t), t, S)
 
 
 def _name(time: float, dial: exposure.Dial) -> str:

@@ -1,6 +1,9 @@
 """Commands about exposure: which photographs to take, and what a meter would have said."""
 
+import tomllib
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -12,23 +15,43 @@ MODES = ("spot", "partial", "centre", "average", "matrix")
 @common.command()
 @click.argument("low", type=float, required=False)
 @click.argument("high", type=float, required=False)
+@click.option("--low", "low_", type=float, help="LOW, as an option.")
+@click.option("--high", "high_", type=float, help="HIGH, as an option.")
 @click.option("--map", "source", type=common.FILE, help="A radiance map in cd/m^2 instead of LOW and HIGH.")
 @click.option("--aperture", default=8.0, help="f-number, the same for all.")
 @click.option("--iso", default=100.0, help="ISO speed, the same for all.")
 @click.option("--usable", default=7.0, help="Stops that one photograph holds.")
 @click.option("--overlap", default=3.0, help="Stops that two neighbours both hold.")
 @click.option("--thirds", is_flag=True, help="The dial has thirds of a stop.")
-def plan(low: float | None, high: float | None, source: Path | None, thirds: bool, **camera: float) -> None:
+@click.option("--snr", type=click.FloatRange(0, min_open=True), help="As quick as may be at this SNR, too.")
+@click.option("--camera", "model", type=common.FILE, help="For --snr: the camera's noise, a .toml.")
+def plan(
+    low: float | None,
+    high: float | None,
+    low_: float | None,
+    high_: float | None,
+    source: Path | None,
+    thirds: bool,
+    snr: float | None,
+    model: Path | None,
+    **camera: float,
+) -> None:
     """Plan the photographs for a scene whose luminances go from LOW to HIGH, cd/m^2.
 
     Moonlight is about 0.1 cd/m^2, a living room in the evening 10, a white page in the sun 30 000. Of a map,
     one pixel in a thousand may be left out at either end.
+
+    With --snr 20, too: those photographs that take the least time, if in their mean by inverse variance noise
+    is at most a 20th of the light, from LOW to HIGH. The file of --camera may say full_well = 20000,
+    read_noise = 5 (electrons), gain = 5 (electrons per level), converter_noise = 0 (levels), pause = 0.2
+    (seconds after each photograph) and speeds = [100, 400] (ISO; well and gain are those of the lowest).
     """
     import numpy as np
 
     from hdrlab.capture import planning
     from hdrlab.core.colour import luminance
 
+    low, high = low_ or low, high_ or high
     if source is not None and low is None:
         L = luminance(common.read_map(source, clean=False))
         low, high = np.quantile(L[L > 0], [0.001, 0.999]) if (L > 0).any() else (0.0, 0.0)
@@ -44,6 +67,19 @@ def plan(low: float | None, high: float | None, source: Path | None, thirds: boo
     click.echo(f"{shots}, f/{camera['aperture']:g}, ISO {camera['iso']:g}:")
     for name, time, (dark, bright) in zip(made.names, made.times, made.holds, strict=True):
         click.echo(f"  {name:>7} s  (really {time:.6g} s) holds {dark:.3g} to {bright:.3g} cd/m^2")
+    if snr:
+        usual = planning.Model(speeds=(camera["iso"],), aperture=camera["aperture"])
+        maker = usual._replace(**_camera(model, usual._fields)) if model else usual
+        quick = planning.plan_by_noise(low, high, snr, maker)
+        stops = made.names, made.times, np.full(count, camera["iso"])
+        for way, (names, times, speeds) in (("by stops", stops), ("by noise", quick)):
+            worst = planning.worst_snr(low, high, times, speeds, maker)
+            click.echo(
+                f"{way}: {len(names)} photographs in {times.sum():.4g} s and {len(names)} pauses of "
+                f"{maker.pause:g} s; signal over noise {worst:.3g} at worst"
+            )
+        for name, time, speed in zip(*quick, strict=True):
+            click.echo(f"  {name:>7} s  (really {time:.6g} s) at ISO {speed:g}")
 
 
 @common.command()
@@ -109,6 +145,20 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     )
     decision = f"{found.delta:+.1f} stops: mean level {found.after:.0f}" if found.delta else "left as it is"
     click.echo(f"{out}: {decision}")
+
+
+def _camera(file: Path, known: Sequence[str]) -> dict[str, Any]:
+    """Return what a file says of a camera's noise."""
+    said = tomllib.loads(file.read_text(encoding="utf8"))
+    try:
+        found = {
+            name: tuple(map(float, one)) if name == "speeds" else float(one) for name, one in said.items()
+        }
+    except (TypeError, ValueError, OverflowError):
+        found = {"": ()}
+    if not set(found) <= set(known) or found.get("speeds") == ():
+        raise ValueError(f"{file}: expected numbers {', '.join(known)}, of speeds a list, got {said}")
+    return found
 
 
 def _place(text: str) -> tuple[float, float]:

@@ -1,11 +1,14 @@
 """A planned bracket covers the scene, with no more photographs than it takes."""
 
+from itertools import combinations_with_replacement
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from hdrlab.capture import exposure, planning
+from hdrlab.radiance.uncertainty import inverse_variance_merge
 
 
 @given(
@@ -61,3 +64,62 @@ def test_an_overlap_that_leaves_no_step_is_refused():
         planning.plan(1, 10, usable=4, overlap=4)
     with pytest.raises(ValueError, match="step"):
         planning.plan(1, 10, usable=4, overlap=3.9)
+
+
+MAKERS = [
+    planning.Model(),
+    planning.Model(read_noise=1, converter_noise=4, speeds=(100, 400, 1600), pause=0.05),
+    planning.Model(full_well=3000, gain=1, pause=1, aperture=4),
+]
+
+
+@pytest.mark.parametrize("maker", MAKERS)
+@pytest.mark.parametrize(("low", "high", "snr"), [(0.5, 500, 20), (2, 50, 60), (1, 1, 5)])
+def test_by_noise_each_luminance_has_the_ratio_that_was_asked_for(maker, low, high, snr):
+    names, times, speeds = planning.plan_by_noise(low, high, snr, maker)
+    every = planning.squared_snr(np.geomspace(low, high, 2001), times, speeds, maker).sum(axis=1)
+    assert every.min() >= snr**2 * (1 - 1e-6)
+    worst = planning.worst_snr(low, high, times, speeds, maker)
+    assert snr * (1 - 1e-6) <= worst <= np.sqrt(every.min()) * (1 + 1e-6)
+    assert len(names) == len(times) and np.all(np.diff(times) >= 0) and set(speeds) <= set(maker.speeds)
+
+
+@pytest.mark.parametrize("maker", MAKERS[1:])
+def test_by_noise_no_three_other_photographs_are_quicker(maker):
+    low, high, snr = 5.0, 200.0, 12.0
+    found = planning.plan_by_noise(low, high, snr, maker)
+    took = found.times.sum() + maker.pause * len(found.times)
+    settings = [(t, S) for t in 2.0 ** np.arange(-12, 5) for S in maker.speeds]
+    quickest = np.inf
+    for count in (1, 2, 3):
+        for chosen in combinations_with_replacement(settings, count):
+            times, speeds = np.array(chosen).T
+            needs = times.sum() + maker.pause * count
+            if needs < quickest and planning.worst_snr(low, high, times, speeds, maker) >= snr:
+                quickest = needs
+    assert took <= 1.01 * quickest
+
+
+def test_the_ratio_of_a_plan_is_that_of_the_mean_by_inverse_variance():
+    L, maker = 2.0, planning.Model()
+    _, times, speeds = planning.plan_by_noise(1, 50, 15, maker)
+    full = exposure.saturating_luminance(times, S=speeds)
+    X, rng = np.broadcast_to((L / full)[:, None], (len(times), 20_000)), np.random.default_rng(3)
+    counted = rng.poisson(X * maker.full_well) + maker.read_noise * rng.standard_normal(X.shape)
+    step = np.full(X.shape, maker.gain / maker.full_well)
+    light = step * np.round(counted / maker.full_well / step)
+    E, _ = inverse_variance_merge(light, step, X < 1, times, maker.full_well, maker.read_noise)
+    said = np.sqrt(planning.squared_snr([L], times, speeds, maker).sum())
+    assert E.mean() / E.std() == pytest.approx(said, rel=0.03)
+
+
+@pytest.mark.parametrize(
+    ("maker", "snr"),
+    [
+        *((planning.Model(**bad), 20) for bad in ({"full_well": 0}, {"pause": -1}, {"read_noise": np.nan})),
+        *((planning.Model(), snr) for snr in (0, np.nan, 1e9)),
+    ],
+)
+def test_by_noise_what_means_nothing_is_refused(maker, snr):
+    with pytest.raises(ValueError, match="expected"):
+        planning.plan_by_noise(0.1, 1000, snr, maker)

@@ -1,5 +1,7 @@
 """`hdrlab plan`, `hdrlab meter` and `hdrlab correct`: what they decide, and why, in words."""
 
+import re
+
 import numpy as np
 import pytest
 import tifffile
@@ -38,6 +40,27 @@ def test_plan_takes_the_range_of_a_radiance_map(tmp_path):
 def test_plan_refuses_what_is_no_range(arguments):
     with pytest.raises(ValueError, match="expected"):
         run(exposures.plan, *arguments)
+
+
+def test_plan_by_noise_stands_beside_the_series_by_stops_and_takes_less_time(tmp_path):
+    (tmp_path / "model.toml").write_text("read_noise = 3\nspeeds = [100, 800]\nconverter_noise = 3")
+    scene = ("--low", 0.5, "--high", 500, "--snr", 8)
+    said = run(exposures.plan, *scene, "--camera", tmp_path / "model.toml")
+    stops, noise = (
+        re.search(rf"by {way}: .* in ([\d.]+) s .* ([\d.]+) at worst", said) for way in ("stops", "noise")
+    )
+    assert float(noise[1]) < float(stops[1]) and float(noise[2]) >= 8
+    assert "at ISO 800" in said and "2 photographs, 4 stops apart" in said
+    assert "at ISO 800" not in run(exposures.plan, *scene) and "noise" not in run(exposures.plan, 0.5, 500)
+
+
+@pytest.mark.parametrize(
+    "said", ["speeds = []", "speeds = 100", "read_noise = 'low'", "noise = 3", "gain = ", "gain = 0"]
+)
+def test_plan_refuses_a_camera_that_it_cannot_read(tmp_path, said):
+    (tmp_path / "model.toml").write_text(said)
+    with pytest.raises(ValueError, match="expected|Invalid|No value"):
+        run(exposures.plan, 0.5, 500, "--snr", 20, "--camera", tmp_path / "model.toml")
 
 
 @pytest.mark.parametrize("mode", exposures.MODES)

@@ -8,8 +8,7 @@ The picture is the display window: where the data window is smaller, the rest is
 import contextlib
 import errno
 import io
-import os
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
@@ -18,6 +17,7 @@ import numpy as np
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.optional import OpenEXR
+from hdrlab.core.silence import silence
 from hdrlab.core.types import F32, Array, ArrayLike, Labels
 from hdrlab.io.files import check_size, replacing
 
@@ -171,7 +171,7 @@ def parts(
     try:
         with (
             PRINTING,
-            _quiet_stderr(),
+            silence(2),
             contextlib.redirect_stdout(printed),
             open_parts(str(path), separate_channels, header_only) as file,
         ):
@@ -186,17 +186,6 @@ def parts(
     except Exception as error:  # damaged files make it raise what they like, UnicodeDecodeError included
         reason = printed.getvalue().strip().rpartition(" - ")[2] or str(error)
         raise ValueError(f"{path}: expected an OpenEXR file, it is cut short or damaged ({reason})") from None
-
-
-@contextlib.contextmanager
-def _quiet_stderr() -> Iterator[None]:
-    """Send nowhere what the module's library prints past Python."""
-    with open(os.devnull, "wb") as nowhere, contextlib.ExitStack() as after:
-        with contextlib.suppress(OSError):  # a program without a terminal may have closed it
-            kept = after.enter_context(open(os.dup(2), "wb"))
-            after.callback(os.dup2, kept.fileno(), 2)
-            os.dup2(nowhere.fileno(), 2)
-        yield
 
 
 def _window(path: str | Path, window: tuple[Labels, Labels], channels: int) -> Window:

@@ -1,0 +1,24 @@
+"""What compiled libraries print past Python, sent nowhere."""
+
+import contextlib
+import os
+from collections.abc import Iterator
+
+
+@contextlib.contextmanager
+def silence(descriptor: int) -> Iterator[None]:
+    """Send nowhere what is printed to 1, the output, or 2, the errors, past Python.
+
+    Examples
+    --------
+    >>> with silence(1):
+    ...     written = os.write(1, b"not to be seen")
+    >>> written
+    14
+    """
+    with open(os.devnull, "wb") as nowhere, contextlib.ExitStack() as after:
+        with contextlib.suppress(OSError):  # a program without a terminal may have closed it
+            kept = after.enter_context(open(os.dup(descriptor), "wb"))
+            after.callback(os.dup2, kept.fileno(), descriptor)
+            os.dup2(nowhere.fileno(), descriptor)
+        yield
