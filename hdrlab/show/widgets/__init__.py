@@ -160,7 +160,7 @@ def tune(
     /,
     *,
     alt: str,
-    stored: int | None = None,
+    stored: int = STORED,
     point: tuple[str, str] | None = None,
     **ranges: Any,
 ) -> Tuner:
@@ -174,10 +174,10 @@ def tune(
         Takes what `f` returns; else as for `play`.
     alt : str
         What the picture shows; the parameters' values are added.
-    stored : int, optional
+    stored : int
         The most pictures that are computed now, for a page without a kernel: all positions, or else a grid of
-        them. By default 48, or what the environment variable HDRLAB_STORED says, and at most 3 MB. A position
-        at which `f` fails has none.
+        them, of at most 3 MB. Lower it where `f` takes long. The environment variable HDRLAB_STORED overrules
+        it, as for the site, where nobody waits. A position at which `f` fails has none.
     point : (down, right), optional
         Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets, too.
     **ranges : (low, high), (low, high, step), or a list of values
@@ -218,7 +218,7 @@ def tune(
         return reuse.draw_reusing(draw, found, finish, kept)
 
     at = positions.start(f, grids)
-    most = int(os.environ.get("HDRLAB_STORED", STORED)) if stored is None else stored
+    most = int(os.environ.get("HDRLAB_STORED", stored))
     first = picture(at)
     stored_at, frames = [at], [encode_change(first)]
     for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:
