@@ -48,7 +48,9 @@ def test_a_function_elsewhere_is_refused(folder, function):
 def test_a_second_task_joins_the_first_and_a_third_begins_another_homework(folder):
     for name, homework in (("dark", "extra"), ("white", "more")):
         assert folder / f"{name}.py" in list(own_task.write(folder, name, homework))
-    homeworks = plan.read(folder / "plan.toml").homeworks
+    read = plan.read(folder / "plan.toml")
+    homeworks = read.homeworks
+    assert read.late == plan.read().late
     assert [[task.id for task in one.tasks] for one in homeworks.values()] == [
         ["flat_field", "dark"],
         ["white"],

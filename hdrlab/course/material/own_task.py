@@ -54,6 +54,6 @@ def joined(there: str, text: str, homework: str) -> str:
         return f"{there}\n{text[text.index(SHEET) :]}"
     before, section, rest = there.partition(f"[{homework}]\n")
     if not section:
-        return f"{there}\n{text}"
+        return f"{there}\n{text[text.index(f'[{homework}]') :]}"
     line = text.partition("tasks = [")[2].splitlines()[1]
     return before + section + rest.replace("\n]\n", f"\n{line}\n]\n", 1)
