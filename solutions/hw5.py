@@ -5,9 +5,9 @@
 #
 # Four answers that are younger than the slides: a radiance map that knows how sure it is, a base layer
 # made of lines instead of neighbours, contrast lowered scale by scale with no base at all, and a code for
-# displays that are brighter than paper. Then four questions of the lecture that no other sheet asks: a
-# sensor's gain, levels that two histograms bring together, how sure a level is, and what a good pixel is.
-# You write the heart of each.
+# displays that are brighter than paper. Then questions of the lecture that no other sheet asks: a
+# sensor's gain, levels that two histograms bring together, how sure a level is, what a good pixel is,
+# what a meter asks for and of whom, and where ghosts are. You write the heart of each.
 #
 # {choice}
 #
@@ -313,6 +313,82 @@ W = weight(F)
 pictures.picture(
     colour.to_8bit(np.clip(W / np.quantile(W, 0.99), 0, 1)),
     alt="The weight of the room's photograph: bright at edges of coloured things, black where it is clipped",
+)
+
+# %% [markdown] about="optimum"
+# ## 10 · What a meter asks for ({points})
+#
+# A picture taken at the exposure value $\mathrm{EV}_\text{pre}$ has the reading $B_\text{pre}$, a
+# brightness from 0 to 1; it should be $B_\text{opt}$, by default 0.18. The exposure value that brings it
+# there, in stops, is (Battiato and others, 2008, equation 1.2)
+#
+# $$\mathrm{EV}_\text{opt} = \mathrm{EV}_\text{pre} + \log_2 B_\text{pre} - \log_2 B_\text{opt}.$$
+
+# %% task="optimum"
+# Return EV_opt of numbers EV_pre, B_pre and B_opt.
+
+# %% [markdown] about="spot"
+# ## 11 · Whom does a spot meter ask? ({points})
+#
+# It weights the pixels of a disc alike, and no others; all weights add up to 1. The middle of the disc is
+# `at`, how far down and how far right in parts of the picture (H, W): at row `at[0]` $H$ and column
+# `at[1]` $W$, where the pixel $(y, x)$ has its middle at $(y + \frac{1}{2}, x + \frac{1}{2})$. The disc
+# is made of the `share` $\cdot H W$ pixels, rounded, and at least one, whose middles are nearest to it,
+# measured in pixels.
+#
+# (`shape` is (H, W), and the answer $w$ (H, W). The checks ask for no two pixels that are equally near.)
+
+# %% task="spot"
+# Return the weights w (H, W) of a disc of the nearest pixels, whose sum is 1.
+
+# %% about="spot"
+pictures.picture(
+    colour.to_8bit(
+        np.clip(L / np.quantile(L, 0.95), 0, 1) * (0.3 + 0.7 * (spot(L.shape, at=(0.6, 0.5)) > 0))
+    ),
+    alt="The room, dark but for a disc at the lower half of the window",
+)
+
+# %% [markdown] about="dilate"
+# ## 12 · A margin for ghosts ({points})
+#
+# Where something moved, a mask (H, W) marks pixels that the photographs contradict each other about.
+# Movement is seen at outlines, so the mask is widened: to it belongs every pixel of which the middle is
+# at most `margin` pixels from the middle of a pixel of the mask, by the straight line, and then all that
+# the mask encloses, its holes. (A hole is what no walk from pixel to neighbour, above, below, left or
+# right, leads out of the picture from.)
+#
+# (`mask` is an array of bool, `margin` a whole number above 0. An empty mask stays empty. The answer is
+# of bool, or 0 and 1.)
+
+# %% task="dilate"
+# Return the mask (H, W), all within margin pixels of it, and what that encloses.
+
+# %% about="dilate"
+down, right = np.indices((180, 240)) - np.reshape((90, 120), (2, 1, 1))
+outline = (abs(np.hypot(down, right) - 55) < 1) & (np.arctan2(down, right) % 0.5 > 0.15)
+pictures.picture(
+    colour.to_8bit(0.5 * outline + 0.5 * dilate(outline, 12)),
+    alt="An outline with gaps, white, on a gray disc that it and its margin enclose",
+)
+
+# %% [markdown] about="label"
+# ## 13 · Ghost by ghost ({points})
+#
+# Each region takes its pixels from one photograph, so regions are told apart: pixels of the mask belong
+# to one region if a walk within the mask leads from one to the other, each step to one of eight
+# neighbours, across corners too. Label the regions from 1 to their number, in whichever order, and with 0
+# what is not in the mask.
+
+# %% task="label"
+# Return labels (H, W) of the connected regions of a mask of bool, 0 elsewhere.
+
+# %% about="label"
+squares = np.random.default_rng(3).uniform(size=(15, 20)) < 0.25
+regions = label(np.kron(squares, np.ones((12, 12), bool)))
+pictures.picture(
+    colour.to_8bit(regions / regions.max()),
+    alt="Squares on black, each group that touches, in a side or a corner, in a gray of its own",
 )
 
 # %% [markdown]

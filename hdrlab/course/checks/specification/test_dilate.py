@@ -1,0 +1,55 @@
+"""The margin of a ghost mask: dilate(mask, margin) -> mask (H, W)."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks.compare import same
+from hdrlab.radiance.deghosting import regions
+
+
+def drawn(rng):
+    """Return a mask of some pixels and a bar, and a margin."""
+    mask = rng.uniform(size=(40, 50)) < 0.004
+    mask[int(rng.integers(5, 30)), 8:20] = True
+    return mask, int(rng.integers(3, 6))
+
+
+@pytest.mark.points(5)
+def test_all_within_the_margin_belongs_to_the_mask(subject, rng):
+    """How far is a pixel from the nearest one of the mask?
+
+    By the straight line: a margin is round, not square.
+
+    Take what is at most `margin` from a pixel of the mask.
+    """
+    mask, margin = drawn(rng)
+    same(subject.dilate(mask, margin), regions.dilate(mask, margin), 0, what="the mask", picture=True)
+
+
+@pytest.mark.points(3)
+def test_the_inside_of_a_figure_belongs_to_it(subject, rng):
+    """Somebody who moved is found by the outline. And the inside?
+
+    A hole that the mask encloses on all sides belongs to it.
+
+    Fill the holes after the margin was added.
+    """
+    ring = np.zeros((40, 40), bool)
+    ring[6:34, 6:34] = True
+    ring[8:32, 8:32] = False
+    margin = int(rng.integers(2, 4))
+    same(
+        subject.dilate(ring, margin), regions.dilate(ring, margin), 0, what="the mask of a ring", picture=True
+    )
+
+
+@pytest.mark.points(1, needs="test_all_within_the_margin_belongs_to_the_mask")
+def test_where_nothing_moved_there_is_no_mask(subject, rng):
+    """A mask may be empty. How far is the nearest pixel of it then?
+
+    There is none.
+
+    An empty mask stays empty.
+    """
+    nothing = np.zeros((12, int(rng.integers(10, 20))), bool)
+    same(subject.dilate(nothing, 3), nothing, 0, what="the empty mask", picture=True)
