@@ -88,6 +88,10 @@ def here(made, tmp_path):
 def start(command, here, prepare=None, *, cwd=None, **environment):
     """Start a command as a process."""
     env = {**os.environ, **environment}
+    if (
+        prepare is fill_disk
+    ):  # of a module that it compiles Python would keep the beginning, for all who follow
+        env["PYTHONDONTWRITEBYTECODE"] = "1"
     words = COMMANDS.get(command, command).split() if isinstance(command, str) else command
     return subprocess.Popen(
         [sys.executable, "-m", "hdrlab", *words],
@@ -214,6 +218,11 @@ def test_a_disk_that_refuses_is_told_in_a_line(command, refusal, here, made):
     if command in MAIN:
         assert (here / MAIN[command]).read_bytes() == OLD
     assert_nothing_is_lost(here, made)
+
+
+def test_a_full_disk_leaves_no_module_compiled_by_half(here):
+    assert end(start("--version", here, fill_disk, PYTHONPYCACHEPREFIX=str(here / "compiled"))).code == 0
+    assert not list(here.rglob("*.pyc"))
 
 
 @pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM])
