@@ -152,7 +152,7 @@ def _tasks() -> list[plan.Task]:
 NONE_REFUSED: Hold = at_most("right answers refused", 0)
 ROWS = (
     Experiment(
-        "right", "right answers from the sheets", right, (NONE_REFUSED, at_least("fewest ways of a task", 3))
+        "right", "right answers from the sheets", right, (NONE_REFUSED, at_least("fewest ways of a task", 6))
     ),
     Experiment(
         "wrong",
