@@ -55,16 +55,15 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
     stack = as_stack(images)
     mask = as_mask(valid, stack)
     apart = SIDE * max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PATCHES) / SIDE))
-    Z, flat = [], []
-    for j, frame in enumerate(stack.reshape(*stack.shape[:3], -1)):
-        patches = _cut_patches(frame, apart)
-        low, high, n = to_256(patches.min(axis=-1)), to_256(patches.max(axis=-1)), patches.shape[-1]
-        mean = to_256(((patches.sum(axis=-1, dtype=np.uint32) + n // 2) // n).astype(frame.dtype))
-        whole = np.all((low >= BLACK) & (high <= TOP), axis=-1)
+    Z, flat, n = [], [], int(np.minimum(SIDE, stack.shape[1:3]).prod())
+    for j, frame in enumerate(stack):
+        low, high = (to_256(_reduce_patches(frame, apart, one)) for one in (np.minimum, np.maximum))
+        mean = to_256(((_reduce_patches(frame, apart, np.add) + n // 2) // n).astype(frame.dtype))
+        whole = ((low >= BLACK) & (high <= TOP)).all(axis=0)
         if mask is not None:
-            whole = whole & _cut_patches(mask[j, ..., None], apart).all(axis=(2, 3))
-        Z.append(np.moveaxis(np.where(whole[..., None], mean, 0), -1, 0))
-        flat.append(np.all(high - low <= RANGE, axis=-1))
+            whole &= _reduce_patches(mask[j], apart, np.minimum)[0]
+        Z.append(np.where(whole, mean, 0))
+        flat.append((high - low <= RANGE).all(axis=0))
     return FlatPatches(np.stack(Z).astype(np.uint8), np.stack(flat))
 
 
@@ -75,11 +74,19 @@ def rank_levels(images: ArrayLike, *, valid: ArrayLike | None = None) -> Flags:
     return np.moveaxis(np.where((Z >= BLACK) & (Z <= TOP), Z, 0), 0, -1)[..., None].astype(np.uint8)
 
 
-def _cut_patches(frame: Array, apart: int) -> Array:
-    """Return the pixels of patches that begin so many pixels apart, (h, w, C, n); a smaller frame is one."""
-    side = np.minimum(SIDE, frame.shape[:2])
-    few = np.lib.stride_tricks.sliding_window_view(frame, side, axis=(0, 1))[::apart, ::apart]
-    return few.reshape(*few.shape[:3], -1)
+def _reduce_patches(frame: Array, apart: int, ufunc: np.ufunc) -> Array:
+    """Return a reduction over the pixels of patches that begin so many pixels apart, (C, h, w).
+
+    Sums have twice the bits. A frame that is smaller than a patch is one.
+    """
+    few, wide = np.moveaxis(frame.reshape(*frame.shape[:2], -1), -1, 0), np.dtype(f"u{2 * frame.itemsize}")
+    for axis in (1, 2):  # whole rows first, as they lie in memory
+        side = min(SIDE, n := few.shape[axis])
+        parts = [few[(*[np.s_[:]] * axis, np.s_[j : n - side + 1 + j : apart])] for j in range(side)]
+        few = parts[0].astype(wide if ufunc is np.add else few.dtype, "K" if axis == 1 else "C")
+        for part in parts[1:]:
+            ufunc(few, part, out=few)
+    return few
 
 
 def find_static(Z: Flags) -> Mask:
