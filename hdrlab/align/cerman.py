@@ -15,9 +15,8 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.fft import irfft2, next_fast_len, rfft2
+import scipy
 from scipy.ndimage import maximum_filter
-from scipy.optimize import minimize
 
 from hdrlab.align import light
 from hdrlab.core.filters import warp
@@ -51,8 +50,8 @@ def correlation(X: F32) -> F64:
     """
     a, b = (np.where(np.isfinite(x), x - light.local_mean(x), 0) for x in X)
     h, w = X.shape[1:]
-    size = [next_fast_len(2 * n - 1) for n in (h, w)]
-    c = irfft2(rfft2(a, size) * np.conj(rfft2(b, size)), size)
+    size = [scipy.fft.next_fast_len(2 * n - 1) for n in (h, w)]
+    c = scipy.fft.irfft2(scipy.fft.rfft2(a, size) * np.conj(scipy.fft.rfft2(b, size)), size)
     return np.asarray(np.roll(c, (h - 1, w - 1), axis=(0, 1))[: 2 * h - 1, : 2 * w - 1])
 
 
@@ -80,7 +79,7 @@ def descend(X: F32, start: ArrayLike, reach: float, close: float = 0.01) -> tupl
 
     corners = np.asarray(start, float) + reach * np.vstack([np.zeros(3), np.eye(3)])
     options = {"initial_simplex": corners, "xatol": close, "fatol": 1e-9, "maxfev": CALLS, "return_all": True}
-    path = np.array(minimize(e, start, method="Nelder-Mead", options=options).allvecs)
+    path = np.array(scipy.optimize.minimize(e, start, method="Nelder-Mead", options=options).allvecs)
     return path, np.array([found[tuple(unknowns)] for unknowns in path])
 
 

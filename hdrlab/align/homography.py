@@ -18,7 +18,7 @@ from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from hdrlab.align import light
 from hdrlab.core.filters import warp
@@ -99,7 +99,7 @@ def refine(X: F32, H: F64) -> F64:
         return np.nan_to_num(light.differences(X, moved, p), nan=0.0)
 
     options = {"loss": "soft_l1", "f_scale": 0.1, "diff_step": 0.1, "x_scale": 1.0, "max_nfev": 12}
-    found = least_squares(d, np.zeros(8), **options)
+    found = scipy.optimize.least_squares(d, np.zeros(8), **options)
     better = warp.through(corners, start + found.x.reshape(4, 2))
     return min((H, better), key=lambda one: light.error(light.differences(X, one, p)))
 

@@ -20,8 +20,8 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.fft import fftshift, irfft2, rfft2
 
 from hdrlab.align import homography, light
 from hdrlab.align.cerman import peaks
@@ -243,7 +243,7 @@ def rivals(middle: F32) -> list[Array]:
     """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation."""
     x = np.where(np.isfinite(middle), middle - light.local_mean(middle), 0)
     h, w = x.shape
-    c = fftshift(irfft2(np.abs(rfft2(x, (2 * h, 2 * w))) ** 2, (2 * h, 2 * w)))
+    c = scipy.fft.fftshift(scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (2 * h, 2 * w))) ** 2, (2 * h, 2 * w)))
     found = peaks(c[:, w:], RIVALS + 1) + [0, w // 2]  # c is symmetric
     return [shift for shift in found if np.abs(shift).max() > NEAR]
 

@@ -23,7 +23,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.linalg import null_space
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_times
@@ -71,7 +70,8 @@ def free_directions(B: F64, *, known: bool = False) -> F64:
     ((3, 1), (3, 2))
     """
     gauge = np.ones((1, len(B))) if known else np.stack([np.ones(len(B)), B - B.mean()])
-    return np.asarray(null_space(gauge, rcond=1e-9), np.float64)
+    _, s, V = np.linalg.svd(gauge)
+    return np.asarray(V[np.count_nonzero(s > 1e-9 * s[0]) :].T, np.float64)
 
 
 def remove_trend(x: F64, B: F64) -> F64:

@@ -15,8 +15,8 @@ matrix, for a thousand samples as for a million.
 from collections.abc import Callable, Iterator
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
-from scipy.linalg import solveh_banded
 
 from hdrlab.core.arrays import as_mask, as_stack, as_times
 from hdrlab.core.sampling import by_rank
@@ -106,7 +106,7 @@ def _smoother(means: F64, w: F64, smoothness: float) -> F64:
     bends, data = second_differences(w, smoothness), np.diag(np.where(known, 1.0, 1e-6))
     A = data + bends.T @ bends  # five diagonals, of which the lower three say all
     bands = [np.pad(np.diagonal(A, -k), (0, k)) for k in range(3)]
-    return np.asarray(solveh_banded(bands, data, lower=True))
+    return np.asarray(scipy.linalg.solveh_banded(bands, data, lower=True))
 
 
 def _thinned(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -> Indices:

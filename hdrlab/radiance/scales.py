@@ -10,7 +10,7 @@ saw, then k I must point along M, for all pixels together.
 """
 
 import numpy as np
-from scipy.optimize import least_squares
+import scipy
 
 from hdrlab.core.arrays import as_radiance, describe
 from hdrlab.core.colour import luminance
@@ -60,7 +60,7 @@ def fit_channel_scales(I: ArrayLike, M: ArrayLike) -> F64:  # noqa: E741
     def misses(ln_k: F64) -> F64:
         return (chromaticity(I * np.exp([ln_k[0], 0, ln_k[1]])) - target).ravel()
 
-    ln_k = least_squares(misses, (first - first[1])[[0, 2]]).x
+    ln_k = scipy.optimize.least_squares(misses, (first - first[1])[[0, 2]]).x
     return np.exp([ln_k[0], 0.0, ln_k[1]])
 
 

@@ -12,7 +12,7 @@ falls off with a power of two to three [Talvala07 fig. 3]: slowly, so that a win
 from typing import NamedTuple
 
 import numpy as np
-from scipy import fft
+import scipy
 
 from hdrlab.core.types import F32, Array
 
@@ -38,12 +38,12 @@ def spread_transform(shape: tuple[int, ...], power: float, core: float = 1.0) ->
 
     K is cut off where it leaves the frame from one side to the other, and its sum is 1 there.
     """
-    size = [fft.next_fast_len(2 * n, real=True) for n in shape[:2]]
+    size = [scipy.fft.next_fast_len(2 * n, real=True) for n in shape[:2]]
     y, x = (np.minimum(np.arange(n), n - np.arange(n)).astype(np.float32) for n in size)
     K = (1 + (y[:, None] ** 2 + x**2) / np.float32(core**2)) ** np.float32(-power / 2)
     K[0, 0] = 0
     K[shape[0] : size[0] - shape[0] + 1], K[:, shape[1] : size[1] - shape[1] + 1] = 0, 0
-    return np.asarray(fft.rfft2(K / K.sum(dtype=np.float64).astype(np.float32)), np.complex64)
+    return np.asarray(scipy.fft.rfft2(K / K.sum(dtype=np.float64).astype(np.float32)), np.complex64)
 
 
 def scatter(E: F32, transform: Array) -> F32:
@@ -58,11 +58,11 @@ def scatter(E: F32, transform: Array) -> F32:
     (0.0, True)
     """
     height, width = E.shape[:2]
-    size = (transform.shape[0], fft.next_fast_len(2 * width, real=True))
+    size = (transform.shape[0], scipy.fft.next_fast_len(2 * width, real=True))
     planes = E.reshape(height, width, -1)
     out = np.empty_like(planes)
     for c in range(planes.shape[-1]):
-        spectrum = fft.rfft2(planes[..., c], size)
+        spectrum = scipy.fft.rfft2(planes[..., c], size)
         spectrum *= transform
-        out[..., c] = fft.irfft2(spectrum, size)[:height, :width]
+        out[..., c] = scipy.fft.irfft2(spectrum, size)[:height, :width]
     return np.maximum(out, 0).reshape(E.shape)
