@@ -85,7 +85,6 @@ def assemble(
     import numpy as np
 
     from hdrlab import pipeline
-    from hdrlab.fast import mertens
     from hdrlab.io import photos as files
     from hdrlab.io import radiance
     from hdrlab.io.files import require_suffix
@@ -96,11 +95,10 @@ def assemble(
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
-    bracket = read_bracket(photos, times, mask, stops)
     methods["method"] = merge
     methods["times"] = "stated" if keep_times or times == "stated" else "correct"
     methods["times"] = "estimate" if times == "estimate" else methods["times"]
-    assembly = _assembled(bracket, methods | {"response": recover})
+    assembly = _assembled(read_bracket(photos, times, mask, stops), methods | {"response": recover})
     if uncertainty:
         assembly = pipeline.measure_deviation(assembly)
     if metered:
@@ -116,8 +114,12 @@ def assemble(
         layers.write_layers(uncertainty, both, comments=comments)
         click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
     if picture or report:
+        if not (report or assembly.fallback):  # the photographs have done their work
+            assembly = assembly._replace(bracket=assembly.bracket._replace(images=np.empty(0, np.uint8)))
         rendered, settings = pipeline.develop_and_describe(assembly.E, tonemap)
         if assembly.fallback:
+            from hdrlab.fast import mertens
+
             click.echo(f"note: {FUSION}, for {assembly.fallback}", err=True)
             assembly = assembly._replace(notes=(*assembly.notes, f"{FUSION}, for {assembly.fallback}"))
             rendered = np.rint(255 * mertens.fuse(assembly.bracket.images).clip(0, 1)).astype(np.uint8)
@@ -184,7 +186,7 @@ def _assembled(bracket: "Bracket", methods: dict[str, Any]) -> "Assembly":
     from hdrlab.core.steps import last
     from hdrlab.pipeline.alignment import SEARCHES
 
-    steps = pipeline.assemble_steps(bracket, **methods)
+    steps = pipeline.assemble_steps(bracket, in_place=True, **methods)
     asked = sum(methods[stage] != "none" for stage in ("ghosts", "flare"))
     count = len(pipeline.STAGES) - (methods["times"] == "stated") + asked
     if methods["align"] in SEARCHES:  # the first stage takes seconds a photograph

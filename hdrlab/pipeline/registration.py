@@ -6,7 +6,7 @@ from functools import cache, partial
 import numpy as np
 
 from hdrlab.align.resample import photographs
-from hdrlab.align.shift import as_offsets, shift
+from hdrlab.align.shift import as_offsets, crop, shift
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.filters import warp
 from hdrlab.core.types import F64, Array
@@ -20,13 +20,15 @@ ADVICE = {"mtb": 'align by "auto", which rotates them too, or leave one out'}
 LEAVE = 'leave one out, or align by "none" if it is the scene that moved'
 
 
-def aligned(bracket: Bracket, align: Method, response: Method = "auto") -> Assembly:
-    """Return the Assembly after alignment: by a method's name, a function, or "none"."""
+def aligned(
+    bracket: Bracket, align: Method, response: Method = "auto", *, in_place: bool = False
+) -> Assembly:
+    """Return the Assembly after alignment: by a method's name, a function, or "none"; see `moved`."""
     curve = cache(partial(provisional, bracket, response))  # found where it is asked for, and once
     H, pairs, notes = registered(bracket, align, curve)
     g = curve() if H.ndim == 3 else None
     doubts, more = describe(pairs, bracket.names, ADVICE.get(str(align), LEAVE))
-    taken, H = moved(bracket, H, g), warp.as_homographies(H)
+    taken, H = moved(bracket, H, g, in_place=in_place), warp.as_homographies(H)
     middle = (np.array(bracket.images.shape[2:0:-1]) - 1) / 2
     offsets = np.rint(warp.apply(H, [middle])[:, 0] - middle).astype(np.int64)[:, ::-1]
     return Assembly("align", taken, offsets, notes=notes + more, doubts=doubts, homographies=H)
@@ -85,15 +87,25 @@ def provisional(bracket: Bracket, response: Method) -> F64 | None:
         return None
 
 
-def moved(bracket: Bracket, H: Array, g: F64 | None = None) -> Bracket:
+def moved(bracket: Bracket, H: Array, g: F64 | None = None, *, in_place: bool = False) -> Bracket:
     """Return the bracket with its photographs, and their masks, moved and cut to what all of them show.
 
-    Offsets (P, 2) shift them as they are; homographies resample their light by the response g.
+    Offsets (P, 2) shift them as they are, `in_place` in the memory of those given, which are lost then;
+    homographies resample their light by the response g.
     """
     images, valid = bracket.images, bracket.valid
     if H.ndim == 3:
         images, valid = photographs(images, H, g, valid=valid)
         return bracket._replace(images=images, valid=valid)
-    if valid is not None:
-        valid = shift(valid.view(np.uint8), H).view(bool)
-    return bracket._replace(images=shift(images, H), valid=valid)
+    valid = None if valid is None else shift(valid, H)
+    return bracket._replace(images=(shift_in_place if in_place else shift)(images, H), valid=valid)
+
+
+def shift_in_place(images: Array, offsets: Array) -> Array:
+    """Return `shift(images, offsets)` in the memory of the images, which are lost."""
+    rows, columns = crop(offsets, images.shape[1:3])
+    shape = images[:, rows, columns].shape
+    out = images.reshape(-1)[: np.prod(shape)].reshape(shape)
+    for one, image, (dy, dx) in zip(out, images, offsets.tolist(), strict=True):
+        one[:] = image[rows.start - dy : rows.stop - dy, columns.start - dx : columns.stop - dx]
+    return out

@@ -105,14 +105,18 @@ def assemble_steps(
     times: str = "correct",
     ghosts: str = "auto",
     flare: str = "none",
+    in_place: bool = False,
 ) -> Iterator[Assembly]:
-    """Yield the Assembly after each of STAGES; the parameters are those of `assemble`."""
+    """Yield the Assembly after each of STAGES; the parameters are those of `assemble`.
+
+    in_place : whether shifts may overwrite the photographs of `bracket`, which spares a copy of them all
+    """
     asked = {"a weight": weight, "a method": method, "times": times, "ghosts": ghosts, "flare": flare}.items()
     for (what, given), known in zip(asked, ((*WEIGHTS,), (*METHODS,), TIMES, GHOSTS, FLARE), strict=True):
         if given not in known:
             raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     bracket, said = timing.complete_times(bracket, times)
-    state = aligned(bracket, align, response)
+    state = aligned(bracket, align, response, in_place=in_place)
     yield (state := state._replace(notes=(*said, *state.notes)))
     choice = recovery.choose_response(response, state.bracket)
     explained = choice.spread <= timing.TRUE

@@ -11,7 +11,7 @@ import pytest
 
 from hdrlab import cli, scenes
 from hdrlab.capture import camera
-from hdrlab.cli.common import agreement
+from hdrlab.cli.common import agreement, size
 from hdrlab.core.colour import luminance
 from hdrlab.io import radiance
 from hdrlab.io.maps.layers import read_layers
@@ -71,6 +71,25 @@ def test_help_imports_neither_numpy_nor_matplotlib(arguments):
 def test_importing_hdrlab_imports_no_chapter():
     code = "import sys, hdrlab; sys.exit(any(name.startswith(('hdrlab.', 'numpy')) for name in sys.modules))"
     assert subprocess.run([sys.executable, "-c", code], capture_output=True).returncode == 0
+
+
+def test_assembling_loads_no_optimizer_and_no_plots(photographs, tmp_path):
+    folder, times = photographs
+    arguments = ["assemble", str(folder), "--times", str(times), "-o", str(tmp_path / "room.hdr")]
+    code = (
+        "import sys; from hdrlab import cli\n"
+        f"try: cli.run({[*arguments, '--picture', str(tmp_path / 'room.png')]!r})\n"
+        "except SystemExit as done: assert not done.code\n"
+        "print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert "numpy" in done.stdout.split()
+    assert not {"scipy.optimize", "scipy.stats", "matplotlib", "skimage"} & {*done.stdout.split()}
+
+
+def test_the_range_of_a_large_map_is_told_by_a_sample_of_its_pixels():
+    E = np.exp(np.random.default_rng(0).normal(0, 2, (1300, 1500))).astype(np.float32)
+    assert size(E) == f"1500 x 1300, {scenes.decades(E):.1f} decades"
 
 
 def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp_path, capsys):

@@ -45,6 +45,15 @@ def test_a_stage_is_a_state_in_which_more_is_known(hand_held):
     assert np.array_equal(states[-1].E, assemble(hand_held[0]).E)
 
 
+def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held):
+    expected = assemble(hand_held[0])
+    taken = hand_held[0]._replace(images=hand_held[0].images.copy())
+    *_, found = assemble_steps(taken, in_place=True)
+    assert np.array_equal(found.E, expected.E) and found.doubts == expected.doubts
+    assert np.array_equal(found.bracket.images, expected.bracket.images)
+    assert np.shares_memory(found.bracket.images, taken.images)
+
+
 def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
     taken, offsets = hand_held
     found = assemble(taken)
