@@ -1,6 +1,9 @@
 """Commands that begin with a radiance map, or say what a file is."""
 
+import inspect
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -43,11 +46,24 @@ def tonemap(
 
     E = common.read_map(source, clean)
     settings = dict(common.knob(one) for one in knobs)
-    catalogue.check_knobs("tonemap", find_operator(operator), settings)
+    check_knobs("tonemap", find_operator(operator), settings)
     with elapsed(operator):
         made = pipeline.develop_and_describe(E, operator, saturation=saturation, way=way, **settings)
         files.write_picture(out, made.picture)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
+
+
+def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, Any]) -> None:
+    """Raise a ValueError that lists a method's knobs where one of `knobs` is not among them."""
+    known = [
+        knob.name
+        for knob in inspect.signature(catalogue.method(chapter, name)).parameters.values()
+        if knob.kind is knob.KEYWORD_ONLY
+    ]
+    for knob in knobs:
+        if knob not in known:
+            name = name if isinstance(name, str) else name.__module__.rpartition(".")[2]
+            raise ValueError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")
 
 
 @common.command()

@@ -142,12 +142,13 @@ def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: 
     """Return the bracket of PHOTOS with times by --times or --stops; all are 1 where there are none."""
     from hdrlab import pipeline
     from hdrlab.io import photos as files
+    from hdrlab.io.decode import look
 
     colour, paths = common.colour(mask), files.photographs(photos)
     given: Any = None if times in WORDS else Path(times)
     if stops:
         given = [1.0] * len(paths)
-    elif given is None and not files.have_times(paths):
+    elif given is None and not all(look(path).exposure.seconds for path in paths):
         given = _find_list(paths)
         if given:
             click.echo(f"note: the exposure times are those of {given}", err=True)

@@ -67,7 +67,7 @@ class Header(NamedTuple):
 def look(path: str | Path) -> Header:
     """Return the Header of the photograph at `path`, or raise a ValueError for what is not one."""
     path = Path(path)
-    if raw.is_raw(path):
+    if path.suffix.lower() in raw.SUFFIXES:
         size, exposure = raw.look(path)
         return Header(path, "RAW", size, np.dtype(np.uint16), 1, exposure)
     with open(path, "rb") as file:

@@ -131,11 +131,6 @@ def read_bracket(
     return bracket(images, [seconds[j] for j in order], names, valid=valid, linear=linear)
 
 
-def have_times(paths: Sequence[Path]) -> bool:
-    """Return whether the EXIF of each photograph states its time."""
-    return all(look(path).exposure.seconds for path in paths)
-
-
 def photographs(paths: Paths) -> list[Path]:
     """Return the paths of a bracket: those given, or all photographs of a folder, sorted by name."""
     given = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
@@ -174,8 +169,7 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     >>> read_photo(path).tolist()
     [[0, 255], [0, 255]]
     """
-    suffix = require_suffix(path, PICTURES, "a picture file")
-    picture = as_picture(image)
+    suffix, picture = require_suffix(path, PICTURES, "a picture file"), as_picture(image)
     with replacing(path) as name:
         if suffix == ".png" and imagecodecs:  # run lengths, Paeth's filter: half of the time, fewer bytes
             name.write_bytes(imagecodecs.png_encode(picture, level=1, strategy=3, filter=128))

@@ -31,11 +31,6 @@ BAND_ROWS = 64
 Balance = tuple[float, float, float, float]
 
 
-def is_raw(path: str | Path) -> bool:
-    """Return whether the suffix is one of RAW photographs."""
-    return Path(path).suffix.lower() in SUFFIXES
-
-
 def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
     """Return the upright shape (H, W, 3) and the Exposure of the RAW file at `path`."""
     with _open(path) as file:

@@ -4,7 +4,6 @@ So a new operator is one new file, and everything that offers a choice finds it 
 same verb in a module of the same name, that one runs: its answer is the same, sooner.
 """
 
-import inspect
 from collections.abc import Callable
 from importlib import import_module
 from importlib.util import find_spec
@@ -43,16 +42,3 @@ def method(chapter: str, name: str | Callable[..., Any]) -> Callable[..., Any]:
     fast = find_spec(f"hdrlab.fast.{name}") and import_module(f"hdrlab.fast.{name}")
     own = getattr(fast, VERBS[chapter], None) if fast else None
     return own or getattr(import_module(f"hdrlab.{chapter}.{name}"), VERBS[chapter])
-
-
-def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, Any]) -> None:
-    """Raise a ValueError that lists a method's knobs where one of `knobs` is not among them."""
-    known = [
-        knob.name
-        for knob in inspect.signature(method(chapter, name)).parameters.values()
-        if knob.kind is knob.KEYWORD_ONLY
-    ]
-    for knob in knobs:
-        if knob not in known:
-            name = name if isinstance(name, str) else name.__module__.rpartition(".")[2]
-            raise ValueError(f"expected a knob of {name} out of {', '.join(known)}, got {knob!r}")

@@ -20,9 +20,7 @@ ADVICE = {"mtb": 'align by "auto", which rotates them too, or leave one out'}
 LEAVE = 'leave one out, or align by "none" if it is the scene that moved'
 
 
-def aligned(
-    bracket: Bracket, align: Method, response: Method = "auto", *, in_place: bool = False
-) -> Assembly:
+def aligned(bracket: Bracket, align: Method, response: Method = "auto", in_place: bool = False) -> Assembly:
     """Return the Assembly after alignment: by a method's name, a function, or "none"; see `moved`."""
     curve = cache(partial(provisional, bracket, response))  # found where it is asked for, and once
     H, pairs, notes = registered(bracket, align, curve)

@@ -11,9 +11,9 @@ Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV a
 from collections.abc import Sequence
 
 import numpy as np
-import scipy
 
 from hdrlab.core.arrays import describe
+from hdrlab.core.optional import scipy_optimize as optimize
 from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.types import F64, Array, ArrayLike
 
@@ -138,8 +138,7 @@ def _largest(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
     A = np.hstack([np.minimum(a, 0), np.maximum(a, 0)])
     alike = np.array([[-1, 0, 1, 0, -shape[1]], [0, -1, 0, 1, -shape[0]]])  # high - low = s (W, H)
     limits = [(None, None)] * 4 + [(0, None)]
-    wide = np.pad(A, ((0, 0), (0, 1)))
-    found = scipy.optimize.linprog([0, 0, 0, 0, -1], wide, b, alike, np.zeros(2), limits)
+    found = optimize.linprog([0, 0, 0, 0, -1], np.pad(A, ((0, 0), (0, 1))), b, alike, np.zeros(2), limits)
     if found.x is None:
         return [0, 0, -1, -1]  # nothing
     box = np.concatenate([np.ceil(found.x[:2] - 2 * SLACK), np.floor(found.x[2:4] + 2 * SLACK)])
