@@ -11,10 +11,10 @@ Cameras: all of Grossberg and Nayar's 201 curves, twice; nothing here was fitted
 ones, green, at 240 x 360 pixels, in turn. Photographs: three to seven of 8 bits, 1.2 to 2.3 stops apart, a
 well of 2 000 to 50 000 electrons and read noise of 1 to 20, drawn with the bracket's number.
 
-chi2     of real brackets, green, by the noise found in them: squares of X / t - E, over
-         variance + (rho E)^2, per degree of freedom. Asked are flat parts that two frames measure and where nothing moved, less
-         the hundredth of the pixels that differs most. 1 is what the model says; a camera that smooths or
-         sharpens before it writes JPEG, or a scanned film, need not keep to the model
+chi2     of real brackets, green, by the noise found in them: squares of X / t - E over variance + (rho E)^2,
+         per degree of freedom. Asked are flat parts that two frames measure and where nothing moved, less the
+         hundredth of the pixels that differs most. 1 is what the model says; a camera that smooths or
+         sharpens before it writes JPEG, or a scanned film, need not keep to it
 
 Three ways: the sensor known; its noise found in the photographs; and the response found in them, too.
 Figures by decades below the brightest light, 0 to 5.
