@@ -47,9 +47,7 @@ class Plan(NamedTuple):
 class Model(NamedTuple):
     """A camera's noise; the numbers here are those of a good one, and photon transfer finds them."""
 
-    full_well: float = (
-        20_000.0  # electrons of a full pixel at the lowest speed; at twice the speed half of it
-    )
+    full_well: float = 20_000.0  # electrons of a full pixel at the lowest speed; at twice the speed half
     read_noise: float = 5.0  # R, electrons, before the amplifier
     gain: float = 5.0  # K, electrons per level at the lowest speed; at twice the speed half of it
     converter_noise: float = 0.0  # q, levels, after the amplifier

@@ -1,13 +1,10 @@
 """One photograph, in two steps: look at its header, then decode its pixels straight into their place.
 
-What a file is, its first bytes say and not its suffix. JPEG and PNG are decoded by imagecodecs, which keeps
-all 16 bits (Pillow cuts RGB to 8) and writes into an array that is there; so is AVIF of more
-bits than 8. Pillow decodes WebP and other AVIF, pillow-heif HEIC, tifffile TIFF, hdrlab.io.raw RAW. Pillow
-reads EXIF. Colours of another space than sRGB are converted by their ICC profile, see hdrlab.io.profiles.
+What a file is, its first bytes say and not its suffix. Its pixels are decoded by hdrlab.io.codecs, those of
+RAW by hdrlab.io.raw. Pillow reads EXIF. Colours of another space than sRGB are converted by their ICC
+profile, see hdrlab.io.profiles.
 """
 
-import io
-import logging
 import re
 import warnings
 from collections.abc import Callable
@@ -17,14 +14,12 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import ExifTags, Image
 
-from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
+from hdrlab.core.optional import pillow_heif, tifffile
 from hdrlab.core.types import Array
 from hdrlab.io import profiles, raw
+from hdrlab.io.codecs import avif_depth, stored_pixels
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import check_size
-
-for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong
-    logging.getLogger(codec).addHandler(logging.NullHandler())
 
 # what the first bytes of a file of each kind are
 MAGIC = {"TIFF": rb"II\*\0|MM\0\*", "JPEG": rb"\xff\xd8\xff", "PNG": rb"\x89PNG\r\n\x1a\n"}
@@ -36,8 +31,6 @@ RATIOS = dict.fromkeys(("WEBP", "AVIF", "HEIF"), 1 << 16)
 # words that stand near the beginning of a file with a gain map: Adobe's, ISO 21496-1, Apple's
 GAIN_MAPS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
 LONGEST_HEADER = 1 << 18
-# of JPEG: what is neither a byte of coded pixels nor a restart within them
-MARKER = re.compile(rb"\xff([\x01-\xcf\xd8-\xfe])")
 MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
 # EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of Apple]
 BLENDED = (2, 3, 6, 7)
@@ -101,18 +94,6 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
         out[...] = pixels
 
 
-def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
-    """Return the pixels of a file of that kind as they are stored, or raise a ValueError if it is damaged."""
-    data = path.read_bytes()
-    try:
-        return DECODERS[kind](data, out)
-    except ModuleNotFoundError:  # no codec: the file may be good
-        raise
-    except Exception as error:  # on damaged files the codecs raise what they like
-        why = str(error)[:200] or type(error).__name__
-        raise ValueError(f"{path}: it is cut short or damaged ({why})") from None
-
-
 def upright(pixels: Array, orientation: int) -> Array:
     """Return stored pixels as they are to be seen: an EXIF orientation above 4 lies on its side."""
     turned = pixels.swapaxes(0, 1) if orientation > 4 else pixels
@@ -127,78 +108,6 @@ def opaque(path: Path, pixels: Array) -> Array:
     if (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
         raise ValueError(f"{path}: expected gray or RGB, got an alpha channel with transparent pixels")
     return pixels[..., 0] if pixels.shape[2] == 2 else pixels[..., :3]
-
-
-def jpeg_end(data: bytes, start: int = 0) -> int:
-    """Return where the JPEG that begins at `start` ends, whatever follows, such as a film or a gain map.
-
-    Raises
-    ------
-    ValueError
-        Where it has no end: libjpeg fills what is missing with gray, and only warns.
-    """
-    at = start + 2
-    while found := MARKER.search(data, at):
-        at = found.end()
-        if found[1] == b"\xd9":
-            return at
-        at += int.from_bytes(data[at : at + 2])
-    raise ValueError("no end of image after its last scan")
-
-
-def _jpeg(data: bytes, out: Array | None) -> Array:
-    data = data[: jpeg_end(data)]
-    return imagecodecs.jpeg8_decode(data, out=out) if imagecodecs else _pillow(data)
-
-
-def _png(data: bytes, out: Array | None) -> Array:
-    out = None if data[25] & 4 else out  # of the colour type: it has alpha, which `out` has not
-    return imagecodecs.png_decode(data, out=out) if imagecodecs or data[24] > 8 else _pillow(data)
-
-
-def _pillow(data: bytes, out: Array | None = None) -> Array:
-    """Decode 8 bits a channel: WebP and AVIF, and the others where imagecodecs is not installed."""
-    with Image.open(io.BytesIO(data), formats=("JPEG", "PNG", "WEBP", "AVIF")) as image:
-        return np.asarray(image)
-
-
-def _avif(data: bytes, out: Array | None) -> Array:
-    if (depth := avif_depth(data)) == 8 and not imagecodecs:
-        return _pillow(data)
-    pixels = imagecodecs.avif_decode(data, index=0)
-    return pixels if depth == 8 else _fill(pixels << (16 - depth), depth)
-
-
-def avif_depth(data: bytes) -> int:
-    """Return 8, 10 or 12 bits a channel: the flags high_bitdepth and twelve_bit [AV1-ISOBMFF 2.3]."""
-    at = data.find(b"av1C") + 6
-    return 8 + 2 * (data[at] >> 6 & 1) * (1 + (data[at] >> 5 & 1))
-
-
-def _heic(data: bytes, out: Array | None) -> Array:
-    image = pillow_heif.open_heif(io.BytesIO(data), convert_hdr_to_8bit=False)
-    pixels = np.asarray(image)
-    return pixels if pixels.dtype == np.uint8 else _fill(pixels, image.info["bit_depth"])
-
-
-def _fill(pixels: Array, depth: int) -> Array:
-    """Return levels of `depth` bits, which are the upper ones of 16, spread over all: white is 65535."""
-    return pixels | pixels >> depth
-
-
-def _tiff(data: bytes, out: Array | None) -> Array:
-    with tifffile.TiffFile(io.BytesIO(data)) as file:
-        page = file.pages.first
-        ends = map(sum, zip(page.dataoffsets, page.databytecounts, strict=True))
-        if max(ends, default=0) > len(data) or np.prod(page.chunks) > max(4 * np.prod(page.shape), 1 << 24):
-            raise ValueError("its pixels go past the end of the file, or its tiles far beyond its picture")
-        pixels = page.asarray()
-    if page.planarconfig == tifffile.PLANARCONFIG.SEPARATE and pixels.ndim == 3:
-        pixels = np.moveaxis(pixels, 0, -1)
-    return pixels.astype(pixels.dtype.newbyteorder("="), copy=False)
-
-
-DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff, "WEBP": _pillow, "AVIF": _avif, "HEIF": _heic}
 
 
 def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
@@ -216,8 +125,7 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
     except Exception as error:  # on damaged files Pillow raises what it likes
         raise ValueError(f"{path}: expected a photograph, its header is damaged ({error})") from None
     depth = info.get("bit_depth", depth)
-    if "transparency" in info:
-        mode = "an alpha channel"
+    mode = "an alpha channel" if "transparency" in info else mode
     if depth < 8 or mode not in ("L", "LA", "RGB", "RGBA", "I;16"):
         what = MODES.get(mode, mode) if depth >= 8 else f"{depth}-bit pixels"
         raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
@@ -251,13 +159,11 @@ def tiff_page(path: str | Path) -> TiffPage:
             kind = str(getattr(page.photometric, "name", page.photometric))[:40]
             size = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
             channels = int(page.samplesperpixel), len(page.extrasamples)
-            return TiffPage(
-                *size, *channels, np.dtype(page.dtype), kind, page.description, page.iccprofile or b""
-            )
+            dtype, icc = np.dtype(page.dtype), page.iccprofile or b""
+            return TiffPage(*size, *channels, dtype, kind, page.description, icc)
     except Exception as error:  # on damaged files tifffile raises what it likes
-        raise ValueError(
-            f"{path}: expected a photograph, its header is damaged ({str(error)[:200]})"
-        ) from None
+        why = str(error)[:200]
+        raise ValueError(f"{path}: expected a photograph, its header is damaged ({why})") from None
 
 
 def _look_tiff(path: Path, form: str, head: bytes) -> Header:

@@ -16,7 +16,7 @@ from PIL import Image
 from hdrlab import cli
 from hdrlab.core import gamut
 from hdrlab.fast.merge import merge
-from hdrlab.io import decode, files, photos, radiance, sequence, times, web
+from hdrlab.io import codecs, files, photos, radiance, sequence, times, web
 from hdrlab.io.maps import exr, rgbe
 
 LEVELS = np.arange(256)
@@ -176,7 +176,7 @@ def test_pictures_in_notebooks_are_read_as_pictures_alone():
 
 def test_a_photograph_too_large_for_the_memory_says_so(tmp_path, monkeypatch):
     photos.write_picture(tmp_path / "a.png", np.zeros((4, 5, 3), np.uint8))
-    monkeypatch.setitem(decode.DECODERS, "PNG", lambda *_: (_ for _ in ()).throw(MemoryError()))
+    monkeypatch.setitem(codecs.DECODERS, "PNG", lambda *_: (_ for _ in ()).throw(MemoryError()))
     with pytest.raises(ValueError, match=r"a\.png: it is cut short or damaged \(MemoryError\)"):
         photos.read_photo(tmp_path / "a.png")
 

@@ -12,7 +12,7 @@ import numpy as np
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.optional import tifffile
 from hdrlab.core.types import F32, ArrayLike
-from hdrlab.io import decode
+from hdrlab.io import codecs, decode
 from hdrlab.io.files import check_size, replacing
 
 KINDS = {1: "MINISBLACK", 3: "RGB"}  # channels without alpha, and what TIFF calls them
@@ -53,7 +53,7 @@ def read(path: str | Path) -> F32:
     >>> read(file).tolist()
     [[0.25, 1000000.0]]
     """
-    page, pixels = read_header(path), decode.stored_pixels(Path(path), "TIFF")
+    page, pixels = read_header(path), codecs.stored_pixels(Path(path), "TIFF")
     shape = (page.height, page.width, page.channels)
     if pixels.size != np.prod(shape):
         raise ValueError(f"{path}: it is damaged: expected {shape} samples, got {pixels.shape}")
