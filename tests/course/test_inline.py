@@ -1,6 +1,7 @@
 """Functions of the library, with all that they need of it, as text."""
 
 import ast
+import re
 
 import numpy as np
 import pytest
@@ -72,7 +73,10 @@ def test_of_a_docstring_the_first_paragraph_stays_for_the_sheet_has_the_rest():
 @pytest.mark.parametrize("task", TASKS, ids=lambda task: task.id)
 def test_a_solution_has_the_signature_of_its_sheet_and_neither_types_nor_guards(task):
     text = inline.inlined({task.id: task.function})[task.id].text
-    assert stubs.stub(task).splitlines()[0] in text
+    by_value = text
+    for name, value in re.findall(r"^([A-Z_]+) = (.+)$", text, re.MULTILINE):  # as the sheet has constants
+        by_value = by_value.replace(f"={name}", f"={value}")
+    assert stubs.stub(task).splitlines()[0] in by_value
     functions = [one for one in ast.walk(ast.parse(text)) if isinstance(one, ast.FunctionDef)]
     arguments = [one for node in functions for one in ast.walk(node.args) if isinstance(one, ast.arg)]
     assert not any(node.returns for node in functions) and not any(one.annotation for one in arguments)
