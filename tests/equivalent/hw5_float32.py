@@ -2,7 +2,9 @@
 
 # %%
 import numpy as np
-from scipy.ndimage import convolve1d
+from scipy.ndimage import binary_fill_holes, convolve1d
+from scipy.ndimage import label as connected
+from scipy.stats import rankdata
 
 f32 = np.float32
 
@@ -60,3 +62,99 @@ def pq(FD):
     Y = (np.asarray(FD, f32) / f32(10_000)) ** f32(2610 / 16384)
     quotient = (f32(0.8359375) + f32(18.8515625) * Y) / (f32(1) + f32(18.6875) * Y)
     return quotient ** f32(78.84375)
+
+
+# %% task="line"
+
+
+def line(S, V):
+    s, v = np.float32(S)[1:], np.float32(V)
+    x, y = s / v[1:], (v[1:] - v[0]) / v[1:]
+    return np.array([x @ y / (x @ x)])
+
+
+# %% task="brightness_transfer"
+
+
+def brightness_transfer(h_A, h_B):
+    n = np.size(h_B)
+
+    def cumulate(h):
+        return np.insert(np.cumsum(h), 0, 0) / np.sum(h)
+
+    middle = np.convolve(cumulate(h_A), [0.5, 0.5], "valid")
+    T = (np.interp(middle, cumulate(h_B), np.arange(n + 1)) - 0.5).astype(np.float32)
+    return np.where((T < 0.5) | (T > n - 1.5), np.float32(np.nan), T)
+
+
+# %% task="snr"
+
+
+def snr(g, *, least=0.01, span=4):
+    g = np.asarray(g, np.float32)
+    f = np.exp(g - g[len(g) // 2])
+    n = len(f)
+    index = np.arange(n)
+    a, b = np.maximum(index - span, 0), np.minimum(index + span, n - 1)
+    d = (f[b] - f[a]) / (b - a).astype(np.float32) * np.float32(n - 1) / (f[-1] - f[0])
+    d[d < least] = least
+    w = f / d
+    w[[0, n - 1]] = 0
+    return w
+
+
+# %% task="weight"
+
+
+def weight(F, powers=(1, 1, 1)):
+    F = np.asarray(F, np.float32)
+    Y = np.float32(0.299) * F[0] + np.float32(0.587) * F[1] + np.float32(0.114) * F[2]
+    L = np.zeros_like(Y)
+    L[1:] += Y[:-1] - Y[1:]
+    L[:-1] += Y[1:] - Y[:-1]
+    L[:, 1:] += Y[:, :-1] - Y[:, 1:]
+    L[:, :-1] += Y[:, 1:] - Y[:, :-1]
+    C, S = np.abs(L), np.std(F, axis=0, ddof=0)
+    E = np.exp(-12.5 * ((F - np.float32(0.5)) ** 2).sum(axis=0))
+    return (C ** powers[0] * S ** powers[1] * E ** powers[2]).tolist()
+
+
+# %% task="optimum"
+
+
+def optimum(EV_pre, B_pre, B_opt=0.18):
+    return np.float32(EV_pre) + np.log2(np.float32(B_pre) / np.float32(B_opt))
+
+
+# %% task="spot"
+
+
+def spot(shape, *, at=(0.5, 0.5), share=0.03):
+    z = (np.arange(shape[0])[:, None] - at[0] * shape[0] + 0.5) + 1j * (
+        np.arange(shape[1]) - at[1] * shape[1] + 0.5
+    )
+    ranks = rankdata(np.abs(z), method="ordinal").reshape(shape)
+    k = max(1, round(share * z.size))
+    return ((ranks <= k) / np.float32(k)).astype(np.float32).tolist()
+
+
+# %% task="dilate"
+
+
+def dilate(mask, margin):
+    H, W = mask.shape
+    padded = np.pad(mask, margin)
+    wide = np.zeros((H, W), bool)
+    for dy in range(2 * margin + 1):
+        for dx in range(2 * margin + 1):
+            if np.hypot(dy - margin, dx - margin) <= margin:
+                wide |= padded[dy : dy + H, dx : dx + W]
+    return binary_fill_holes(wide).astype(np.uint8)
+
+
+# %% task="label"
+
+
+def label(mask):
+    labels, _ = connected(mask, structure=np.ones((3, 3)))
+    return labels

@@ -40,7 +40,7 @@ def inverse_variance_merge(X, D, measured, t, N, R):
 # %% task="guided"
 
 
-def line(I, p, y, x, radius, epsilon):
+def fit(I, p, y, x, radius, epsilon):
     square = np.s_[max(0, y - radius) : y + radius + 1, max(0, x - radius) : x + radius + 1]
     i, wanted = I[square].ravel(), p[square].ravel()
     a = np.mean((i - i.mean()) * (wanted - wanted.mean())) / (i.var() + epsilon)
@@ -50,7 +50,7 @@ def line(I, p, y, x, radius, epsilon):
 def guided(I, p=None, *, radius, epsilon):
     p = I if p is None else p
     H, W = I.shape
-    found = np.array([[line(I, p, y, x, radius, epsilon) for x in range(W)] for y in range(H)])
+    found = np.array([[fit(I, p, y, x, radius, epsilon) for x in range(W)] for y in range(H)])
     q = np.zeros((H, W))
     for y in range(H):
         for x in range(W):
@@ -83,3 +83,132 @@ def pq(FD):
         power = (float(value) / 10_000) ** m1
         v[place] = ((c1 + c2 * power) / (1 + c3 * power)) ** m2
     return v
+
+
+# %% task="line"
+
+
+def line(S, V):
+    above = below = 0.0
+    for s, v in zip(S, V, strict=True):
+        weight = 1.0 / float(v) ** 2
+        above += weight * float(s) * (float(v) - float(V[0]))
+        below += weight * float(s) ** 2
+    return above / below
+
+
+# %% task="brightness_transfer"
+
+
+def brightness_transfer(h_A, h_B):
+    n = len(h_A)
+    total_a, total_b = float(sum(h_A)), float(sum(h_B))
+    T, below = np.full(n, np.nan), 0.0
+    for m in range(n):
+        rank = (below + h_A[m] / 2) / total_a
+        below += h_A[m]
+        lower = 0.0
+        for z in range(n):
+            upper = lower + h_B[z] / total_b
+            if lower <= rank <= upper and upper > lower:
+                if 0 < z < n - 1:
+                    T[m] = z - 0.5 + (rank - lower) / (upper - lower)
+                break
+            lower = upper
+    return T
+
+
+# %% task="snr"
+
+
+def snr(g, *, least=0.01, span=4):
+    n = len(g)
+    f = [math.exp(float(one)) for one in g]
+    mean = (f[-1] - f[0]) / (n - 1)
+    w = []
+    for z in range(n):
+        a, b = max(0, z - span), min(n - 1, z + span)
+        slope = (f[b] - f[a]) / (b - a)
+        w.append(f[z] / max(slope, least * mean))
+    w[0] = w[-1] = 0.0
+    return w
+
+
+# %% task="weight"
+
+
+def weight(F, powers=(1, 1, 1)):
+    _, H, W = F.shape
+    Y = 0.299 * F[0] + 0.587 * F[1] + 0.114 * F[2]
+    out = np.zeros((H, W))
+    for y in range(H):
+        for x in range(W):
+            r, g, b = (float(one) for one in F[:, y, x])
+            near = (
+                Y[max(y - 1, 0), x] + Y[min(y + 1, H - 1), x] + Y[y, max(x - 1, 0)] + Y[y, min(x + 1, W - 1)]
+            )
+            mean = (r + g + b) / 3
+            C = abs(near - 4 * Y[y, x])
+            S = math.sqrt(((r - mean) ** 2 + (g - mean) ** 2 + (b - mean) ** 2) / 3)
+            E = math.prod(math.exp(-((v - 0.5) ** 2) / (2 * 0.2**2)) for v in (r, g, b))
+            out[y, x] = C ** powers[0] * S ** powers[1] * E ** powers[2]
+    return out
+
+
+# %% task="optimum"
+
+
+def optimum(EV_pre, B_pre, B_opt=0.18):
+    return np.array([EV_pre + np.log(B_pre / B_opt) / np.log(2)])
+
+
+# %% task="spot"
+
+
+def spot(shape, *, at=(0.5, 0.5), share=0.03):
+    H, W = shape
+    place = at[0] * H, at[1] * W
+    near = sorted((math.dist((y + 0.5, x + 0.5), place), y, x) for y in range(H) for x in range(W))
+    count = max(1, round(share * H * W))
+    w = np.zeros((H, W))
+    for _, y, x in near[:count]:
+        w[y, x] = 1 / count
+    return w
+
+
+# %% task="dilate"
+
+
+def dilate(mask, margin):
+    H, W = mask.shape
+    wide = np.zeros((H + 2, W + 2), bool)
+    for y, x in zip(*np.nonzero(mask), strict=True):
+        for dy in range(-margin, margin + 1):
+            for dx in range(-margin, margin + 1):
+                if dy * dy + dx * dx <= margin * margin and 0 <= y + dy < H and 0 <= x + dx < W:
+                    wide[y + dy + 1, x + dx + 1] = True
+    outside, waiting = np.zeros_like(wide), [(0, 0)]
+    while waiting:
+        y, x = waiting.pop()
+        if 0 <= y < H + 2 and 0 <= x < W + 2 and not wide[y, x] and not outside[y, x]:
+            outside[y, x] = True
+            waiting += [(y + 1, x), (y - 1, x), (y, x + 1), (y, x - 1)]
+    return ~outside[1:-1, 1:-1]
+
+
+# %% task="label"
+
+
+def label(mask):
+    labels, count = np.zeros(mask.shape, int), 0
+    for start in np.argwhere(mask):
+        if labels[tuple(start)]:
+            continue
+        count += 1
+        waiting = [tuple(start)]
+        while waiting:
+            y, x = waiting.pop()
+            if 0 <= y < mask.shape[0] and 0 <= x < mask.shape[1] and mask[y, x] and not labels[y, x]:
+                labels[y, x] = count
+                waiting += [(y + a, x + b) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    return labels

@@ -2,6 +2,7 @@
 
 # %%
 import numpy as np
+from scipy.ndimage import binary_fill_holes, distance_transform_edt, maximum_filter
 
 # %% task="variance"
 
@@ -61,3 +62,94 @@ def pq(FD):
         Y = np.exp(2610 / 16384 * (np.log(FD) - np.log(1e4)))
     top, bottom = 3424 + 32 * 2413 * Y, 4096 + 32 * 2392 * Y
     return np.exp(128 * 2523 / 4096 * (np.log(top) - np.log(bottom)))
+
+
+# %% task="line"
+
+
+def line(S, V):
+    S, V = np.asarray(S, float), np.asarray(V, float)
+    slope, *_ = np.linalg.lstsq((S / V)[:, None], (V - V[0]) / V, rcond=None)
+    return slope[0]
+
+
+# %% task="brightness_transfer"
+
+
+def brightness_transfer(h_A, h_B):
+    a, b = np.asarray(h_A) / np.sum(h_A), np.asarray(h_B) / np.sum(h_B)
+    rank, top = np.cumsum(a) - a / 2, np.cumsum(b)
+    z = np.clip(np.searchsorted(top, rank), 0, len(b) - 1)
+    T = z - 0.5 + (rank - (top[z] - b[z])) / b[z]
+    T[(z == 0) | (z == len(b) - 1)] = np.nan
+    return T
+
+
+# %% task="snr"
+
+
+def snr(g, *, least=0.01, span=4):
+    f = np.exp(np.asarray(g, float))
+    z = np.arange(f.size)
+    low, high = (z - span).clip(0), (z + span).clip(max=f.size - 1)
+    slope = (f[high] - f[low]) / (high - low)
+    w = f / np.maximum(slope, least * (f[-1] - f[0]) / (f.size - 1))
+    w[0] = w[-1] = 0
+    return w / w.max()
+
+
+# %% task="weight"
+
+
+def weight(F, powers=(1, 1, 1)):
+    image = np.moveaxis(F, 0, -1).astype(np.float64)
+    Y = image @ [0.299, 0.587, 0.114]
+    C = abs(sum(np.roll(Y, step, axis) for step in (1, -1) for axis in (0, 1)) - 4 * Y)
+    S = np.sqrt(np.mean((image - image.mean(-1, keepdims=True)) ** 2, -1))
+    E = np.ones_like(Y)
+    for channel in range(3):
+        E *= np.exp(-((image[..., channel] - 0.5) ** 2) / (2 * 0.2**2))
+    measures = np.stack([C, S, E])
+    return np.prod(measures ** np.reshape(powers, (3, 1, 1)), axis=0)
+
+
+# %% task="optimum"
+
+
+def optimum(EV_pre, B_pre, B_opt=0.18):
+    return EV_pre + np.log2(B_pre) - np.log2(B_opt)
+
+
+# %% task="spot"
+
+
+def spot(shape, *, at=(0.5, 0.5), share=0.03):
+    y, x = np.indices(shape) + 0.5
+    d = (y - at[0] * shape[0]) ** 2 + (x - at[1] * shape[1]) ** 2
+    k = max(int(np.rint(share * d.size)), 1)
+    w = np.zeros(d.size)
+    w[np.argsort(d, axis=None, kind="stable")[:k]] = 1.0
+    return (w / w.sum()).reshape(shape)
+
+
+# %% task="dilate"
+
+
+def dilate(mask, margin):
+    if not mask.any():
+        return mask.copy()
+    return binary_fill_holes(distance_transform_edt(~mask) <= margin)
+
+
+# %% task="label"
+
+
+def label(mask):
+    own = np.where(mask, np.arange(1, mask.size + 1).reshape(mask.shape), 0)
+    while True:
+        wider = np.where(mask, maximum_filter(own, size=3), 0)
+        if np.array_equal(wider, own):
+            break
+        own = wider
+    values = np.unique(own[mask])
+    return np.where(mask, np.searchsorted(values, own) + 1, 0).astype(float)
