@@ -91,9 +91,8 @@ def register(
     if method not in METHODS:
         raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
     as_light = light_scale(images, times, g)
-    by_light = method in SEARCHES
     by_bits = starmap(best_percentile, photograph_pairs(images))
-    pairs = tuple(register_by_light(images, as_light, method) if by_light else by_bits)
+    pairs = tuple(register_by_light(images, as_light, method) if method in SEARCHES else by_bits)
     if method == "auto":
         names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]
         if any(one.apart for one in pairs):  # a hand that rotates once does so in every pair
@@ -175,9 +174,10 @@ def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
     """
     n = levels(images)
     seconds = None if times is None else as_times(times, len(images))
+    given = g if g is None or callable(g) else as_table(g, n)
 
     def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
-        table, curve = decode_srgb(np.arange(n) / (n - 1)), g() if callable(g) else g
+        table, curve = decode_srgb(np.arange(n) / (n - 1)), given() if callable(given) else given
         if curve is not None:
             table = np.exp(as_table(curve, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
         f_inv = table[:: (n - 1) // np.iinfo(dark.dtype).max]  # an overview has 8 bits
