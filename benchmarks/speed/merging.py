@@ -7,11 +7,13 @@ from unittest.mock import patch
 import numpy as np
 
 from benchmarks import data, peers
-from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
+from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, Usage, close, faster, smaller
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.types import Array
 from hdrlab.fast import merge
 from hdrlab.io.response_files import write_curve
+from hdrlab.radiance import uncertainty
+from hdrlab.radiance.merge import merge_with_quality
 
 
 def case(folder: Path, one: bool) -> Case:
@@ -68,12 +70,45 @@ def pfstools(bracket: Bracket, g: Array, folder: Path, one: bool) -> Run:
     return peers.pfs_run(["pfshdrcalibrate", "-f", str(response)], frames, one)
 
 
+PLAIN = "the plain merge"
+# electrons of a pixel at level n / 2, and of the amplifier
+ELECTRONS = {"N": 10_000.0, "R": 5.0}
+
+
+def deviation_case(folder: Path, one: bool) -> Case:
+    """Return the work of the mean by inverse variance with its standard deviation, beside the plain mean."""
+    bracket, truth, g = data.photographs(folder), data.scene(folder), data.response()
+
+    def ours() -> Array:
+        return uncertainty.merge_with_deviation(bracket.images, bracket.times, g, **ELECTRONS).E
+
+    def plain() -> Array:
+        return merge_with_quality(bracket.images, bracket.times, g).E
+
+    def error(who: str, E: Any) -> float | None:
+        return data.log_error(E, truth, bracket.images)
+
+    return Case({OURS: ours, PLAIN: plain}, {}, error, bracket.images.nbytes)
+
+
+def slower(results: Results) -> float:
+    """Return how many times as long as the plain merge the deviation takes."""
+    return results[OURS].seconds / results[PLAIN].seconds
+
+
 ROWS = (
     Row(
         "merge",
         f"radiance map of {data.FRAMES} photographs",
         case,
         (faster(6, 10), smaller(0.25), close(0.010, "RMS of log10 E / truth")),
+        "RMS of log10 E / truth",
+    ),
+    Row(
+        "deviation",
+        f"radiance map of {data.FRAMES} photographs with its standard deviation, both in the lesson's form",
+        deviation_case,
+        (Hold(f"times as long as {PLAIN}", slower, 1.6), close(0.010, "RMS of log10 E / truth")),
         "RMS of log10 E / truth",
     ),
 )
