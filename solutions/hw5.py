@@ -223,7 +223,7 @@ noise = np.array([4.0, 104, 210, 398, 612, 801, 1230, 1690])
 fitted = noise[0] + line(signal, noise) * signal
 pictures.picture(
     curves.lines(signal, {"measured": noise, "line": fitted}, across="S, levels", up="V, levels²"),
-    alt="Variance over signal: the line from the dark pair on passes below the two brightest, which err most",
+    alt="Variance over signal: the line from the dark pair on passes below the brightest, which errs most",
 )
 
 # %% [markdown] about="brightness_transfer"
@@ -243,7 +243,8 @@ pictures.picture(
 # The lowest level of $B$ holds all that is darker, and the highest all that is brighter. So $T(m)$ is NaN
 # where it falls on one of them: below $\frac{1}{2}$ or above $n - \frac{3}{2}$.
 #
-# (`h_A` and `h_B` (n,) are counts of pixels; their sums may differ. $T$ (n,) is not rounded.)
+# (`h_A` and `h_B` (n,) are counts of pixels; their sums may differ. $T$ (n,) is not rounded. Where $B$ has
+# empty levels, $H_B$ may have one rank along a stretch; any place of it will do, and no check asks.)
 
 # %% task="brightness_transfer"
 # Return T (n,), the level in B of what has level m in A, NaN where B's outer levels hold it.
@@ -283,7 +284,7 @@ levels = np.arange(256)
 sure = {f"gamma {gamma}": snr(gamma * np.log((levels + 0.5) / 256)) for gamma in (1.0, 1.8, 2.6)}
 pictures.picture(
     curves.lines(levels, sure, across="z, level", up="w"),
-    alt="w over the level: for all three gammas the same straight line, which falls to 0 at both ends",
+    alt="w over the level: for each gamma nearly a line, the steeper the smaller gamma, 0 at both ends",
 )
 
 # %% [markdown] about="weight"
@@ -319,8 +320,8 @@ pictures.picture(
 # ## 10 · What a meter asks for ({points})
 #
 # A picture taken at the exposure value $\mathrm{EV}_\text{pre}$ has the reading $B_\text{pre}$, a
-# brightness from 0 to 1; it should be $B_\text{opt}$, by default 0.18. The exposure value that brings it
-# there, in stops, is (Battiato and others, 2008, equation 1.2)
+# brightness above 0, up to 1; it should be $B_\text{opt}$, by default 0.18. The exposure value that brings it
+# there, in stops, of which one more halves the light, is (Battiato and others, 2008, equation 1.2)
 #
 # $$\mathrm{EV}_\text{opt} = \mathrm{EV}_\text{pre} + \log_2 B_\text{pre} - \log_2 B_\text{opt}.$$
 
@@ -333,8 +334,8 @@ pictures.picture(
 # It weights the pixels of a disc alike, and no others; all weights add up to 1. The middle of the disc is
 # `at`, how far down and how far right in parts of the picture (H, W): at row `at[0]` $H$ and column
 # `at[1]` $W$, where the pixel $(y, x)$ has its middle at $(y + \frac{1}{2}, x + \frac{1}{2})$. The disc
-# is made of the `share` $\cdot H W$ pixels, rounded, and at least one, whose middles are nearest to it,
-# measured in pixels.
+# is made of the `share` $\cdot H W$ pixels, rounded (a half either way), and at least one, whose middles
+# are nearest to it, measured in pixels.
 #
 # (`shape` is (H, W), and the answer $w$ (H, W). The checks ask for no two pixels that are equally near.)
 
@@ -355,7 +356,7 @@ pictures.picture(
 # Where something moved, a mask (H, W) marks pixels that the photographs contradict each other about.
 # Movement is seen at outlines, so the mask is widened: to it belongs every pixel of which the middle is
 # at most `margin` pixels from the middle of a pixel of the mask, by the straight line, and then all that
-# the mask encloses, its holes. (A hole is what no walk from pixel to neighbour, above, below, left or
+# the widened mask encloses, its holes. (A hole is what no walk from pixel to neighbour, above, below, left or
 # right, leads out of the picture from.)
 #
 # (`mask` is an array of bool, `margin` a whole number above 0. An empty mask stays empty. The answer is
