@@ -86,12 +86,12 @@ def inverse_variance_merge(
     (0.103, 0.019)
     """
     t = np.reshape(np.asarray(t, np.float64), (-1,) + (1,) * (X.ndim - 1))
-    E = x = X / t
+    E = X / t
     with np.errstate(divide="ignore", invalid="ignore"):
         for _ in range(1 + ROUNDS):
-            W = np.where(measured, t**2 / variance(E * t, D, N, R), 0)  # 1 / V
-            E = np.sum(W * x, axis=0) / np.sum(W, axis=0)
-        return E, 1 / np.sqrt(np.sum(W, axis=0))
+            V = np.where(measured, variance(E * t, D, N, R) / t**2, np.inf)
+            E = np.sum(X / t / V, axis=0) / np.sum(1 / V, axis=0)
+        return E, 1 / np.sqrt(np.sum(1 / V, axis=0))
 
 
 def merge_with_deviation(

@@ -48,7 +48,9 @@ def stub(task: Task, opening: str = "") -> str:
     arguments = ast.unparse(node.args)
     home = source.module(source.key_of(task.function).module).definitions
     for one in (*node.args.defaults, *node.args.kw_defaults):
-        given = home[one.id][-1] if isinstance(one, ast.Name) and one.id in home else None
+        if not isinstance(one, ast.Name):
+            continue
+        given = home[one.id][-1]
         if isinstance(given, ast.Assign):  # a constant, which a student has not: its value
             arguments = arguments.replace(f"={one.id}", f"={ast.unparse(given.value)}")
     beginning, *sections = SECTION.split(ast.get_docstring(node) or "")
