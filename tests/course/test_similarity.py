@@ -30,6 +30,8 @@ HW2 = plan.read().homeworks["hw2"]
 TASKS = [task.id for task in HW2.tasks]
 NOW = datetime(2026, 10, 20, tzinfo=UTC)
 MADE_APART = sorted((materials.folder("tests") / "equivalent").glob("*.py"))
+if not MADE_APART:
+    pytest.skip("no model solution is part of the source distribution", allow_module_level=True)
 LOOPS, GAUGE, FLOAT32 = (
     next(path.read_text() for path in MADE_APART if path.stem == f"hw2_{name}")
     for name in ("loops", "gauge", "float32")
