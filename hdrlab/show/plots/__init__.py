@@ -5,8 +5,8 @@ Z    pixel levels    (N, P): sample i in frame j
 lE   ln irradiance   (N,)
 B    ln exposure times (P,)
 
-Every function draws on `ax`, or on a new figure of its own, and
-returns the Axes; nothing is shown or written here.
+Every function draws on a new figure of its own, or on `ax` where it takes one, and returns the Axes; nothing
+is shown or written here.
 """
 
 from collections.abc import Sequence
@@ -23,6 +23,7 @@ from hdrlab.core.types import ArrayLike
 from hdrlab.show.plots import reuse
 
 Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure
+Ends = tuple[float, float] | None  # of an axis, where they are fixed
 
 # Okabe and Ito's colours. Line styles and markers differ too, so the channels also part in gray.
 CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072B2", ":"))
@@ -72,14 +73,20 @@ def bare(ax: Axes) -> Axes:
     return ax
 
 
-def fix_limits(
-    ax: Axes, span: tuple[float, float] | None = None, limits: tuple[float, float] | None = None
-) -> None:
+def fix_limits(ax: Axes, span: Ends = None, limits: Ends = None) -> None:
     """Fix the ends of x by `span` and those of y by `limits`, where given: a slider then moves no ticks."""
     if span is not None:
         ax.set_xlim(span)
     if limits is not None:
         ax.set_ylim(limits)
+
+
+def logarithmic(ax: Axes, which: str = "x", numbers: Any = "{x:g}") -> Axes:
+    """Return Axes of decades; minor ticks and powers in mathematical type take longer than all the rest."""
+    ax.set(**{f"{which}scale": "log"})
+    ax.minorticks_off()
+    getattr(ax, f"{which}axis").set_major_formatter(numbers)
+    return ax
 
 
 def with_legend(ax: Axes, place: Any) -> Axes:
@@ -101,9 +108,7 @@ def seconds(time: float) -> str:
     return f"1/{round(1 / time)} s"
 
 
-def response(
-    g: ArrayLike, *, label: str = "", span: tuple[float, float] | None = None, ax: Axes | None = None
-) -> Axes:
+def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | None = None) -> Axes:
     """Draw response curves, ln exposure across, pixel level up; one line per channel."""
     curves = np.asarray(g, dtype=np.float64)
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
@@ -118,13 +123,7 @@ def response(
 
 
 def samples(
-    Z: ArrayLike,
-    lE: ArrayLike,
-    B: ArrayLike,
-    *,
-    g: ArrayLike | None = None,
-    span: tuple[float, float] | None = None,
-    ax: Axes | None = None,
+    Z: ArrayLike, lE: ArrayLike, B: ArrayLike, *, g: ArrayLike | None = None, span: Ends = None
 ) -> Axes:
     """Draw each sample i as its points (lE_i + B_j, Z_ij): with the right lE they all lie on one curve, g.
 
@@ -133,7 +132,7 @@ def samples(
     Z, lE, B = np.asarray(Z), np.asarray(lE, dtype=np.float64), np.asarray(B, dtype=np.float64)
     if Z.ndim != 2 or Z.shape != lE.shape + B.shape:
         raise ValueError(f"expected Z (N, P), lE (N,) and B (P,), got {Z.shape}, {lE.shape} and {B.shape}")
-    ax, x = _exposure_axes(ax or axes(), span, 256), lE[:, None] + B
+    ax, x = _exposure_axes(axes(), span, 256), lE[:, None] + B
     if g is not None:  # above the points, which would hide it
         ax.plot(g, np.arange(len(np.asarray(g))), color="#1A1A1A", linewidth=1.5, zorder=3, label="g")
     if len(Z) <= len(SAMPLES):
@@ -144,9 +143,9 @@ def samples(
     return with_legend(ax, "upper left")
 
 
-def system(A: ArrayLike, *, ax: Axes | None = None) -> Axes:
+def system(A: ArrayLike) -> Axes:
     """Draw where a matrix is not zero: an equation across, an unknown down."""
-    A, ax = np.asarray(A), ax or axes(4.2, 5.4)
+    A, ax = np.asarray(A), axes(4.2, 5.4)
     ax.plot(*np.nonzero(A)[::-1], ".", color="#1A1A1A", markersize=2)
     ax.set(xlabel="unknown (column of A)", ylabel="equation (row of A)")
     ax.set(xlim=(-3, A.shape[1] + 2), ylim=(A.shape[0] + 2, -3))
@@ -171,7 +170,7 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
     return figure
 
 
-def _exposure_axes(ax: Axes, span: tuple[float, float] | None, n: int) -> Axes:
+def _exposure_axes(ax: Axes, span: Ends, n: int) -> Axes:
     ax.set(xlabel="ln exposure, ln(E t)", ylabel="pixel level Z", ylim=(-0.02 * n, 1.02 * n))
     fix_limits(ax, span)
     return ax

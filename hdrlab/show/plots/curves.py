@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.metrics import RELIABLE_LEVELS
-from hdrlab.show.plots import COLOURS, SAMPLES, axes, fix_limits, with_legend
+from hdrlab.show.plots import COLOURS, SAMPLES, Ends, axes, fix_limits, logarithmic, with_legend
 
 Dashes = str | tuple[int, tuple[float, ...]]
 STYLES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
@@ -33,7 +33,7 @@ def lines(
     *,
     across: str,
     up: str,
-    limits: tuple[float, float] | None = None,
+    limits: Ends = None,
     scale: str = "linear",
     legend: Any = "best",
     ax: Axes | None = None,
@@ -51,11 +51,10 @@ def lines(
         if np.shape(y) != x.shape:
             raise ValueError(f"expected {label} at the {x.shape} places, got {describe(y)}")
         ax.plot(x, y, linestyle=style, color=colour, linewidth=1.8, label=label)
-    ax.set(xlabel=across, ylabel=up, yscale=scale)
+    ax.set(xlabel=across, ylabel=up)
     fix_limits(ax, None, limits)
-    if scale == "log":  # minor ticks and powers in mathematical type take longer than all the rest
-        ax.minorticks_off()
-        ax.yaxis.set_major_formatter(_short)
+    if scale == "log":
+        logarithmic(ax, "y", _short)
     return with_legend(ax, legend)
 
 
@@ -65,12 +64,7 @@ def _short(x: float, _: object) -> str:
 
 
 def deviations(
-    found: Mapping[str, ArrayLike],
-    truth: ArrayLike,
-    *,
-    limit: float = 0.5,
-    span: tuple[float, float] | None = None,
-    ax: Axes | None = None,
+    found: Mapping[str, ArrayLike], truth: ArrayLike, *, limit: float = 0.5, span: Ends = None
 ) -> Axes:
     """Draw how many stops each g found lies above the true one, over exposure, at the levels 10 to 250.
 
@@ -78,7 +72,7 @@ def deviations(
     """
     stops = np.asarray(truth, np.float64)[RELIABLE_LEVELS] / np.log(2)
     off = {name: np.asarray(g)[RELIABLE_LEVELS] / np.log(2) - stops for name, g in found.items()}
-    ax = ax or axes()
+    ax = axes()
     ax.axhline(0, color="#808080", linewidth=1, zorder=1)
     for (colour, style), (name, y) in zip(LINES[1:], off.items(), strict=False):
         ax.plot(stops, y, linestyle=style, color=colour, linewidth=1.6, label=name)
@@ -87,11 +81,9 @@ def deviations(
     return with_legend(ax, "upper left")
 
 
-def bundle(
-    x: ArrayLike, many: ArrayLike, *, label: str, across: str, up: str, ax: Axes | None = None
-) -> Axes:
+def bundle(x: ArrayLike, many: ArrayLike, *, label: str, across: str, up: str) -> Axes:
     """Draw many curves (C, K) thin and alike, as a ground for a few with a name."""
-    many, ax = np.atleast_2d(many), ax or axes()
+    many, ax = np.atleast_2d(many), axes()
     paths = [np.column_stack([x, y]) for y in many]
     ax.add_collection(LineCollection(paths, colors="#56B4E9", linewidths=0.5, alpha=0.7, label=label))
     ax.autoscale_view()
@@ -99,9 +91,7 @@ def bundle(
     return with_legend(ax, "upper left")
 
 
-def quotients(
-    M: ArrayLike, fM: ArrayLike, R: ArrayLike, *, limits: tuple[float, float] = (0, 1), ax: Axes | None = None
-) -> Axes:
+def quotients(M: ArrayLike, fM: ArrayLike, R: ArrayLike) -> Axes:
     """Draw f(M_q) / f(M_q+1) of each two frames over M_q+1, and its ratio R as a line [Mitsunaga99 eq. 5].
 
     Samples that are NaN, for one of the two frames clips them, are left out.
@@ -110,13 +100,13 @@ def quotients(
     if M.shape != fM.shape or M.ndim != 2 or R.shape != (M.shape[1] - 1,):
         got = f"{M.shape}, {fM.shape} and {R.shape}"
         raise ValueError(f"expected M and f(M) (N, P) and R (P - 1,), got {got}")
-    ax = ax or axes()
+    ax = axes()
     for q, (colour, marker) in zip(range(len(R)), SAMPLES, strict=False):
         held = fM[:, q + 1] > 0
         ax.plot(M[held, q + 1], fM[held, q] / fM[held, q + 1], marker, color=colour, markersize=3)
         ax.plot([0, 1], [R[q], R[q]], color=colour, linewidth=1.4, label=f"R{chr(0x2081 + q)} = {R[q]:.3f}")
     ax.set(xlabel="brightness of the longer exposure, M", ylabel="quotient of exposures, f(M) / f(M)")
-    ax.set(xlim=(0, 1), ylim=limits)
+    ax.set(xlim=(0, 1), ylim=(0, 1))
     size = min(10, 42 / len(R))
     ax.legend(loc="lower center", bbox_to_anchor=(0.5, 1), ncols=len(R), fontsize=size, **NARROW)
     return ax

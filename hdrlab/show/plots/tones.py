@@ -22,7 +22,7 @@ from matplotlib.ticker import MaxNLocator
 from hdrlab.core.arrays import describe
 from hdrlab.core.colour import encode_srgb
 from hdrlab.core.types import F64, ArrayLike
-from hdrlab.show.plots import axes, scaled_axes, with_legend
+from hdrlab.show.plots import Ends, axes, scaled_axes, with_legend
 from hdrlab.show.plots.curves import LINES
 from hdrlab.show.plots.figures import MISSING, fit
 from hdrlab.show.plots.nearest import show
@@ -37,7 +37,7 @@ def maps(
     each: Mapping[str, ArrayLike],
     *,
     label: str,
-    span: tuple[float, float] | None = None,
+    span: Ends = None,
     signed: bool = False,
     names: Sequence[object] = (),
 ) -> Figure:
@@ -80,19 +80,13 @@ def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object
 
 
 def trims(
-    b: ArrayLike,
-    whole: ArrayLike,
-    f: ArrayLike,
-    *,
-    ceiling: float = np.inf,
-    top: float | None = None,
-    ax: Axes | None = None,
+    b: ArrayLike, whole: ArrayLike, f: ArrayLike, *, ceiling: float = np.inf, top: float | None = None
 ) -> Axes:
     """Draw a histogram as it was, pale, what the trims left of it, and the ceiling of the last trim.
 
     `top` fixes the axis: bins that are taller go beyond it, as the first few mostly do.
     """
-    b, whole, f, ax = np.asarray(b), np.asarray(whole), np.asarray(f), ax or axes()
+    b, whole, f, ax = np.asarray(b), np.asarray(whole), np.asarray(f), axes()
     if not (len(b) - 1 == len(whole) == len(f)):
         raise ValueError(f"expected bins with one edge more, got {len(f)} and {len(whole)}, {len(b)} edges")
     ax.stairs(whole, b, fill=True, color="#D0D0D0", label="as it was")
@@ -136,9 +130,7 @@ def _arrays(each: Mapping[str, ArrayLike]) -> list[F64]:
     return [fit(v, SIDE) for v in arrays]
 
 
-def _scale(
-    arrays: list[F64], span: tuple[float, float] | None, signed: bool, classes: int
-) -> tuple[Normalize, Any]:
+def _scale(arrays: list[F64], span: Ends, signed: bool, classes: int) -> tuple[Normalize, Any]:
     colours = matplotlib.colormaps[SIGNED if signed else SCALE].with_extremes(bad=MISSING)
     if classes:
         return BoundaryNorm(np.arange(classes + 1) - 0.5, colours.N), colours

@@ -23,7 +23,7 @@ SIZE = (4.4, 4.4)  # inches: a step across is as long as one up
 RINGS = (1.05, 1.2, 1.5, 2, 3, 4, 6, 9)  # of the least residual, or of 1/4 where that is less
 
 
-def circle(A: ArrayLike, *, marks: ArrayLike | None = None, reach: float = 3.0) -> Axes:
+def circle(A: ArrayLike, *, marks: ArrayLike | None = None) -> Axes:
     """Draw what A makes of the unit circle, and of two `marks` on it, its columns; with them the grid turns.
 
     Twelve dots tell the circle's points apart, so that a rotation of it can be seen.
@@ -33,7 +33,7 @@ def circle(A: ArrayLike, *, marks: ArrayLike | None = None, reach: float = 3.0) 
         raise ValueError(f"expected a finite matrix (2, 2), got {describe(A)}")
     angle = np.linspace(0, 2 * np.pi, 241)
     ring = A @ np.stack([np.cos(angle), np.sin(angle)])
-    ax = _plane(reach, "first component", "second component")
+    ax = _plane(3.0, "first component", "second component")
     ax.plot(*ring, color="#1A1A1A", linewidth=1.5)
     ends = np.eye(2) if marks is None else np.asarray(marks, np.float64)
     ax.scatter(ring[0, :-1:20], ring[1, :-1:20], c=np.arange(12), cmap="viridis", s=28, zorder=3)
@@ -74,12 +74,12 @@ def equations(
     return with_legend(ax, "lower left") if points else ax
 
 
-def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17, ax: Axes | None = None) -> Axes:
+def spectrum(each: Mapping[str, ArrayLike], *, least: float = 1e-17) -> Axes:
     """Draw singular values over their number, as shares of the largest; none stands below `least`.
 
     Decades are counted on a linear axis, which a slider draws again in half the time.
     """
-    ax = ax or axes()
+    ax = axes()
     if not 0 < len(each) < len(LINES):
         raise ValueError(f"expected 1 to {len(LINES) - 1} systems in one picture, got {len(each)}")
     for (colour, _), (_, marker), (name, sigma) in zip(LINES[1:], SAMPLES, each.items(), strict=False):

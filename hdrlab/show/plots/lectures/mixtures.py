@@ -14,7 +14,7 @@ from matplotlib.axes import Axes
 
 from hdrlab.calibration.blends import Blend, InverseResponse, difference
 from hdrlab.core.types import F64, ArrayLike
-from hdrlab.show.plots import SAMPLES, axes, with_legend
+from hdrlab.show.plots import SAMPLES, axes, logarithmic, with_legend
 from hdrlab.show.plots.curves import LINES
 
 
@@ -27,39 +27,33 @@ def samples(
     joined: InverseResponse | None = None,
     across: str = "relative irradiance, s I + r",
     scale: str = "linear",
-    ax: Axes | None = None,
 ) -> Axes:
     """Draw each blend's samples at (s I + r, 255 M), and the curve that joins them.
 
     Up to six blends have a colour and a marker each, and those of `names` a label; more are drawn alike.
     """
     scales, offsets = (np.broadcast_to(np.asarray(one, np.float64), (len(blends),)) for one in (s, r))
-    few, ax = len(blends) <= len(SAMPLES), ax or axes()
+    few, ax = len(blends) <= len(SAMPLES), axes()
     if joined is not None:  # above the samples, which would hide it
         ax.plot(joined.X, 255 * joined.M, color="#1A1A1A", linewidth=1.5, zorder=3, label="joined")
     for k, (one, own, start) in enumerate(zip(blends, scales, offsets, strict=True)):
         colour, marker = SAMPLES[k] if few else ("#0072B2", ".")
         label = names[k] if k < len(names) else None
         ax.plot(own * one.I + start, 255 * one.M, marker, color=colour, markersize=4, label=label)
-    ax.set(xlabel=across, ylabel="pixel level, 255 M", xscale=scale, ylim=(-5, 260))
+    ax.set(xlabel=across, ylabel="pixel level, 255 M", ylim=(-5, 260))
     if scale == "log":
-        ax.minorticks_off()
-        ax.xaxis.set_major_formatter("{x:g}")
+        logarithmic(ax)
     return with_legend(ax, "lower right") if names or joined is not None else ax
 
 
 def deviations(
-    found: Mapping[str, InverseResponse],
-    inverse: Callable[[F64], F64],
-    *,
-    limit: float = 4.0,
-    ax: Axes | None = None,
+    found: Mapping[str, InverseResponse], inverse: Callable[[F64], F64], *, limit: float = 4.0
 ) -> Axes:
     """Draw how far each curve lies from the camera's own inverse response, in percent of the range.
 
     Both go from 0 to 1 over the brightnesses measured [Wilburn08 sec. 5], so every line begins and ends at 0.
     """
-    ax = ax or axes()
+    ax = axes()
     ax.axhline(0, color="#808080", linewidth=1, zorder=1)
     if len(found) >= len(LINES):
         raise ValueError(f"expected at most {len(LINES) - 1} curves in one picture, got {len(found)}")

@@ -20,7 +20,7 @@ from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
 from hdrlab.capture.ranges import ExposedLevels
 from hdrlab.core.arrays import as_picture, describe
-from hdrlab.show.plots import axes, fix_limits, picture_axes, with_legend
+from hdrlab.show.plots import Ends, axes, fix_limits, logarithmic, picture_axes, with_legend
 from hdrlab.show.plots.nearest import show
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
@@ -40,11 +40,9 @@ def mark_lost(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[
     return shown
 
 
-def window(
-    L: ArrayLike, held: ExposedLevels, *, limits: tuple[float, float] | None = None, ax: Axes | None = None
-) -> Axes:
+def window(L: ArrayLike, held: ExposedLevels, *, limits: Ends = None) -> Axes:
     """Draw how the pixels of a scene spread over luminance, and which of them one exposure holds."""
-    L, ax = np.asarray(L, np.float64).ravel(), ax or axes()
+    L, ax = np.asarray(L, np.float64).ravel(), axes()
     if L.shape != np.shape(held.full) or not np.all(L > 0):
         raise ValueError(f"expected positive luminances {np.shape(held.full)}, got {describe(L)}")
     low, high = limits or (float(L.min()), float(L.max()) * 1.0001)
@@ -57,12 +55,12 @@ def window(
         ax.fill_between(edges, below, above, step="post", label=f"{label}: {mask.mean():.0%}", **style)
         below = above
     ax.set(xlabel="luminance, cd/m²", ylabel="pixels, %", xlim=(low, high), ylim=(0, None))
-    return _logarithmic(with_legend(ax, "upper right"))
+    return logarithmic(with_legend(ax, "upper right"))
 
 
-def staircase(L: ArrayLike, held: ExposedLevels, *, ax: Axes | None = None) -> Axes:
+def staircase(L: ArrayLike, held: ExposedLevels) -> Axes:
     """Draw the converter's level over luminance, and where nothing is told [Battiato08 fig. 1.10 to 1.12]."""
-    L, ax = np.asarray(L, np.float64), ax or axes()
+    L, ax = np.asarray(L, np.float64), axes()
     if L.shape != np.shape(held.Z) or L.ndim != 1:
         raise ValueError(f"expected luminances {np.shape(held.Z)}, got {describe(L)}")
     ax.step(L, held.Z, where="mid", color="#1A1A1A", linewidth=1.8)
@@ -73,30 +71,15 @@ def staircase(L: ArrayLike, held: ExposedLevels, *, ax: Axes | None = None) -> A
     ax.set(xlabel="luminance, any unit", ylabel="level of the converter", xlim=(L[0], L[-1]))
     if held.noise.any() or held.full.any():
         with_legend(ax, "upper left")
-    return _logarithmic(ax)
+    return logarithmic(ax)
 
 
-def _logarithmic(ax: Axes) -> Axes:
-    """Return Axes with decades across; minor ticks and powers in mathematical type would take longest."""
-    ax.set_xscale("log")
-    ax.minorticks_off()
-    ax.xaxis.set_major_formatter("{x:g}")
-    return ax
-
-
-def transfer(
-    found: Transfer,
-    *,
-    span: tuple[float, float] | None = None,
-    limits: tuple[float, float] | None = None,
-    ax: Axes | None = None,
-) -> Axes:
+def transfer(found: Transfer, *, span: Ends = None, limits: Ends = None) -> Axes:
     """Draw a photon transfer curve: variance over signal, the line through it, and what was left out.
 
     `span` and `limits` fix the axes, so that a slider turns the line and nothing else.
     """
-    ax = ax or axes()
-    S, V, used = np.maximum(found.S, 0), found.V, found.used
+    S, V, used, ax = np.maximum(found.S, 0), found.V, found.used, axes()
     ax.plot(S[used], V[used], "o", color="#D55E00", label="pairs that are used")
     ax.plot(S[~used], V[~used], "x", color="#0072B2", label="too near to a full well")
     line = np.array([0, S.max()])
@@ -116,7 +99,7 @@ def coverage(plan: Plan, low: float, high: float) -> Axes:
     count = len(plan.names)
     ax.set(xlabel="luminance, cd/m²", ylabel="photograph", yticks=range(count), ylim=(count - 0.5, -0.8))
     ax.set(xlim=(low / 200, high * 200), yticklabels=range(1, count + 1))
-    return _logarithmic(with_legend(ax, "lower right"))
+    return logarithmic(with_legend(ax, "lower right"))
 
 
 def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None) -> Axes:
@@ -126,10 +109,8 @@ def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None)
     ax.bar(x, counts, color="#0072B2", bottom=0.7)
     for at, count in zip(x, counts, strict=True):
         ax.annotate(f"{count:g}", (at, 0.7 + count), ha="center", va="bottom", fontsize=9)
-    ax.set(xlabel=across, ylabel=up, yscale="log", ylim=(0.7, limit or 3 * counts.max()), xticks=x)
-    ax.minorticks_off()
-    ax.yaxis.set_major_formatter("{x:g}")
-    return ax
+    ax.set(xlabel=across, ylabel=up, ylim=(0.7, limit or 3 * counts.max()), xticks=x)
+    return logarithmic(ax, "y")
 
 
 def draw_titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Axes:

@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
-from hdrlab.show.plots import SAMPLES, axes, fix_limits, with_legend
+from hdrlab.show.plots import SAMPLES, Ends, axes, fix_limits, with_legend
 from hdrlab.show.plots.curves import LINES
 
 
@@ -58,10 +58,10 @@ def comparagram(
     return ax
 
 
-def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike, *, ax: Axes | None = None) -> Axes:
+def ranks(h_A: ArrayLike, h_B: ArrayLike, m: int, T: ArrayLike) -> Axes:
     """Draw both cumulated histograms, and the way from level m of A at its rank across to T(m) of B."""
     H_A, H_B = (np.cumsum(h) / np.sum(h) for h in (h_A, h_B))
-    level, rank, ax = np.arange(len(H_A)), H_A[m] - np.diff(H_A, prepend=0)[m] / 2, ax or axes()
+    level, rank, ax = np.arange(len(H_A)), H_A[m] - np.diff(H_A, prepend=0)[m] / 2, axes()
     for (colour, style), H, name in zip(LINES[1:], (H_A, H_B), ("frame A", "frame B"), strict=False):
         ax.plot(level, 100 * H, linestyle=style, color=colour, drawstyle="steps-mid", label=name)
     z = float(np.asarray(T)[m])
@@ -84,9 +84,9 @@ def staircase(T: ArrayLike, s: ArrayLike) -> Axes:
     return with_legend(ax, "upper left")
 
 
-def ladders(found: Mapping[str, tuple[ArrayLike, float]], *, ax: Axes | None = None) -> Axes:
+def ladders(found: Mapping[str, tuple[ArrayLike, float]]) -> Axes:
     """Draw series (s, R) on logarithmic paper, level over stops, each with its best straight line."""
-    ax = ax or axes()
+    ax = axes()
     for (colour, style), (_, marker), (name, (s, R)) in zip(LINES[1:], SAMPLES, found.items(), strict=False):
         levels = np.asarray(s, np.float64)
         stops = np.arange(len(levels)) * np.log2(R)
@@ -106,15 +106,14 @@ def equations(
     k: float,
     *,
     against: float = 0.0,
-    span: tuple[float, float] | None = None,
-    limits: tuple[float, float] | None = None,
-    ax: Axes | None = None,
+    span: Ends = None,
+    limits: Ends = None,
 ) -> Axes:
     """Draw equations y = k x, less `against` times x, those thrown out pale, and the line of k.
 
     `span` and `limits` fix the axes, so that a slider moves the equations and nothing else.
     """
-    x, y, used, ax = np.asarray(x), np.asarray(y), np.asarray(used, bool), ax or axes()
+    x, y, used, ax = np.asarray(x), np.asarray(y), np.asarray(used, bool), axes()
     off, out = y - against * x, ~used
     ax.plot(x[out], off[out], "x", color="#999999", markersize=4, label=f"{out.sum()} thrown out")
     ax.plot(x[used], off[used], ".", color="#0072B2", markersize=5, label=f"{used.sum()} in use")
