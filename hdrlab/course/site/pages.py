@@ -10,15 +10,16 @@ import io
 import json
 import re
 from collections.abc import Mapping, Sequence
-from html import escape
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
+from markupsafe import Markup
 
-from hdrlab.course.site import cases, live, reference
+from hdrlab.course.site import live, reference
 from hdrlab.course.site.execute import Done, library_key
 from hdrlab.io import web
+from hdrlab.show.pages.templates import render_page
 from hdrlab.show.plots.figures import fit
 
 PAGES = Path(__file__).parent / "pages"
@@ -116,11 +117,13 @@ def _build(
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
     texts["index.md"] = _front(hero, titles, headings, html)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
-    texts |= {page.name: cases.illustrate(_linked(page.read_text("utf-8"), known)) for page in guides}
+    texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides}
     texts |= more
-    for name, text in texts.items():
-        live.write_changed(source / name, text.encode())
-    _forget(source, set(texts))
+    files = {name: text.encode() for name, text in texts.items()}
+    files |= {f"cases/{one.name}": one.read_bytes() for one in PAGES.glob("cases/*.webp")}
+    for name, content in files.items():
+        live.write_changed(source / name, content)
+    _forget(source, set(files))
     complaints = _sphinx(source, html, address)
     _forget_pages(html, set(texts), set(titles))
     _publish(html, out)
@@ -178,20 +181,10 @@ def _linked(text: str, known: set[str]) -> str:
 
 
 def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str], html: Path) -> str:
-    """Return the first page: its words, the widget, notebooks and handouts, and what the menu lists."""
-    cards = ""
-    for name, title in titles.items():
-        picture = f"{WIDGETS}/{name}.webp"
-        image = f'<img src="{picture}" alt="" width="480" height="320" loading="lazy">'
-        shown = image if (html / picture).exists() else ""
-        cards += f'<li><a href="notebooks/{name}.html">{shown}<span>{escape(title)}</span></a></li>\n'
-    text = (PAGES / "index.md").read_text("utf-8")
-    text = text.replace("<!-- front -->", hero.as_html(WIDGETS))
-    text = text.replace("<!-- notebooks -->", f'<ul class="cards">\n{cards}</ul>')
-    sheets = [f"- [{title}](assignments/{name}.ipynb)" for name, title in handouts.items()]
-    text = text.replace("<!-- handouts -->", "\n".join(sheets) or "This site has none.")
-    text = text.replace("<!-- sheets -->", "\n".join(f"assignments/{name}" for name in handouts))
-    return text.replace("<!-- titles -->", "\n".join(f"notebooks/{name}" for name in titles))
+    """Return the first page: a widget, a card for each notebook, and the handouts' titles."""
+    pictured = {name for name in titles if (html / WIDGETS / f"{name}.webp").exists()}
+    shown = {"hero": Markup(hero.as_html(WIDGETS)), "pictured": pictured, "pictures": WIDGETS}
+    return render_page(PAGES, "index.md", **shown, titles=titles, handouts=handouts)
 
 
 def _preview(hero: live.Live) -> bytes:

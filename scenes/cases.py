@@ -1,11 +1,14 @@
 """Pictures of brackets in which something went wrong, for the page on what `assemble` says of them.
 
-Each is a bracket of an embedded scene, three photographs side by side.
+Each is a bracket of an embedded scene, three photographs side by side. The site ships them:
+
+    python -m scenes.cases -o hdrlab/course/site/pages/cases
 """
 
-import re
+import argparse
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 from scipy.ndimage import gaussian_filter
@@ -14,7 +17,7 @@ from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.core.filters.warp import sample, turn
 from hdrlab.core.types import F32, Array
-from hdrlab.show import pictures
+from hdrlab.io import web
 
 SHAPE = (160, 240)
 # stops between two of the photographs
@@ -50,26 +53,32 @@ def walker(E: F32) -> list[Array]:
     return [take_three(scenes.compose(place, (0, 40 * j - 40)))[j] for j in range(3)]
 
 
-# by the name in the page: the scene, what happens to it, and what the picture shows
-CASES: dict[str, tuple[str, Callable[[F32], list[Array]], str]] = {
-    "times": ("workshop", partial(take_three, gains=(1, 1, 0.25)), "the last is no brighter for its time"),
-    "place": ("workshop", by_place, "in each the dark corners of the room were brightened by the camera"),
-    "corners": ("chapel", corners, "the corners of the last are darker than those of the others"),
-    "turned": ("workshop", turned, "the last is turned by four degrees"),
-    "moved": ("street", walker, "somebody walks past, and is elsewhere in each"),
-    "black": ("chapel", partial(take_three, gains=(1 / 256, 1, 1)), "the first is nearly black"),
+# by the name in the page: the scene, and what happens to it
+CASES: dict[str, tuple[str, Callable[[F32], list[Array]]]] = {
+    "times": ("workshop", partial(take_three, gains=(1, 1, 0.25))),
+    "place": ("workshop", by_place),
+    "corners": ("chapel", corners),
+    "turned": ("workshop", turned),
+    "moved": ("street", walker),
+    "black": ("chapel", partial(take_three, gains=(1 / 256, 1, 1))),
 }
 
 
-def show_case(name: str) -> str:
-    """Return the HTML of a case's three photographs, from short to long, with alternative text."""
-    scene, happens, shows = CASES[name]
+def main() -> None:
+    """Write the three photographs of each case, from short to long, as a WebP file of its name."""
+    parser = argparse.ArgumentParser(prog="python -m scenes.cases", description=__doc__)
+    parser.add_argument("-o", "--out", type=Path, required=True, help="the folder to write to")
+    out = parser.parse_args().out
+    for name in CASES:
+        (out / f"{name}.webp").write_bytes(web.encode_webp(draw_case(name)))
+
+
+def draw_case(name: str) -> Array:
+    """Return a case's three photographs side by side, from short to long."""
+    scene, happens = CASES[name]
     frames = happens(np.asarray(getattr(scenes, scene)(SHAPE), np.float32))
-    row = np.hstack([np.pad(Z, ((0, 0), (3, 3), (0, 0)), constant_values=255) for Z in frames])
-    alt = f"Three photographs of the {scene}, from short to long: {shows}."
-    return pictures.picture(row, alt=alt)._repr_html_()
+    return np.hstack([np.pad(Z, ((0, 0), (3, 3), (0, 0)), constant_values=255) for Z in frames])
 
 
-def illustrate(text: str) -> str:
-    """Return a page with the pictures of the cases it names: `<!-- case: times -->`."""
-    return re.sub(r"<!-- case: (\w+) -->", lambda found: show_case(found[1]), text)
+if __name__ == "__main__":
+    main()
