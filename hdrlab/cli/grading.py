@@ -41,7 +41,7 @@ def check(
     """
     from hdrlab.course.grading import Conditions
     from hdrlab.course.reports import feedback
-    from hdrlab.io.files import replacing
+    from hdrlab.io.files import write
 
     asked = _homework(submission, homework, plan)
     if task is not None:
@@ -52,9 +52,7 @@ def check(
     result = _graded(submission, asked, Conditions(tier="practice", draw=page is not None))
     click.echo(feedback.text(result, hints=hints))
     if page is not None:
-        with replacing(page) as temporary:
-            temporary.write_text(feedback.page(result), encoding="utf8")
-        click.echo(page)
+        click.echo(write(page, feedback.page(result)))
 
 
 @common.command()

@@ -54,6 +54,16 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
         raise
 
 
+def write(path: str | Path, content: str | bytes, *, private: bool = False) -> Path:
+    """Write a file whole or not at all, and return it; text in UTF-8, where half a character becomes a "?".
+
+    Its folder and a private file are as `replacing` has them.
+    """
+    with replacing(path, private=private) as temporary:
+        temporary.write_bytes(content.encode("utf8", "replace") if isinstance(content, str) else content)
+    return Path(path)
+
+
 def require_suffix(path: str | Path, known: Collection[str], what: str) -> str:
     """Return the suffix of a file's name in small letters, or raise a ValueError where it is not known."""
     suffix = Path(path).suffix.lower()

@@ -9,9 +9,7 @@ f  f^-1      exp g, the exposure of each level, in any unit
 The first keeps every bit, the second 10 digits.
 """
 
-from collections.abc import Callable
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 
@@ -23,13 +21,6 @@ from hdrlab.io.files import replacing, require_suffix
 
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
 UNIT = " (ln exposure)"
-
-
-class Form(NamedTuple):
-    """How a kind of file is written, and how it is read; what was read is yet to be checked."""
-
-    write: Callable[[Path, F64], None]
-    read: Callable[[Path], F64]
 
 
 def write_curve(path: str | Path, g: ArrayLike) -> None:
@@ -53,10 +44,10 @@ def write_curve(path: str | Path, g: ArrayLike) -> None:
     >>> read_curve(path)[[64, 128]].round(3)
     array([-1.525,  0.   ])
     """
-    form = FORMS[suffix_of(path)]
+    write, _ = FORMS[suffix_of(path)]
     g = as_curve(g)
     with replacing(path) as temporary:
-        form.write(temporary, g)
+        write(temporary, g)
 
 
 def read_curve(path: str | Path) -> F64:
@@ -85,12 +76,12 @@ def read_curve(path: str | Path) -> F64:
     >>> read_curve(path)[[0, 128, 255]].round(3)
     array([-4.86 ,  0.   ,  0.685])
     """
-    form = FORMS[suffix_of(path)]
+    _, read = FORMS[suffix_of(path)]
     size = Path(path).stat().st_size
     if size > MAX_FILE_BYTES:
         raise ValueError(f"{path}: expected a response of at most {MAX_FILE_BYTES} bytes, got {size}")
     try:
-        g = as_curve(form.read(Path(path)))
+        g = as_curve(read(Path(path)))
     except ValueError as error:
         raise ValueError(f"{path}: {error}") from None
     return g - g[len(g) // 2]
@@ -143,4 +134,5 @@ def _read_csv(path: Path) -> F64:
     return pfscurves.squeeze_gray(table[:, 1:])
 
 
-FORMS = {".csv": Form(_write_csv, _read_csv), ".m": Form(pfscurves.write_pfstools, pfscurves.read_pfstools)}
+# how each is written and read, by its suffix
+FORMS = {".csv": (_write_csv, _read_csv), ".m": (pfscurves.write_pfstools, pfscurves.read_pfstools)}

@@ -66,11 +66,16 @@ def _command(job: Path, empty: Path, files: Sequence[Path]) -> list[str]:
     return [sys.executable, "-P", "-m", "pytest", *options, *map(str, files)]
 
 
+def import_path() -> str:
+    """Return the PYTHONPATH of a process that is to import this very hdrlab."""
+    return os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
+
+
 def _environment(folder: Path) -> dict[str, str]:
     """Return this process's environment but for what could change a score; its scratch is in the folder."""
     kept = {name: value for name, value in os.environ.items() if name not in UNWANTED}
     own = {
-        "PYTHONPATH": os.pathsep.join(filter(None, [str(LIBRARY.parent), kept.get("PYTHONPATH")])),
+        "PYTHONPATH": import_path(),
         "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
         "PYTHONDONTWRITEBYTECODE": "1",
         "OPENBLAS_NUM_THREADS": "1",

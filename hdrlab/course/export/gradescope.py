@@ -9,14 +9,13 @@ from collections.abc import Iterator
 from importlib.metadata import requires
 from pathlib import Path
 
-import hdrlab
 from hdrlab.course import plan as plans
 from hdrlab.course.archives.packing import packed
+from hdrlab.course.checks.running import LIBRARY
 from hdrlab.course.material import materials
 from hdrlab.course.plan import Plan, Task
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 
-LIBRARY = Path(hdrlab.__file__).parent
 SKIPPED = (".pyc", ".ipynb")
 LARGE = ("scenes/chapel.exr", "scenes/street.exr", "scenes/workshop.exr")  # no check needs them
 SCRIPTS = Path(__file__).parent / "gradescope_files"  # which Gradescope runs
@@ -48,10 +47,7 @@ def export(
             **{f"hidden/{one.name}": one.read_bytes() for one in own},
             **{name: data for task in plan.homeworks[name].tasks for name, data in _own(task)},
         }
-        target = folder / f"{name}_autograder.zip"
-        with replacing(target) as temporary:
-            temporary.write_bytes(packed(files, PROGRAMS))
-        yield target
+        yield write(folder / f"{name}_autograder.zip", packed(files, PROGRAMS))
 
 
 def _own(task: Task) -> Iterator[tuple[str, bytes]]:

@@ -24,7 +24,7 @@ from hdrlab.course.code.closure import Cell
 from hdrlab.course.material import materials, stubs
 from hdrlab.course.plan import ByHand, Homework, Plan, Task
 from hdrlab.course.submission import cells_of
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 
 KERNEL = {
     "kernelspec": {"display_name": "Python 3 (ipykernel)", "language": "python", "name": "python3"},
@@ -230,9 +230,7 @@ def _tidy(ran: dict[str, Any]) -> dict[str, Any]:
 def write_text(file: Path, text: str) -> Path:
     """Write a file of the course, whole or not at all, and return it."""
     file.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(file) as temporary:
-        temporary.write_text(text, encoding="utf8")
-    return file
+    return write(file, text)
 
 
 @cache

@@ -10,19 +10,12 @@ from hdrlab.course.classroom import imitation
 from hdrlab.course.material.handouts import write_text
 from hdrlab.course.plan import Plan
 
-HEAD = """# Model solutions
-
-For instructors: do not hand them out. Each homework is there filled in, as a notebook and as a Python file;
-`hdrlab check hw2.py` gives it all points. A task's function is the library's own, and its file tells more.
-
-| homework | task | points | lines | the library's function |
-|---|---|---|---|---|
-"""
+HEAD = Path(__file__).with_name("solutions_head.md")  # of the table of what is in the pack
 
 
 def write(plan: Plan, folder: Path) -> Iterator[Path]:
     """Write the pack into a folder, which is made where it is missing, and yield each file."""
-    table = HEAD
+    table = HEAD.read_text("utf8")
     for name, homework in plan.homeworks.items():
         cells = imitation.texts(homework)
         yield write_text(folder / f"{name}.py", imitation.script(cells))

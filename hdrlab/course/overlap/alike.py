@@ -21,7 +21,7 @@ from hdrlab.course.overlap.authored import Work
 from hdrlab.course.overlap.similarity import Likeness, Pair, Printed
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 from hdrlab.show.pages.templates import templates
 
 PAGE = "alike_page.html"
@@ -63,8 +63,7 @@ def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) ->
         for one, other, share, forth, back in found.pairs[:ROWS]
     ]
     sheets.write_csv(out / "similar.csv", COLUMNS, table, private=True)
-    with replacing(out / "similar.html", private=True) as temporary:
-        temporary.write_text(page(homework, each, found), encoding="utf8")
+    write(out / "similar.html", page(homework, each, found), private=True)
 
 
 def library(homework: Homework) -> str:

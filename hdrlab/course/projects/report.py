@@ -17,7 +17,7 @@ from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
 from hdrlab.io import photos, radiance, response_files
 from hdrlab.io.decode import look
 from hdrlab.io.exif_exposure import Exposure
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 from hdrlab.show import plots
 from hdrlab.show.pages import sections
 from hdrlab.show.pages.templates import render_page
@@ -67,10 +67,7 @@ def write_report(project: Project) -> Written:
     title = said.title or project.about.title or project.folder.resolve().name
     shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
     text = render_page(Path(__file__).parent, TEMPLATE, **shown)
-    page = project.folder / PAGE
-    with replacing(page) as temporary:
-        temporary.write_text(text, encoding="utf8")
-    return Written(page, tuple(found), tuple(notes))
+    return Written(write(project.folder / PAGE, text), tuple(found), tuple(notes))
 
 
 def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:

@@ -9,13 +9,12 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import hdrlab
+from hdrlab.course.archives import packing
 from hdrlab.course.projects import privacy
 from hdrlab.course.projects.project import MANIFEST, Project
 from hdrlab.io.files import replacing
 
 VERSION = 1
-PACKED = {".jpg", ".jpeg", ".png", ".zip", ".gz", ".webp", ".exr"}  # which another compression only slows
-ZERO = (1980, 1, 1, 0, 0, 0)  # the same files make the same archive
 
 
 class Packed(NamedTuple):
@@ -71,16 +70,10 @@ def write(project: Project, archive: Path, files: list[Packed], *, now: datetime
         "photographs": [project.name(path) for path in project.photographs],
         "files": {one.name: hashlib.sha256(one.data).hexdigest() for one in files},
     }
-    manifest = Packed(MANIFEST, (json.dumps(described, indent=1, ensure_ascii=False) + "\n").encode())
+    manifest = (json.dumps(described, indent=1, ensure_ascii=False) + "\n").encode()
     with replacing(archive) as temporary:
-        with zipfile.ZipFile(temporary, "w") as opened:
-            for one in [manifest, *files]:
-                stored = Path(one.name).suffix.lower() in PACKED
-                info = zipfile.ZipInfo(one.name, ZERO)
-                info.external_attr = 0o100644 << 16
-                opened.writestr(info, one.data, zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED)
-        digest = hashlib.sha256(temporary.read_bytes()).hexdigest()
-    return digest
+        packing.write(temporary, {MANIFEST: manifest, **{one.name: one.data for one in files}})
+        return hashlib.sha256(temporary.read_bytes()).hexdigest()
 
 
 def is_archive(path: Path) -> bool:

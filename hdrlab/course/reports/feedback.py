@@ -4,7 +4,8 @@ Everything that a student wrote, or that their function said, is text here: it i
 and the page forbids scripts besides. Of a hidden check the outcome alone is shown.
 """
 
-from functools import cache
+import re
+from functools import cache, partial
 from pathlib import Path
 
 import jinja2
@@ -14,6 +15,7 @@ from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 
+FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 MARKS = {"holds": "✓", "fails": "✗", "no answer": "✗"}
 
 
@@ -25,17 +27,17 @@ def fragment(result: Result, *, private: bool = False) -> str:
     result : Result
     private : whether the reader is the instructor, who sees what hidden checks say, too
     """
-    return str(_environment().get_template("feedback.html").module.whole(result, private, True))  # type: ignore[attr-defined]
+    return str(environment().get_template("feedback.html").module.whole(result, private, True))  # type: ignore[attr-defined]
 
 
 def bar(points: float, whole: float, what: str, unit: str = "points") -> str:
     """Return how far something has come, as a piece of a page."""
-    return str(_environment().get_template("feedback.html").module.bar(points, whole, what, unit))  # type: ignore[attr-defined]
+    return str(environment().get_template("feedback.html").module.bar(points, whole, what, unit))  # type: ignore[attr-defined]
 
 
 def page(result: Result, *, private: bool = False) -> str:
     """Return a Result as a page, complete in itself: it fetches nothing and runs nothing."""
-    return _environment().get_template("feedback_page.html").render(result=result, private=private).lstrip()
+    return environment().get_template("feedback_page.html").render(result=result, private=private).lstrip()
 
 
 def text(result: Result, *, hints: int = 0, private: bool = False) -> str:
@@ -81,7 +83,9 @@ def _pictures(drawing: Drawing) -> list[tuple[str, str, str]]:
 
 
 @cache  # a class has many pages, and the templates are translated once
-def _environment() -> jinja2.Environment:
-    environment = templates(Path(__file__).parent)
-    environment.filters |= {"pictures": _pictures, "number": number, "points": results.points}
-    return environment
+def environment() -> jinja2.Environment:
+    """Return the templates of a Result, with the filters that they use."""
+    found = templates(Path(__file__).parent)
+    found.filters |= {"pictures": _pictures, "number": number, "points": results.points}
+    found.filters["xml"] = partial(FORBIDDEN.sub, "")
+    return found

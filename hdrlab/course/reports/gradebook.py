@@ -4,16 +4,13 @@ Whatever a student wrote stays text in them: XML without control characters, cel
 """
 
 import json
-import re
 from collections.abc import Iterable
 from pathlib import Path
-from xml.etree import ElementTree
 
 from hdrlab.course.reports import feedback, results, sheets
 from hdrlab.course.reports.results import Check, Result
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 
-FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
 COLUMNS = ("student", "homework", "tier", "score", "max_score")
 FILES = ("result.json", "gradescope.json", "junit.xml", "result.csv", "feedback.html")
 
@@ -55,25 +52,7 @@ def _gradescope_test(check: Check, result: Result) -> dict[str, object]:
 
 def junit(result: Result) -> bytes:
     """Return JUnit's XML: a suite for each task, a case for each promise."""
-    broken = [one for one in result.checks if one.outcome != "holds"]
-    counts = {"tests": str(len(result.checks)), "failures": str(len(broken)), "errors": "0"}
-    root = ElementTree.Element("testsuites", {"name": _clean(result.homework), **counts})
-    for task in result.tasks:
-        checks = result.of(task)
-        failures = sum(one.outcome != "holds" for one in checks)
-        counts = {"tests": str(len(checks)), "failures": str(failures), "errors": "0"}
-        suite = ElementTree.SubElement(root, "testsuite", {"name": _clean(task), **counts})
-        for one in checks:
-            case = ElementTree.SubElement(suite, "testcase", {"classname": task, "name": _clean(one.promise)})
-            if one.outcome != "holds":
-                why = ElementTree.SubElement(case, "failure", {"message": one.outcome})
-                why.text = "" if one.hidden else _clean(one.message)
-    ElementTree.indent(root)
-    return bytes(ElementTree.tostring(root, "utf-8", xml_declaration=True)) + b"\n"
-
-
-def _clean(text: str) -> str:
-    return FORBIDDEN.sub("", text)
+    return feedback.environment().get_template("junit.xml").render(result=result).encode()
 
 
 def table(graded: Iterable[Result]) -> str:
@@ -102,6 +81,5 @@ def write_results(folder: Path, result: Result, shown: bytes | None = None) -> l
         "result.json": results.to_json(result) if shown is None else shown,
     }
     for name, data in contents.items():
-        with replacing(folder / name, private=True) as temporary:
-            temporary.write_bytes(data)
+        write(folder / name, data, private=True)
     return [folder / name for name in FILES]

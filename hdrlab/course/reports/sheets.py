@@ -11,7 +11,7 @@ import re
 from collections.abc import Iterable, Sequence
 from pathlib import Path
 
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 
 Cell = str | int | float | None
 FORMULA = re.compile(r"^\s*[=+\-@\uFF0B\uFF0D\uFF1D\uFF20|%]")  # the wide forms are taken for the narrow ones
@@ -49,10 +49,7 @@ def write_csv(
 
     A private one is for its owner's eyes from the first byte on: links that vote, grades.
     """
-    path = Path(path)
-    with replacing(path, private=private) as temporary:
-        temporary.write_text(csv_text(header, rows), encoding="utf-8-sig", newline="")
-    return path
+    return write(path, csv_text(header, rows).encode("utf-8-sig"), private=private)
 
 
 def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]:

@@ -16,20 +16,7 @@ from hdrlab.course.sandbox import practice, tiers
 from hdrlab.course.sandbox.running import Unavailable
 
 TRIES = 3  # of a tier that does not start: somebody may have ended it
-BREAK_OUT = """
-import ctypes, os
-def tried(secret, target):
-    libc = ctypes.CDLL(None)
-    done = []
-    if libc.open(secret, 0) >= 0: done.append("a file of the grader could be read")
-    if libc.open(target, 0o101, 0o600) >= 0: done.append("a file could be written")
-    libc.unlink(target)
-    if libc.socket(2, 1, 0) >= 0: done.append("a socket could be made")
-    child = libc.fork()
-    if child == 0: os._exit(0)
-    if child > 0: done.append("a process could be started")
-    return done
-"""
+BREAK_OUT = Path(__file__).with_name("break_out.txt").read_text("utf8")  # a function that tries
 REMEDIES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("remedies.toml").read_text("utf8"))
 
 

@@ -15,10 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-import hdrlab
+from hdrlab.course.checks.running import LIBRARY, import_path
 from hdrlab.io.files import replacing
 
-LIBRARY = Path(hdrlab.__file__).parent
 PATIENCE = 600  # seconds for a cell
 STORED = "400"  # pictures of a slider, for a page on which no Python answers
 QUIET = ["--IPKernelApp.log_level=40"]  # errors: a kernel warns of its own connections otherwise
@@ -131,8 +130,7 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
 
 def _environment(folder: Path) -> dict[str, str]:
     """Return an environment in which the kernel imports this very hdrlab, and writes nothing at home."""
-    path = os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
-    own = {"PYTHONPATH": path, "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": STORED}
+    own = {"PYTHONPATH": import_path(), "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": STORED}
     return {**os.environ, **own}
 
 

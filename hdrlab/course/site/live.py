@@ -14,8 +14,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.io import web
-from hdrlab.io.files import replacing
+from hdrlab.io import files, web
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
@@ -109,8 +108,7 @@ def write_changed(path: Path, content: bytes) -> None:
     """Write a file, unless it holds just this: so its time tells whether a page must be made again."""
     path.parent.mkdir(parents=True, exist_ok=True)
     if not path.exists() or path.read_bytes() != content:
-        with replacing(path) as temporary:
-            temporary.write_bytes(content)
+        files.write(path, content)
 
 
 def _outputs(notebook: Any) -> Iterator[Any]:

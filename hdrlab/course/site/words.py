@@ -4,25 +4,20 @@ In a formula stands \lambda, in a text the letter itself, and in code a lambda t
 """
 
 import re
+from pathlib import Path
 
 from sphinx.search.en import SearchEnglish
 
 GREEK = {"α": "alpha", "β": "beta", "γ": "gamma", "λ": "lambda", "μ": "mu", "σ": "sigma", "τ": "tau"}
 CODE = re.compile(r"\blambda\b[\w ,*=.]*:")  # Python's own
 CALL = re.compile(r"\b([A-Za-z])\(([A-Za-z])(?:_\{?\w+\}?)?\)")  # g(Z), and of one pixel g(Z_{ij})
+SPLIT = Path(__file__).with_name("split_query.js")  # the same in the browser
 
 
 class Words(SearchEnglish):
     """English, g(Z) and λ."""
 
-    js_splitter_code = (
-        f"const greek = {GREEK};"
-        + r"""
-var splitQuery = (query) =>
-  query.replace(/[α-ω]/g, (letter) => ` ${greek[letter] ?? letter} `)
-    .match(/(?<![\p{L}\p{N}_])[a-z]\([a-z]\)|[\p{L}\p{N}_]+/giu) ?? [];
-"""
-    )
+    js_splitter_code = f"const greek = {GREEK};\n{SPLIT.read_text('utf8')}"
 
     def split(self, text: str) -> list[str]:
         """Return the words of a text; a function of a letter is one word, beside its two letters."""

@@ -13,7 +13,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.metrics import Truth
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.show.pages import sections
 from hdrlab.show.pages.templates import render_page
@@ -63,9 +63,7 @@ def write_report(
     page = Path(folder) / PAGE
     text = _page(assembly, np.asarray(picture), recipe, truth)
     page.parent.mkdir(parents=True, exist_ok=True)
-    with replacing(page) as temporary:
-        temporary.write_text(text, encoding="utf8", errors="replace")
-    return page
+    return write(page, text)
 
 
 def _page(

@@ -17,7 +17,7 @@ import time
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from hdrlab.course.checks.running import LIBRARY
+from hdrlab.course.checks.running import import_path
 from hdrlab.course.sandbox.inside import system
 
 TICK = 0.2  # seconds between two looks at whether it is to be ended
@@ -63,7 +63,7 @@ def run(
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
-            env=os.environ | {"PYTHONPATH": _path(), "TMPDIR": scratch},
+            env=os.environ | {"PYTHONPATH": import_path(), "TMPDIR": scratch},
         )
         with process:
             try:
@@ -78,10 +78,6 @@ def run(
     failed.killed = -code in (signal.SIGTERM, KILLED)
     failed.own = answer[:12] == b"-MemoryError" or (code < 0 and not failed.killed)
     raise failed
-
-
-def _path() -> str:
-    return os.pathsep.join(filter(None, [str(LIBRARY.parent), os.environ.get("PYTHONPATH")]))
 
 
 def _answer(
