@@ -5,6 +5,7 @@ What is asked for: complete source, a report, the photographs with their EXIF, t
 
 import ast
 import json
+import os
 import re
 import sys
 from collections.abc import Callable, Iterator
@@ -22,7 +23,7 @@ from hdrlab.io import radiance
 from hdrlab.io.decode import look
 
 TEAM = 2  # students at most
-Said = tuple[bool, str]  # whether it is as it should be, and a sentence
+FETCHED = re.compile(r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""")
 
 
 class Finding(NamedTuple):
@@ -35,33 +36,41 @@ class Finding(NamedTuple):
 
 def review(project: Project) -> list[Finding]:
     """Return what there is to say of each part that is asked for."""
-    return [Finding(part, *one) for part, check in CHECKS.items() for one in check(project)]
+    return [one for part, check in CHECKS.items() for one in _examined(project, part, check)]
 
 
-def _students(project: Project) -> Iterator[Said]:
+def _examined(project: Project, part: str, check: Callable[[Project], str]) -> list[Finding]:
+    """Return what a check says of a part: all is well, or each thing that is not, by names in the folder."""
+    try:
+        right = check(project)
+    except ValueError as wrong:
+        said = [str(one).replace(f"{project.folder}{os.sep}", "") for one in wrong.args]
+        return [Finding(part, False, one) for one in said]
+    return [Finding(part, True, right)] if right else []
+
+
+def _students(project: Project) -> str:
     students = project.about.students
     if not students:
-        yield (False, f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
-    elif len(students) > TEAM:
-        yield (False, f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
-    else:
-        yield (True, " and ".join(students))
+        raise ValueError(f"Write a file {ABOUT} that says who you are:\n{EXAMPLE}")
+    if len(students) > TEAM:
+        raise ValueError(f"Teams are of {TEAM}, {ABOUT} names {len(students)}.")
+    return " and ".join(students)
 
 
-def _title(project: Project) -> Iterator[Said]:
+def _title(project: Project) -> str:
     if project.about.students and not project.about.title:
-        yield False, f'Give your artifact a title: title = "..." in {ABOUT}.'
+        raise ValueError(f'Give your artifact a title: title = "..." in {ABOUT}.')
+    return ""
 
 
-def _source(project: Project) -> Iterator[Said]:
+def _source(project: Project) -> str:
     if not project.sources:
-        yield (False, "There is no source: put your programs and notebooks into the folder.")
-        return
+        raise ValueError("There is no source: put your programs and notebooks into the folder.")
     wrong = [one for path in project.sources for one in _unreadable(project, path)]
-    wrong += _foreign(project)
-    yield from ((False, one) for one in wrong)
-    if not wrong:
-        yield (True, f"{len(project.sources)} files")
+    if wrong := wrong + _foreign(project):
+        raise ValueError(*wrong)
+    return f"{len(project.sources)} files"
 
 
 def _unreadable(project: Project, path: Path) -> Iterator[str]:
@@ -92,88 +101,73 @@ def _foreign(project: Project) -> list[str]:
     ]
 
 
-def _report(project: Project) -> Iterator[Said]:
+def _report(project: Project) -> str:
     if project.page is None:
-        yield (False, f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
-        return
+        raise ValueError(f"There is no {PAGE}. `hdrlab report` makes one of report.md.")
+    wrong = []
     if project.words and project.words.stat().st_mtime > project.page.stat().st_mtime:
-        yield (False, f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again.")
+        wrong = [f"{project.words.name} is newer than {PAGE}: run `hdrlab report` again."]
     text = project.page.read_text(encoding="utf8", errors="replace")
     heads = " ".join(re.findall(r"<h[1-6][^>]*>(.*?)</h[1-6]>", text, re.DOTALL | re.IGNORECASE))
-    missing = [name for name, says in ASKED.items() if not re.search(says, heads, re.IGNORECASE)]
-    fetched = re.findall(
-        r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""", text
-    )
-    if missing:
-        yield (False, f"{PAGE} has no heading about: {', '.join(missing)}.")
-    if fetched:
-        yield (False, f"{PAGE} fetches {fetched[0][:80]}, which may be gone when it is read.")
-    if not (missing or fetched):
-        yield (True, PAGE)
+    if missing := [name for name, says in ASKED.items() if not re.search(says, heads, re.IGNORECASE)]:
+        wrong.append(f"{PAGE} has no heading about: {', '.join(missing)}.")
+    if fetched := FETCHED.search(text):
+        wrong.append(f"{PAGE} fetches {fetched[1][:80]}, which may be gone when it is read.")
+    if wrong:
+        raise ValueError(*wrong)
+    return PAGE
 
 
-def _photographs(project: Project) -> Iterator[Said]:
-    if len(project.photographs) < 2:
-        count = len(project.photographs)
-        yield (False, f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
-        return
+def _photographs(project: Project) -> str:
+    count = len(project.photographs)
+    if count < 2:
+        raise ValueError(f"Put your bracket into the folder {ALBUMS[0]}: it holds {count}.")
     wrong, exposures = [], set()
     for path in project.photographs:
         try:
             header = look(path)
         except ValueError as error:
-            wrong.append(f"{str(error).replace(str(path), project.name(path))}.")
+            wrong.append(f"{error}.")
             continue
         if header.exposure.seconds is None:
-            wrong.append(
-                f"{project.name(path)} has no exposure time in its EXIF. Take the camera's own file."
-            )
+            wrong.append(f"{path} has no exposure time in its EXIF. Take the camera's own file.")
         exposures.add(header.exposure)
     if not wrong and len(exposures) == 1:
         wrong = ["All photographs have the same exposure, which makes no bracket."]
-    yield from ((False, one) for one in wrong)
-    if not wrong:
-        yield (True, f"{len(project.photographs)}, {len(exposures)} exposures")
+    if wrong:
+        raise ValueError(*wrong)
+    return f"{count}, {len(exposures)} exposures"
 
 
-def _map(project: Project) -> Iterator[Said]:
+def _map(project: Project) -> str:
     if project.map is None:
-        yield (False, "There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
-        return
-    try:
-        E = radiance.read_radiance(project.map, clean=True)
-    except ValueError as error:
-        yield (False, str(error).replace(str(project.map), project.name(project.map)))
-        return
+        raise ValueError("There is no radiance map. Save it as map.hdr, map.exr or map.pfm.")
+    E = radiance.read_radiance(project.map, clean=True)
     if not np.any(E > 0) or E.max() == E.min():
-        yield (False, f"{project.name(project.map)} holds one value everywhere.")
-    else:
-        yield (True, f"{project.name(project.map)}, {E.shape[1]} x {E.shape[0]}")
+        raise ValueError(f"{project.name(project.map)} holds one value everywhere.")
+    return f"{project.name(project.map)}, {E.shape[1]} x {E.shape[0]}"
 
 
-def _artifact(project: Project) -> Iterator[Said]:
+def _artifact(project: Project) -> str:
     if project.artifact is None:
-        yield (False, "There is no artifact. Save your best picture as artifact.jpg.")
-        return
-    try:
-        height, width = look(project.artifact).shape[:2]
-    except ValueError as error:
-        yield (False, str(error).replace(str(project.artifact), project.name(project.artifact)))
-        return
-    yield (True, f"{project.name(project.artifact)}, {width} x {height}")
+        raise ValueError("There is no artifact. Save your best picture as artifact.jpg.")
+    height, width = look(project.artifact).shape[:2]
+    return f"{project.name(project.artifact)}, {width} x {height}"
 
 
-def _archive(project: Project, limits: Limits = LIMITS) -> Iterator[Said]:
-    """Yield what would make the course refuse the archive."""
+def _archive(project: Project, limits: Limits = LIMITS) -> str:
+    """Return "", unless the course would refuse the archive."""
     members = [Member(PurePosixPath(project.name(path)), path.stat().st_size) for path in project.files]
     try:
         check_names([MANIFEST, *(str(path) for path, _ in members)], limits)
         check_sizes(members, limits.total, limits)
     except Refused as reason:
-        yield (False, f"The archive would be refused: {reason}.")
+        raise ValueError(f"The archive would be refused: {reason}.") from None
+    return ""
 
 
-CHECKS: dict[str, Callable[[Project], Iterator[Said]]] = {
+# each returns a sentence on what is right, if any, or raises a ValueError of all that is wrong
+CHECKS: dict[str, Callable[[Project], str]] = {
     **{"students": _students, "title": _title, "source": _source, "report": _report},
     **{"photographs": _photographs, "map": _map, "artifact": _artifact, "archive": _archive},
 }
