@@ -18,7 +18,7 @@ nox.options.sessions = [QUICK]
 EXTRAS = {"scenes": "test,scenes", "papers": "test,bench", "coverage": "test,cover"}
 # in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
 # (in a browser they need not: what is dear there, the site, is one for all workers)
-TOGETHER = ("jupyterlab", "grading", "papers", "scenes", "wheel")
+TOGETHER = ("jupyterlab", "papers", "scenes", "wheel")
 
 
 def test(session: nox.Session, tier: str, *options: str) -> None:
@@ -26,7 +26,7 @@ def test(session: nox.Session, tier: str, *options: str) -> None:
     if session.virtualenv.is_sandboxed:
         session.install("--editable", f".[{EXTRAS.get(session.name, 'test')}]")
     if tier in TOGETHER:
-        options = (*options, "--dist=loadscope")
+        options = (*options, "--dist=loadscope", "--no-loadscope-reorder")
     if results := os.environ.get("HDRLAB_RESULTS"):
         options = (*options, f"--junitxml={results}/{tier}.xml")
     session.run("python", "-m", "pytest", f"--tier={tier}", *options, *session.posargs)

@@ -10,15 +10,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import runs
 import threadpoolctl
 from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from PIL import Image
-from tiers import ALL, QUICK, TIERS, may_hold, tier_of
+from tiers import ALL, QUICK, TIERS, may_hold, tier_of, turn
 
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
-from hdrlab.course.site import execute
 
 pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
@@ -60,11 +60,12 @@ def pytest_ignore_collect(collection_path, config):
 
 
 def pytest_collection_modifyitems(config, items):
-    """Leave out the tests of other tiers."""
+    """Leave out the tests of other tiers, and bring forward what is to begin first."""
     if config.option.tier != ALL:
         others = [item for item in items if tier_of(item.nodeid) != config.option.tier]
         config.hook.pytest_deselected(items=others)
         items[:] = [item for item in items if tier_of(item.nodeid) == config.option.tier]
+    items.sort(key=lambda item: turn(item.nodeid))
 
 
 def pytest_unconfigure():
@@ -135,10 +136,12 @@ def seven_frames(decades):
 @pytest.fixture(scope="session")
 def kept(tmp_path_factory):
     """Where executed notebooks are kept: in the folder HDRLAB_EXECUTED, or in one of these tests alone."""
-    return Path(os.environ.get("HDRLAB_EXECUTED") or tmp_path_factory.mktemp("executed"))
+    base = tmp_path_factory.getbasetemp()
+    shared_by_workers = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+    return Path(os.environ.get("HDRLAB_EXECUTED") or shared_by_workers / "notebooks-that-were-run")
 
 
 @pytest.fixture(scope="session")
 def executed(kept):
-    """executed(path) -> the file of this notebook as it was run, from the top, in a kernel of its own."""
-    return lambda path: next(execute.run_steps([path], kept, jobs=1)).executed
+    """executed(path) -> the notebook as it was run from the top: its file, and its untrue sentences."""
+    return lambda path: runs.run_once(path, kept)

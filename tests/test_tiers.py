@@ -9,13 +9,13 @@ from pathlib import Path
 import pytest
 import results
 import threadpoolctl
-from tiers import ALL, QUICK, TIERS, may_hold, tier_of
+from tiers import ALL, FIRST, QUICK, TIERS, may_hold, tier_of, turn
 
 ROOT = Path(__file__).parents[1]
 STARTS = [start for starts in TIERS.values() for start in starts]
 
 
-@pytest.mark.parametrize("start", STARTS)
+@pytest.mark.parametrize("start", [*STARTS, *FIRST])
 def test_what_a_tier_lists_is_there(start):
     file, _, test = start.partition("::")
     there = [ROOT / file] if file.endswith("/") else list(ROOT.glob(f"{file}*"))
@@ -29,6 +29,11 @@ def test_the_longest_start_counts():
     assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestThree::test_a") == "browser"
     assert tier_of("tests/browser/test_notebooks_in_jupyterlab.py::TestOthers0::test_a") == "jupyterlab"
     assert len(set(STARTS)) == len(STARTS)
+
+
+def test_what_is_long_has_its_turn_before_the_others():
+    addresses = ["tests/core/test_blur.py::test_a", *(f"{start}::test_a" for start in reversed(FIRST))]
+    assert sorted(addresses, key=turn) == [*reversed(addresses[1:]), addresses[0]]
 
 
 def test_a_test_that_is_named_nowhere_is_quick_and_its_file_is_read():

@@ -23,22 +23,6 @@ TIERS = {
     ),
     "notebooks": (
         "tests/test_notebooks_run.py",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[00",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[02",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[03",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[04",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[05",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[06",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[08",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[10",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[11",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[12",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[16",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[18",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[20",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[21",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[23",
-        "tests/test_sentences.py::test_each_sentence_is_true_of_its_notebook[24",
         "tests/cli/test_faults.py::test_a_disk_that_refuses_is_told_in_a_line[site",
         "tests/cli/test_faults.py::test_a_site",
         "tests/course/test_handouts.py::test_building_writes_both",
@@ -161,6 +145,17 @@ TIERS = {
     "wheel": ("tests/test_wheel.py",),
 }
 QUICK, ALL = "quick", "all"
+# begun first, in this order: what is long, or what the others of its tier wait for; begun last, one worker
+# would be busy with it alone
+FIRST = (
+    "tests/browser/test_site_in_a_browser.py",
+    "tests/course/test_killed.py",
+)
+
+
+def turn(address: str) -> int:
+    """Return when a test's turn is: the place in FIRST of how its address begins, or behind them all."""
+    return next((k for k, start in enumerate(FIRST) if address.startswith(start)), len(FIRST))
 
 
 def tier_of(address: str) -> str:

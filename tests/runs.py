@@ -1,0 +1,61 @@
+"""A notebook is run once: what came of it is kept, and its sentences are judged in the same kernel."""
+
+import hashlib
+import json
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import NamedTuple
+
+import nbformat
+
+from hdrlab.course.site import execute
+from hdrlab.io.files import replacing
+
+HERE = Path(__file__).parent
+SENTENCES = HERE / "test_sentences.py"
+# behind the last cell of a notebook: what its names say of its sentences
+JUDGE = """import json as _json, sys as _sys
+_sys.path.append({here!r})
+import test_sentences as _sentences
+print(_json.dumps(_sentences.untrue({stem!r}, dict(globals()))))"""
+
+
+class Ran(NamedTuple):
+    """A notebook that was run: its file with outputs, and its sentences that are not true, each with why."""
+
+    executed: Path
+    untrue: list[str]
+
+
+def run_once(path: Path, kept: Path) -> Ran:
+    """Run a notebook from the top, in a kernel of its own, unless this very one has been run before.
+
+    It is kept where `hdrlab site` would keep it in its cache.
+    """
+    key = execute._key(path, execute.library_key())
+    executed = kept / "executed" / f"{path.stem}-{key}.ipynb"
+    judged = (
+        kept
+        / "judged"
+        / f"{hashlib.sha256(executed.name.encode() + SENTENCES.read_bytes()).hexdigest()}.json"
+    )
+    if not (executed.exists() and judged.exists()):
+        notebook, untrue = _run(path)
+        for file, text in ((judged, json.dumps(untrue)), (executed, nbformat.writes(notebook))):
+            file.parent.mkdir(parents=True, exist_ok=True)
+            with replacing(file) as temporary:
+                temporary.write_text(text, encoding="utf8")
+    return Ran(executed, json.loads(judged.read_text(encoding="utf8")))
+
+
+def _run(path: Path) -> tuple[nbformat.NotebookNode, list[str]]:
+    """Return a notebook with its outputs, and which of its sentences are untrue."""
+    with TemporaryDirectory(prefix="run-") as folder:
+        notebook = nbformat.read(path, as_version=4)
+        notebook.cells.append(nbformat.v4.new_code_cell(JUDGE.format(here=str(HERE), stem=path.stem)))
+        judging = Path(folder) / path.name
+        nbformat.write(notebook, judging)
+        (done,) = execute.run_steps([judging], Path(folder), jobs=1)
+        notebook = nbformat.read(done.executed, as_version=4)
+    (said,) = notebook.cells.pop().outputs
+    return notebook, json.loads(said.text)
