@@ -35,6 +35,8 @@ GROUPS, FEWEST = 80, 60
 FLAT = 0.4
 # ln S by which a group may err for other reasons than that it is small
 MODEL = 0.1
+# of the square of a difference of two errors of variance 1: its median
+MEDIAN = 0.91
 # from where the fit may begin, and how far it may go: ln of 1 / N, (R / N)^2 and rho^2
 STARTS = np.log([[1e-4, 1e-7, 1e-6], [1e-3, 1e-8, 1e-8], [1e-2, 1e-4, 1e-6]])
 LIMITS = np.log([[1e-9, 1e-16, 1e-12], [10.0, 10.0, 1.0]])
@@ -146,7 +148,7 @@ def _fit(Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int) -> tup
             f"got {len(S)} groups of pixels, of at least 6"
         )
     N, R, rho = _solve(S, a0, np.array(a), count)
-    return N, R, np.sqrt(rho**2 + max(float(np.median(bias - S / count)), 0.0))
+    return N, R, np.sqrt(rho**2 + max(float(np.median(bias - S / count)), 0.0) / MEDIAN)
 
 
 def _solve(S: F64, a0: F64, a: F64, count: F64) -> tuple[float, float, float]:

@@ -30,13 +30,8 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
     image = np.asarray(image, np.float32)
     if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
         raise ValueError(f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}")
-    h = _spacing(sigma)
+    h = 2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1  # the largest power of two up to sigma / 2
     return _direct(image, sigma) if h == 1 else _coarse(image, sigma, h)
-
-
-def _spacing(sigma: float) -> int:
-    """Return h, the largest power of two that is at most sigma / 2; 1 below sigma = 4."""
-    return 2 ** int(np.log2(sigma / 2)) if sigma >= 4 else 1
 
 
 def _taps(sigma: float, *, reach: float = 4) -> F32:

@@ -12,8 +12,8 @@ from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.merge import Quality
 from hdrlab.radiance.uncertainty import merge_with_deviation
 
-# levels of all frames that are merged at once
-STRIP = 1 << 18
+# that are merged by one thread at a time
+ROWS = 64
 
 
 def measure_deviation(state: Assembly) -> Assembly:
@@ -30,8 +30,7 @@ def measure_deviation(state: Assembly) -> Assembly:
         noise = estimate_noise(images, times, state.g, state.E)
     except ValueError as error:
         return state._replace(s=np.full_like(state.E, np.inf), notes=(*state.notes, f"not sure: {error}"))
-    rows = max(1, STRIP // max(1, images[:, 0].size))
-    strips = [images[:, first : first + rows] for first in range(0, len(state.E), rows)]
+    strips = np.array_split(images, range(ROWS, len(state.E), ROWS), axis=1)
     with ThreadPoolExecutor() as pool:
         merged = list(pool.map(lambda one: merge_with_deviation(one, times, state.g, *noise), strips))
     E, s = (np.concatenate(parts) for parts in zip(*merged, strict=True))

@@ -25,6 +25,8 @@ from hdrlab.core.types import F32, F64, Mask
 from hdrlab.radiance.merge import TOP, as_tables, bound
 
 ROUNDS = 2
+# a full well with this many deviations of read noise too few still measures nothing
+FULL = 5
 
 
 class Sure(NamedTuple):
@@ -144,10 +146,12 @@ def merge_with_deviation(
         one = np.asarray(value, np.float64)
         if one.shape not in ((), c.shape) or not np.all((one >= floor) & (one < np.inf)):
             raise ValueError(f"expected {name} of at least {floor:g}, one or one a channel, got {value}")
-    table = np.exp(curves)
-    D = np.gradient(table, axis=0)[Z, c]
-    measured = (Z < top) & ((Z > 0) | (D < np.asarray(R) / N))
-    E, s = inverse_variance_merge(table[Z, c], D, measured, t, N, R)
-    E = np.where(measured.any(axis=0), E, bound(Z, np.log(t), curves, top, np.ones(Z.shape, bool))[0])
+    table, steps, R = np.exp(curves), np.gradient(np.exp(curves), axis=0), np.asarray(R, np.float64)
+    E, s = np.empty((2, *Z.shape[1:]))
+    for y, row in enumerate(Z.swapaxes(0, 1)):  # the processor's cache holds one
+        X, D = table[row, c], steps[row, c]
+        measured = (X < np.minimum(table[top], table[-1] - FULL * R / N)) & ((row > 0) | (D < R / N))
+        E[y], s[y] = inverse_variance_merge(X, D, measured, t, N, R)
+        E[y] = np.where(measured.any(axis=0), E[y], bound(row, np.log(t), curves, top, row >= 0)[0])
     s = np.hypot(s, np.asarray(rho) * E)
     return Sure(*(one.reshape(stack.shape[1:]).astype(np.float32) for one in (E, s)))

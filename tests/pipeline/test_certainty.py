@@ -52,7 +52,7 @@ def test_where_something_moved_or_glare_was_removed_nothing_is_sure(assembly):
 def test_strips_do_not_show(assembly, monkeypatch):
     _, state = assembly
     whole = pipeline.measure_deviation(state)
-    monkeypatch.setattr(certainty, "STRIP", 50_000)
+    monkeypatch.setattr(certainty, "ROWS", 7)
     parts = pipeline.measure_deviation(state)
     assert np.array_equal(parts.E, whole.E) and np.array_equal(parts.s, whole.s)
 

@@ -110,6 +110,16 @@ def test_black_is_a_measurement_where_the_noise_is_wider_than_its_step(R, counts
     assert (found.E < alone.E) == (found.s < alone.s) == counts
 
 
+def test_a_full_well_that_reads_a_little_less_than_the_top_measures_nothing():
+    maker = camera.Camera(response="linear", bits=16, full_well=2_500, read_noise=20)  # 0.8 % of the well
+    taken = camera.shoot(np.full((200, 300), 1.5), [0.2, 1.0, 4.0], maker, rng=3)  # the longer two are full
+    assert (taken.images[1:] < 0.98 * 65535).any()
+    g = responses.true_g("linear", 65536)
+    found = merge_with_deviation(*taken[:2], g, 2_500 / np.exp(g[-1]), 20)
+    alone = merge_with_deviation(taken.images[:1], taken.times[:1], g, 2_500 / np.exp(g[-1]), 20)
+    assert np.array_equal(found.E, alone.E) and np.array_equal(found.s, alone.s)
+
+
 def test_each_channel_may_have_its_own_noise_and_counts_by_itself():
     images = np.array([[[[40, 40, 255]]], [[[80, 80, 255]]], [[[160, 160, 200]]]], np.uint8)
     g = responses.true_g("linear")
