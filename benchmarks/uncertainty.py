@@ -3,6 +3,11 @@
 inside   share of the measured pixels within 1.96 s of the true radiance, of all brackets together, percent
 width    s over the Cramer-Rao bound, 1 / sqrt(sum 1 / V) with V of the true light: median over the brackets
 noise    electrons found over those that were: quartiles of the brackets; rounding hides those of some
+unsure   noise found: of the pixels that a camera without noise would measure, the share that the map calls
+         unmeasured (false alarms); of those that it would clip in every photograph, and of those that it
+         would call 0 in every one, the share that the map gives a deviation (misses), percent
+levels   response found: share of the cameras whose curve lies within 1.96 rho of the true one, by tenths of
+         the levels 5 to 250. It is no 95 %, and `hdrlab calibrate` prints no such band
 error    root mean square of HDRutils' estimator [Hanji20], sum X / sum t, over that of the mean by inverse
          variance, RAW of 16 bits: median; and the least z of a bracket, by how many standard errors its mean
          square is greater: of 400 equal ones, chance makes one -3
@@ -15,12 +20,16 @@ chi2     of real brackets, green, by the noise found in them: squares of X / t -
          per degree of freedom. Asked are flat parts that two frames measure and where nothing moved, less the
          hundredth of the pixels that differs most. 1 is what the model says; a camera that smooths or
          sharpens before it writes JPEG, or a scanned film, need not keep to it
+chance   the same without rho, where from each photograph its mean over pixels of like light is taken away:
+         what differs from pixel to pixel. So chi2 of `window` is no noise that was not found: its camera
+         bends the curve a little from photograph to photograph, for all pixels of a light alike. What is
+         left of `memorial`, scanned film, is shared by neighbours, a third to a half of it over eight pixels
 
 Three ways: the sensor known; its noise found in the photographs; and the response found in them, too.
 Figures by decades below the brightest light, 0 to 5.
 """
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
@@ -33,7 +42,8 @@ from hdrlab.capture.responses import Curve
 from hdrlab.cli.photographs import read_bracket
 from hdrlab.core import weights
 from hdrlab.core.bracket import Bracket
-from hdrlab.diagnostics.noise import FLAT, Noise, estimate_noise, slope
+from hdrlab.core.types import Array, Mask
+from hdrlab.diagnostics.noise import FLAT, GROUPS, Noise, estimate_noise, slope
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import recovery
@@ -44,6 +54,7 @@ Float = NDArray[np.float64]
 PLACES = (scenes.chapel, scenes.workshop, scenes.street, scenes.room)
 WAYS = ("sensor known", "noise found", "response found, too")
 DECADES = range(6)
+KINDS = ("false alarms", "misses, clipped", "misses, dark")
 BRACKETS = ("window", "stlouis_arch", "frobisher", "memorial")
 LEAST = 200  # pixels of a bracket that make a median
 
@@ -63,8 +74,26 @@ def bound(Z: Float, t: Float, g: Float, light: Float, noise: Noise) -> Float:
         return np.asarray(np.sum(1 / V, axis=0) ** -0.5, np.float64)
 
 
-def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float]:
-    """Return by way and decade the counts (2, 3, 6) and widths (3, 6); the noise found, and `raw_errors`."""
+def alarms(E: Float, t: Float, response: Curve, s: Array) -> Float:
+    """Return counts (2, 3): of pixels measured, clipped, dark in truth, those the map says so of, and all."""
+    Z, known = 255 * np.asarray(response(E * t[:, None, None])), np.isfinite(s)
+    clipped, dark = (E * t.min() >= 1), np.all(Z < 0.5, axis=0)
+    measured = np.any((Z >= 0.5) & (Z < int(0.98 * 255)), axis=0)
+    kinds = ((measured, ~known), (clipped, known), (dark, known))
+    return np.array(
+        [[(kind & wrong).sum() for kind, wrong in kinds], [kind.sum() for kind, _ in kinds]], float
+    )
+
+
+def within(g: Array, true_g: Float, rho: float) -> Float:
+    """Return by tenths of the levels the share of g that lies within 1.96 rho of the true one."""
+    error = (np.reshape(g, (256, -1))[:, 0] - true_g)[5:251]
+    near = np.abs(error - np.median(error)) < 1.96 * rho
+    return np.array([part.mean() for part in np.array_split(near, 10)])
+
+
+def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float, Float, Float]:
+    """Return counts (2, 3, 6) and widths (3, 6) by way and decade; noise, errors, alarms, levels."""
     i, exposure, brightness = case
     rng = np.random.default_rng((22, i))
     E = np.maximum(PLACES[i % 4]((240, 360))[..., 1].astype(np.float64), 1e-9)
@@ -76,14 +105,16 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float]
         maker = camera.Camera(response=response, bits=bits, full_well=well, read_noise=read)
         return camera.shoot(E, times, maker, rng=rng)
 
-    taken = shot(lambda X: np.interp(X, exposure, brightness), 8)
+    def own_curve(X: Float) -> Float:
+        return np.asarray(np.interp(X, exposure, brightness), np.float64)
+
+    taken = shot(own_curve, 8)
     Z, t = taken.images, taken.times
     true_g = families.invert_curves(exposure, brightness)[0]
     whole = float(np.exp(true_g[-1]))  # the exposure of a full well
     known = Noise(*(np.array([one]) for one in (well / whole, read, 0.0)))
     counts, widths = np.zeros((2, len(WAYS), len(DECADES))), np.full((len(WAYS), len(DECADES)), np.nan)
     floor = bound(Z, t, true_g, whole * E, known)
-    found_noise = np.nan
     for way in range(len(WAYS)):
         g, noise = true_g, known
         if way == 2:
@@ -91,8 +122,9 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float]
         if way:
             m = merge_with_quality(Z, t, g, weights.gaussian()).E
             noise = estimate_noise(Z, t, g, m)
-            found_noise = float(noise.N[0] * whole / well) if way == 1 else found_noise
         map_, s = merge_with_deviation(Z, t, g, *noise)
+        if way == 1:
+            found_noise, unsure = float(noise.N[0] * whole / well), alarms(E, t, own_curve, s)
         sure = np.isfinite(s) & np.isfinite(floor)
         unit = np.median(map_[sure] / (whole * E)[sure]) if way == 2 else 1.0
         inside = np.abs(map_ / unit - whole * E) < 1.96 * s / unit
@@ -101,7 +133,8 @@ def figures(case: tuple[int, Float, Float]) -> tuple[Float, Float, float, Float]
             counts[:, way, d] = inside[here].sum(), here.sum()
             if here.sum() >= LEAST:
                 widths[way, d] = np.median((s / unit)[here] / floor[here])
-    return counts, widths, found_noise, raw_errors(shot("linear", 16), E, own, well, read)
+    errors = raw_errors(shot("linear", 16), E, own, well, read)
+    return counts, widths, found_noise, errors, unsure, within(g, true_g, float(noise.rho[0]))
 
 
 def raw_errors(taken: Bracket, E: Float, own: NDArray[np.intp], well: float, read: float) -> Float:
@@ -127,7 +160,7 @@ def compared(folder: Path) -> Mapping[str, ArrayLike]:
     """Return inside and width of each way by decade, the noise found, and the errors."""
     exposure, brightness = read_curves(real(folder, "crf_curves") / "dorf_201.npz")
     cases = [(i, exposure[i % 201], brightness[i % 201]) for i in range(402)]
-    counts, widths, noise, errors = (
+    counts, widths, noise, errors, unsure, levels = (
         np.array(one) for one in zip(*along(figures, cases, "brackets"), strict=True)
     )
     inside, pixels = counts.sum(axis=0)
@@ -136,25 +169,43 @@ def compared(folder: Path) -> Mapping[str, ArrayLike]:
         found[f"inside, {way}"] = 100 * inside[k] / np.maximum(pixels[k], 1)
         found[f"width, {way}"] = np.nanmedian(widths[:, k], axis=0)
     found["noise"] = np.quantile(noise, [0.25, 0.5, 0.75])
+    wrong, all_ = unsure.sum(axis=0)
+    for kind, one in zip(
+        ("false alarms", "misses, clipped", "misses, dark"), 100 * wrong / all_, strict=True
+    ):
+        found[f"unsure, {kind}"] = one
+    found["levels"] = 100 * levels.mean(axis=0)
     for d in DECADES:
         ratio, z = errors[:, :, d].T
         found[f"error, {d} decades below"] = np.nanmedian(ratio), np.nanmin(z)
     return found
 
 
-def chi_square(taken: Bracket) -> float:
-    """Return chi-square per degree of freedom of the green channel of a bracket's flat parts."""
+def chi_square(taken: Bracket) -> Iterator[float]:
+    """Yield chi-square per degree of freedom of flat green parts: with all that errs, and by chance."""
     state = pipeline.measure_deviation(pipeline.assemble(taken))
     images, t = state.bracket.images[..., 1], state.bracket.times[:, None, None]
     noise = estimate_noise(state.bracket.images, t.ravel(), state.g, state.E)
     g, E = np.reshape(state.g, (256, -1))[:, min(1, state.g.ndim - 1)], state.E[..., 1].astype(np.float64)
     X, N, R, rho = np.exp(g), *(one[1] for one in noise)
-    V = variance(E * t, np.gradient(X)[images], N, R) / t**2 + (rho * E) ** 2
-    steep = np.pad(slope(E), 2, constant_values=np.inf)
+    V, steep = (
+        variance(E * t, np.gradient(X)[images], N, R) / t**2,
+        np.pad(slope(E), 2, constant_values=np.inf),
+    )
     flat = (steep <= np.quantile(steep, FLAT)) & np.isfinite(state.s[..., 1])
-    w = np.where((images > 0) & (images < int(0.98 * 255) + 1) & flat, 1 / V, 0)
-    twice = np.count_nonzero(w, axis=0) > 1
-    w, x = w[:, twice], (X[images] / t)[:, twice]
+    measured = (images > 0) & (images < int(0.98 * 255) + 1) & flat
+    twice = np.count_nonzero(measured, axis=0) > 1
+    measured, x, V, E = measured[:, twice], (X[images] / t)[:, twice], V[:, twice], E[twice]
+    yield scattered(x, V + (rho * E) ** 2, measured)
+    for alike in np.array_split(np.argsort(E), GROUPS):
+        share = np.where(measured, x / E, np.nan)[:, alike]
+        x[:, alike] -= (np.nan_to_num(np.nanmean(share, axis=1, keepdims=True), nan=1.0) - 1) * E[alike]
+    yield scattered(x, V, measured)
+
+
+def scattered(x: Float, V: Float, measured: Mask) -> float:
+    """Return the mean over the pixels of sum (x - mean)^2 / V over degrees of freedom, less the farthest."""
+    w = np.where(measured, 1 / V, 0)
     mean = (w * x).sum(axis=0) / w.sum(axis=0)
     each = (w * (x - mean) ** 2).sum(axis=0) / (np.count_nonzero(w, axis=0) - 1)
     return float(each[each <= np.quantile(each, 0.99)].mean())
@@ -167,7 +218,7 @@ def explained(folder: Path) -> Mapping[str, ArrayLike]:
         suffixes = (".jpg", ".jpeg", ".png")
         files = tuple(sorted(one for one in real(folder, name).iterdir() if one.suffix in suffixes))
         taken = read_bracket(files, "exif", "0000FF" if name == "memorial" else None, None)
-        found[f"chi2, {name}"] = chi_square(taken)
+        found[f"chi2, {name}"], found[f"chance, {name}"] = chi_square(taken)
     return found
 
 
@@ -185,6 +236,7 @@ ROWS = (
         compared,
         (
             *(hold for way in WAYS for hold in _true(way)),
+            *(at_most(f"unsure, {kind}", most) for kind, most in zip(KINDS, (2.0, 10.0, 10.0), strict=True)),
             *(at_least(f"error, {d} decades below", 1.0, -4.0) for d in DECADES),
         ),
     ),
