@@ -55,9 +55,27 @@ def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
 
 
 def write(path: str | Path, content: str | bytes, *, private: bool = False) -> Path:
-    """Write a file whole or not at all, and return it; text in UTF-8, where half a character becomes a "?".
+    r"""Write a file whole or not at all, and return it; text in UTF-8, where half a character becomes a "?".
 
-    Its folder and a private file are as `replacing` has them.
+    Parameters
+    ----------
+    path
+        The file; its folder must be there.
+    content
+        Text, or bytes, written as they are.
+    private
+        Whether it is for its owner's eyes alone, from the first byte on.
+
+    Raises
+    ------
+    FileNotFoundError, ValueError
+        As `replacing` has them: no folder, or the name of one.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> write(Path(tempfile.mkdtemp()) / "note.txt", "half a character: \ud83d").read_text("utf8")
+    'half a character: ?'
     """
     with replacing(path, private=private) as temporary:
         temporary.write_bytes(content.encode("utf8", "replace") if isinstance(content, str) else content)
