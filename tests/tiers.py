@@ -150,6 +150,11 @@ QUICK, ALL = "quick", "all"
 FIRST = (
     "tests/browser/test_site_in_a_browser.py",
     "tests/course/test_killed.py",
+    "tests/test_papers.py",
+    "tests/pipeline/test_pipeline.py",
+    "tests/pipeline/test_real_brackets.py",
+    "tests/diagnostics/test_times_estimate.py",
+    "tests/cli/test_faults.py",
 )
 
 
