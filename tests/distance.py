@@ -32,7 +32,7 @@ VERBS = (
     "enhance.mertens.fuse",
     "enhance.battiato.correct",
 )
-LESSONS = ("core", "io", "capture", "align", "response", "calibration", "radiance", "tonemap", "enhance")
+LESSONS = ("core", "capture", "align", "response", "calibration", "radiance", "tonemap", "enhance")
 LESSONS += ("beyond", "fast", "diagnostics", "pipeline")
 # files and lines, each at most
 TASK, VERB = (3, 60), (5, 120)
