@@ -26,7 +26,8 @@ from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
 from hdrlab.core.types import Array
-from hdrlab.io.photos import photographs, read_bracket, read_photo
+from hdrlab.io.album import photographs
+from hdrlab.io.photos import read_bracket, read_photo
 
 WELL = (30, 225)  # levels between which a photograph shows an edge as it is
 SHARE = 0.02  # of the pixels two photographs must measure well to be compared

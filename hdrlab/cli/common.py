@@ -67,10 +67,10 @@ def _paths(value: Any) -> list[Path]:
 
 def _photographs(folder: Path) -> list[Path]:
     """Return the photographs in a folder, which are read where the folder is named; none of a file."""
-    from hdrlab.io import photos
+    from hdrlab.io import album
 
     inside = folder.iterdir() if os.path.isdir(folder) else ()
-    return [path for path in inside if path.suffix.lower() in photos.SUFFIXES]
+    return [path for path in inside if path.suffix.lower() in album.SUFFIXES]
 
 
 def no_tier(reason: str) -> ValueError:

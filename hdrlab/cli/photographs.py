@@ -141,10 +141,11 @@ def assemble(
 def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None) -> "Bracket":
     """Return the bracket of PHOTOS with times by --times or --stops; all are 1 where there are none."""
     from hdrlab import pipeline
+    from hdrlab.io import album
     from hdrlab.io import photos as files
     from hdrlab.io.decode import look
 
-    colour, paths = common.colour(mask), files.photographs(photos)
+    colour, (paths, _) = common.colour(mask), album.select(photos)
     given: Any = None if times in WORDS else Path(times)
     if stops:
         given = [1.0] * len(paths)
@@ -155,7 +156,11 @@ def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: 
         elif times == "estimate":
             given = [1.0] * len(paths)
     bracket = files.read_bracket(
-        paths, given, mask=colour, progress=lambda some: common.progress(some, "reading")
+        photos,
+        given,
+        mask=colour,
+        note=lambda said: click.echo(f"note: {said}", err=True),
+        progress=lambda some: common.progress(some, "reading"),
     )
     return pipeline.space_by_stops(bracket, stops) if stops else bracket
 

@@ -5,6 +5,7 @@ decoded once, straight into its place, several at a time.
 """
 
 import os
+import warnings
 from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
@@ -18,12 +19,11 @@ from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.types import Array, ArrayLike, Mask
 from hdrlab.io import raw
+from hdrlab.io.album import Paths, select, turn_alike
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
-SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
-SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif"}
 PICTURES: dict[str, dict[str, Any]] = {
     ".png": {"compress_level": 1},
     ".jpg": {"quality": 95, "subsampling": 0},
@@ -31,8 +31,6 @@ PICTURES: dict[str, dict[str, Any]] = {
     ".tif": {"compression": "tiff_deflate"},
     ".tiff": {"compression": "tiff_deflate"},
 }
-
-Paths = str | Path | Sequence[str | Path]
 
 
 def read_photo(path: str | Path) -> Array:
@@ -71,17 +69,19 @@ def read_bracket(
     times: Times | None = None,
     *,
     mask: tuple[int, int, int] | None = None,
+    note: Callable[[str], object] = warnings.warn,
     progress: Callable[[Sequence[Path]], Iterable[Path]] = iter,
 ) -> Bracket:
     """Read a bracket of photographs, with their exposure times.
 
     Parameters
     ----------
-    paths : the photographs, or one folder, of which all photographs are taken, sorted by name
+    paths : the photographs, or one folder, of which all photographs are taken, sorted by name; see `select`
     times : None to take them from EXIF; else seconds of equivalent exposure, in the order of the photographs
         or by file name, or the path of a list (see `hdrlab.io.times.read_times`), of which numbers without
         a unit are seconds or 1/seconds, whichever the brightness of the photographs says
     mask : the colour (R, G, B) of pixels that are no photograph, such as the border of a registered scan
+    note : what is called with each sentence to know: what was left out, and what the camera had changed
     progress : what to wrap the paths in while they are decoded, such as tqdm
 
     Returns
@@ -102,8 +102,11 @@ def read_bracket(
     >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
     ('b.png', 'a.png')
     """
-    headers = [look(path) for path in photographs(paths)]
+    found, notes = select(paths)
+    headers, more = turn_alike([look(path) for path in found])
     _check_alike(headers)
+    for said in (*notes, *more, *_processed(headers)):
+        note(said)
     names, exposures = [header.path.name for header in headers], [header.exposure for header in headers]
     seconds, inverse = bracket_times(names, exposures, times)
     order = np.argsort(seconds, kind="stable")
@@ -129,23 +132,6 @@ def read_bracket(
     if inverse and are_inverse(sorted(seconds), [image[::8, ::8].mean() for image in images]):
         seconds = inverse
     return bracket(images, [seconds[j] for j in order], names, valid=valid, linear=linear)
-
-
-def photographs(paths: Paths) -> list[Path]:
-    """Return the paths of a bracket: those given, or all photographs of a folder, sorted by name."""
-    given = [Path(paths)] if isinstance(paths, str | Path) else [Path(path) for path in paths]
-    if len(given) == 1 and given[0].is_dir():
-        folder = given[0]
-        found = sorted(path for path in folder.iterdir() if path.suffix.lower() in SUFFIXES)
-        given = [path for path in found if path.is_file() and not path.name.startswith(".")]
-        if not given:
-            raise ValueError(f"{folder}: expected a folder with photographs, it holds none")
-    for path in given:
-        if path.is_dir():
-            raise ValueError(f"{path}: expected photographs or one folder, this is a folder among others")
-    if len(given) < 2:
-        raise ValueError(f"expected two photographs or more, got {', '.join(map(str, given)) or 'none'}")
-    return given
 
 
 def write_picture(path: str | Path, image: ArrayLike) -> None:
@@ -190,6 +176,14 @@ def _check_alike(headers: list[Header]) -> None:
         else:
             continue
         raise ValueError(f"{what}: {_short(first)}, {_short(other)}")
+
+
+def _processed(headers: list[Header]) -> list[str]:
+    """Return one sentence on photographs of which no single response can be recovered."""
+    found = [header for header in headers if header.processing]
+    more = f" (and {len(found) - 1} more)" if len(found) > 1 else ""
+    why = "so no one curve describes it: for a bracket switch HDR off, or take RAW"
+    return [f"{one.path.name}{more} {one.processing}, {why}" for one in found[:1]]
 
 
 def _short(header: Header) -> str:

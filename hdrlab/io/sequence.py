@@ -20,7 +20,7 @@ import numpy as np
 from hdrlab.core.arrays import as_picture
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.core.types import F32, Array
-from hdrlab.io import photos, radiance, web
+from hdrlab.io import album, photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, check_size, replacing, require_suffix
 
 FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
@@ -60,7 +60,7 @@ def read(path: str | Path) -> Iterator[Array]:
     """
     path = Path(path)
     if path.is_dir():
-        files = photos.photographs(path)
+        files = album.photographs(path)
         return require_alike((photos.read_photo(file) for file in files), path)
     if path.suffix.lower() not in SUFFIXES:
         raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(SUFFIXES))})")
@@ -73,7 +73,7 @@ def read(path: str | Path) -> Iterator[Array]:
 
 def count(path: str | Path) -> int | None:
     """Return how many frames there are, where that is known without decoding them: in a folder."""
-    return len(photos.photographs(path)) if Path(path).is_dir() else None
+    return len(album.photographs(path)) if Path(path).is_dir() else None
 
 
 def require_films(path: Path) -> None:

@@ -352,7 +352,7 @@ def test_ctrl_c_ends_in_one_line_and_exit_code_130(monkeypatch, tmp_path, capsys
     def interrupted(*_, **__):
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("hdrlab.io.photos.photographs", interrupted)
+    monkeypatch.setattr("hdrlab.io.album.select", interrupted)
     code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
     assert list(tmp_path.iterdir()) == []
@@ -363,7 +363,7 @@ def test_ctrl_c_while_a_class_is_made_ends_in_one_line_too(monkeypatch, tmp_path
         def __set_name__(self, owner, name):
             raise KeyboardInterrupt
 
-    monkeypatch.setattr("hdrlab.io.photos.photographs", lambda *_, **__: type("Axes", (), {"a": Stopped()}))
+    monkeypatch.setattr("hdrlab.io.album.select", lambda *_, **__: type("Axes", (), {"a": Stopped()}))
     code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
@@ -372,7 +372,7 @@ def test_ctrl_c_while_a_module_of_c_is_made_ends_in_one_line_too(monkeypatch, tm
     def stopped(*_, **__):  # as pybind11 tells it
         raise ImportError("initialization failed") from KeyboardInterrupt()
 
-    monkeypatch.setattr("hdrlab.io.photos.photographs", stopped)
+    monkeypatch.setattr("hdrlab.io.album.select", stopped)
     code, said, complaint = hdrlab("assemble", tmp_path, "-o", tmp_path / "x.hdr", capsys=capsys)
     assert (code, said, complaint.strip()) == (130, "", "hdrlab: interrupted")
 
@@ -412,7 +412,7 @@ def test_a_fault_of_the_library_is_not_taken_for_ctrl_c(kind, monkeypatch, tmp_p
     def broken(*_, **__):
         raise kind("a mistake of ours")
 
-    monkeypatch.setattr("hdrlab.io.photos.photographs", broken)
+    monkeypatch.setattr("hdrlab.io.album.select", broken)
     with pytest.raises(kind, match="a mistake of ours"):
         cli.run(["assemble", str(tmp_path), "-o", str(tmp_path / "x.hdr")])
 

@@ -9,7 +9,7 @@ from hdrlab.align.shift import shift
 from hdrlab.core import sampling, weights
 from hdrlab.core.colour import luminance
 from hdrlab.fast.debevec import gsolve
-from hdrlab.io.photos import photographs
+from hdrlab.io.album import photographs
 from hdrlab.scenes import places
 
 FOLDER = places.FOLDER / "tripod"

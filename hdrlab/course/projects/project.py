@@ -17,7 +17,8 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.wording import plain
-from hdrlab.io import photos, response_files
+from hdrlab.io import response_files
+from hdrlab.io.album import SUFFIXES
 
 ALBUMS = ("photographs", "photos", "bracket", "pictures")
 MAPS = (".hdr", ".exr", ".pfm", ".pic", ".rgbe")
@@ -78,7 +79,7 @@ def look(folder: str | Path) -> Project:
         folder,
         _about(folder / ABOUT),
         files,
-        tuple(path for path in files if path.parent == album and path.suffix.lower() in photos.SUFFIXES),
+        tuple(path for path in files if path.parent == album and path.suffix.lower() in SUFFIXES),
         _one(top, ("map", "radiance", "hdr"), MAPS),
         _one(top, ("response", "curve", "response.luminance"), tuple(response_files.FORMS)),
         _one(top, ("artifact",), ARTIFACTS, strict=True),
