@@ -1,13 +1,13 @@
 """Which tests run when: the quick tier at `python -m pytest`, another at `python -m pytest --tier=papers`.
 
 A test is quick unless another list below names it, and the longest name counts. Quick are units, laws, the
-specification on the library, the layers, the handouts against their source, one homework through the sandbox;
+specification on the library, the layers, the handouts against their source, the sandbox and a homework in it;
 a quick test takes at most 5 s.
 
-notebooks  every notebook, run once; what long ones say of their numbers; the site that is made of them
+notebooks  every notebook, run once; what they say of their numbers; the site that is made of them
 browser    JupyterLab on three notebooks, the site and the gallery in Chromium
 jupyterlab the other notebooks in JupyterLab; `.ci/run` leaves it to who asks for it
-grading    attacks, kills, clusters, whole classes, their likeness; the sandbox; how points are earned or not
+grading    attacks, kills, clusters, whole classes, their likeness; how points are earned or not
 papers     published experiments, and what takes seconds: real brackets, films, twelve megapixels
 scenes     the embedded scenes, rendered and computed again
 wheel      the wheel, installed elsewhere
@@ -40,7 +40,8 @@ TIERS = {
         "tests/cli/test_check_command.py::test_that_a_score_is_for_practice",
         "tests/course/test_attacks",
         "tests/course/test_class_benchmark.py",
-        "tests/course/test_classroom.py",
+        "tests/course/test_classroom.py::test_a_class_is_graded",
+        "tests/course/test_classroom.py::test_a_part_of_the_class_is_graded",
         "tests/course/test_cluster.py",
         "tests/course/test_equivalents.py",
         "tests/course/test_exports.py::test_an_autograder_grades",
@@ -56,14 +57,13 @@ TIERS = {
         "tests/course/test_hostile_code.py",
         "tests/course/test_hostile_files.py",
         "tests/course/test_imitation.py",
-        "tests/course/test_journal.py",
+        "tests/course/test_journal.py::test_a_run_that_is_killed",
         "tests/course/test_killed.py",
         "tests/course/test_misconceptions.py::test_a_mistake_costs",
         "tests/course/test_own_task.py::test_it_is_graded",
         "tests/course/test_own_task.py::test_its_own_tests",
         "tests/course/test_own_task.py::test_without_solution",
         "tests/course/test_misconceptions.py::test_nine_in_ten_are_recognised",
-        "tests/course/test_sandbox.py",
         "tests/course/test_similarity.py",
         "tests/course/test_specification.py::test_two_students_draw",
         "tests/course/test_toy.py",

@@ -233,3 +233,12 @@ def test_what_means_nothing_is_refused(change):
     given = {"images": np.zeros((3, 20, 24, 3), np.uint8), "times": [1.0, 2.0, 4.0], "g": G} | change
     with pytest.raises(ValueError, match="expected"):
         patches.synthesise(**given)
+
+
+@pytest.mark.parametrize("step", [(1, 0), (0, 1), (-1, 0), (0, -1), (2, -3)])
+def test_a_match_goes_on_from_a_neighbour_and_at_the_edge_from_the_nearest_pixel(step):
+    at = np.random.default_rng(3).integers(0, 9, (5, 7, 3))
+    found = patchmatch.propagate(at, step)
+    for y, x in np.ndindex(5, 7):
+        beside = min(max(y - step[0], 0), 4), min(max(x - step[1], 0), 6)
+        assert found[y, x].tolist() == (at[beside] + [0, *step]).tolist()

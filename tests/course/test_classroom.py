@@ -236,3 +236,10 @@ def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, gr
 def test_what_cannot_be_graded_is_told_in_a_line(more, said, grade):
     told = grade(*more, code=2)
     assert said in told and told.count("\n") == 1
+
+
+def test_hidden_checks_travel_without_what_python_has_compiled_of_them(tmp_path):
+    (tmp_path / "more" / "__pycache__").mkdir(parents=True)
+    for name in ("test_a.py", "more/data.csv", "more/__pycache__/test_a.cpython-311.pyc"):
+        (tmp_path / name).write_text(name)
+    assert classroom.hidden(tmp_path) == [("more/data.csv", b"more/data.csv"), ("test_a.py", b"test_a.py")]

@@ -112,3 +112,9 @@ def test_a_mistake_costs_half_at_most_unless_it_misses_what_the_task_is_about(on
 
 def test_no_two_sentences_are_the_same():
     assert [said for said, count in Counter(one.sentence for one in KNOWN).items() if count > 1] == []
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_how_far_two_answers_are_apart_is_a_share_of_their_size_however_small(scale):
+    assert misconceptions.difference([1.1 * scale, -1.1 * scale], [scale, -scale]) == pytest.approx(0.1)
+    assert misconceptions.difference([scale, scale], [0.0, 0.0]) == misconceptions.MOST

@@ -557,3 +557,11 @@ def test_the_parts_of_scipy_that_a_source_names_are_imported_before_its_checks()
     ]
     with opened("practice", {"f": "import sys\ndef f(): return 'scipy.fft' in sys.modules"}) as subject:
         assert not subject.f()
+
+
+def test_a_submission_that_has_used_up_its_processor_is_told_so():
+    with opened("practice") as subject:
+        assert subject.scaled(1.0) is not None
+        subject._running.left = 0.0
+        with pytest.raises(NoAnswer, match="s of a processor for a whole submission are used up"):
+            subject.scaled(1.0)

@@ -226,3 +226,12 @@ def test_of_an_archive_the_one_notebook_is_taken_or_the_one_that_names_the_homew
 def test_a_file_that_is_no_archive_or_is_missing_is_taken_as_it_is(tmp_path):
     for name in ("hw2.ipynb", "missing.zip"):
         assert submission.opened(tmp_path / name, tmp_path, "hw2") == (tmp_path / name, "")
+
+
+def test_a_million_characters_of_code_are_read_and_one_more_is_refused():
+    most = submission.MOST_CODE
+    assert submission.cells_of(b"#" * most, "hw2.py")[1] == []
+    assert submission.cells_of(b"#" * (most + 1), "hw2.py") == (
+        [],
+        ["hw2.py holds more than 1,000,000 characters of code"],
+    )

@@ -124,3 +124,9 @@ def test_frames_may_have_a_single_pixel():
     assert found.mean == pytest.approx(np.array([[0.3]])) and found.variance == pytest.approx(
         np.array([[0.02]])
     )
+
+
+def test_the_smallest_patch_has_two_by_two_pixels():
+    assert 0.8 < selection.flat(noise(3), size=2)[INNER].mean() <= 1
+    with pytest.raises(ValueError, match="2 x 2"):
+        selection.flat(noise(3), size=1)

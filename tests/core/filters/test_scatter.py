@@ -1,0 +1,19 @@
+"""Glare: light of every pixel in every other one, against a sum written out."""
+
+import numpy as np
+
+from hdrlab.core.filters.scatter import scatter, spread_transform
+
+
+def test_glare_ends_at_the_frame_and_what_it_takes_from_a_pixel_is_shared_out_whole():
+    """K is 0 in its middle and beyond the frame, and its sum is 1: against the double sum."""
+    height, width, power, core = 5, 7, 2.0, 1.5
+    E = np.random.default_rng(2).random((height, width)).astype(np.float32)
+    dy, dx = np.mgrid[1 - height : height, 1 - width : width]
+    K = (1 + (dy**2 + dx**2) / core**2) ** (-power / 2)
+    K[height - 1, width - 1] = 0
+    K /= K.sum()
+    expected = np.zeros_like(E)
+    for y, x in np.ndindex(height, width):
+        expected += E[y, x] * K[height - 1 - y : 2 * height - 1 - y, width - 1 - x : 2 * width - 1 - x]
+    assert np.allclose(scatter(E, spread_transform(E.shape, power, core)), expected, rtol=1e-4)
