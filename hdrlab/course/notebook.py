@@ -11,24 +11,21 @@ from typing import Any
 from hdrlab.course import grading
 from hdrlab.course import plan as plans
 from hdrlab.course.code import closure
-from hdrlab.course.code.closure import Cell
 from hdrlab.course.code.names import imported
-from hdrlab.course.grading import Conditions
 from hdrlab.course.material import handouts
-from hdrlab.course.plan import Homework
 from hdrlab.course.reports import feedback
 from hdrlab.course.reports.results import Result
 from hdrlab.course.submission import Submission
 
-PRACTICE = Conditions(tier="practice")
+PRACTICE = grading.Conditions(tier="practice")
 _latest: dict[str, Result] = {}  # of each task in this kernel, for the homework's bar
-_plan: dict[str, Homework] = {}  # the homeworks whose sheets said in this kernel what is asked
+_plan: dict[str, plans.Homework] = {}  # the homeworks whose sheets said in this kernel what is asked
 
 
 class Feedback:
     """A Result as a notebook shows it; as text, what a terminal would show."""
 
-    def __init__(self, result: Result, homework: Homework) -> None:
+    def __init__(self, result: Result, homework: plans.Homework) -> None:
         self.result, self.homework = result, homework
 
     @property
@@ -97,7 +94,7 @@ def use_plan(
     _plan[name] = known._replace(tasks=tasks, at_most=at_most) if tasks else known
 
 
-def find_tasks(name: str) -> tuple[Homework, list[str]]:
+def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
     """Return the homework that a name belongs to, and the ids of the tasks it stands for."""
     homeworks = _plan | {key: one for key, one in plans.read().homeworks.items() if key not in _plan}
     if name in homeworks:
@@ -111,7 +108,7 @@ def find_tasks(name: str) -> tuple[Homework, list[str]]:
     )
 
 
-def _history() -> Sequence[Cell]:
+def _history() -> Sequence[closure.Cell]:
     """Return what was run in this kernel, in order; what was no Python has told so already."""
     from IPython.core.getipython import get_ipython
 
@@ -119,7 +116,7 @@ def _history() -> Sequence[Cell]:
     if shell is None:
         raise RuntimeError("check works in a notebook; at a terminal, use: hdrlab check FILE")
     entered: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
-    return [Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()]
+    return [closure.Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()]
 
 
 def _show(html: str, shown: Any) -> Any:

@@ -19,7 +19,6 @@ from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.core.types import F32, F64, Array, ArrayLike
 from hdrlab.diagnostics import registration as judgement
-from hdrlab.diagnostics.registration import Validation
 from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue
 
@@ -46,7 +45,7 @@ class Registration(NamedTuple):
     """
 
     homographies: F64
-    pairs: tuple[Validation, ...]
+    pairs: tuple[judgement.Validation, ...]
     method: str
 
 
@@ -110,7 +109,7 @@ def photograph_pairs(images: Array, bits: int = BITS) -> Iterator[tuple[int, Pho
     yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
 
 
-def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator[Validation]:
+def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator[judgement.Validation]:
     """Yield the Validation of pair after pair from dark to bright, by one of SEARCHES at full resolution."""
     Z = images if images.ndim == 3 else images[..., 1]
     for moving, fixed in pairwise(mtb.by_brightness(images)):
@@ -120,8 +119,8 @@ def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator
 
 
 def improve(
-    best: Validation, name: str, B: Photograph, A: Photograph, as_light: AsLight
-) -> tuple[Validation, str]:
+    best: judgement.Validation, name: str, B: Photograph, A: Photograph, as_light: AsLight
+) -> tuple[judgement.Validation, str]:
     """Return the Validation of a pair by the simplest method that serves, and its name."""
     scale = 2**A.overview
     pyramid = as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
@@ -138,13 +137,13 @@ def improve(
     return best, name
 
 
-def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> Validation:
+def best_percentile(moving: int, B: Photograph, fixed: int, A: Photograph) -> judgement.Validation:
     """Return the Validation at the median; where that fails, at Ward's other percentiles, if one is certain.
 
     Its answer must lie elsewhere: photographs that turned fit nearby, too.
     """
 
-    def attempt(near: float) -> Validation:
+    def attempt(near: float) -> judgement.Validation:
         q = mtb.percentile(A.h[0], B.h[0], near=near)
         if q is None:
             return judgement.uninformative(moving, fixed)

@@ -6,16 +6,18 @@ alt    alt text: what is in the picture, in a sentence
 
 import sys
 from collections.abc import Callable, Iterable
-from html import escape
-from itertools import repeat
+from functools import cache
+from pathlib import Path
 from typing import Any, NamedTuple
 
+import jinja2
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.io import web
+from hdrlab.show.pages.templates import templates
 from hdrlab.show.plots import figures, reuse
 
 SIDE = 1000  # pixels
@@ -31,17 +33,21 @@ class Picture(NamedTuple):
     frames: tuple[bytes, ...]
     alts: tuple[str, ...]
     captions: tuple[str, ...]
-    legend: str = ""  # as HTML, below the pictures
+    scales: tuple[figures.Scale, ...] = ()  # of the colours, below the pictures: in stops and in decades
     density: int = 1  # pixels of a frame along a pixel of the page
 
     def __repr__(self) -> str:
         return "; ".join(self.alts)
 
     def _repr_html_(self) -> str:
-        each = "".join(map(_figure, self.frames, self.alts, self.captions, repeat(self.density)))
-        least = 220 if self.density == 1 else 320  # pixels of the page: the numbers of a plot stay legible
-        wide = f"repeat(auto-fit,minmax(min({least}px,100%),1fr))"
-        return f'<div style="display:grid;grid-template-columns:{wide};gap:0.75em">{each}</div>{self.legend}'
+        sizes = [[side / self.density for side in web.decode_picture(one).shape[:2]] for one in self.frames]
+        each = zip(map(web.data_uri, self.frames), self.alts, self.captions, sizes, strict=True)
+        return _template().render(each=list(each), scales=self.scales, density=self.density, column=COLUMN)
+
+
+@cache
+def _template() -> jinja2.Template:
+    return templates(Path(__file__).parent).get_template("picture.html")
 
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
@@ -74,7 +80,7 @@ def radiance(E: ArrayLike, *, alt: str) -> Picture:
     low, high = figures.limits(ev)
     frame = encode(figures.false_colour(figures.fit(ev, SIDE), low, high))
     reach = f"{np.nanmax(ev) - np.nanmin(ev):.1f} stops from the darkest to the brightest"
-    return Picture((frame,), (f"{require_alt(alt)}, {reach}",), ("",), _legend(low, high))
+    return Picture((frame,), (f"{require_alt(alt)}, {reach}",), ("",), _scales(low, high))
 
 
 def strip(
@@ -218,32 +224,8 @@ def _pixels(figure: Any, density: int) -> NDArray[np.uint8]:
     return np.array(canvas.buffer_rgba())[..., :3]
 
 
-def _legend(low: int, high: int) -> str:
-    """Return the colours with ticks in stops above and in decades below, as text that any screen shows."""
+def _scales(low: int, high: int) -> tuple[figures.Scale, figures.Scale]:
+    """Return the ticks in stops, and those in decades."""
     few = (high - low) * DECADE <= 3
-    scales = (
-        figures.scale(low, high, digits=int(high - low < 4)),
-        figures.scale(low * DECADE, high * DECADE, digits=int(few)),
-    )
-    above, below = ("".join(_tick(*tick) for tick in scale.ticks) for scale in scales)
-    row = "position:relative;height:1.4em"
-    ramp = f"height:1em;background:linear-gradient(90deg,{','.join(scales[0].colours)})"
-    return (
-        '<div style="max-width:44em;margin:0.5em 1em;font-variant-numeric:tabular-nums">'
-        f'<div style="{row}">{above}</div><div style="{ramp}"></div><div style="{row}">{below}</div>'
-        "<div>above: stops from the median luminance; below: decades; gray: no light</div></div>"
-    )
-
-
-def _tick(place: float, label: str) -> str:
-    return f'<span style="position:absolute;left:{place:.2f}%;transform:translateX(-50%)">{label} </span>'
-
-
-def _figure(frame: bytes, alt: str, caption: str, density: int) -> str:
-    height, width = (side / density for side in web.decode_picture(frame).shape[:2])
-    wide = max(width, min(COLUMN, COLUMN * width / height))  # an upright picture is not made taller than that
-    style = f"width:100%;max-width:{wide:.0f}px;height:auto;"
-    style += "image-rendering:pixelated;" if width < COLUMN / 4 else ""
-    image = f'<img alt="{escape(alt)}" src="{web.data_uri(frame)}" style="{style}">'
-    below = f"<figcaption>{escape(caption)}</figcaption>" if caption else ""
-    return f'<figure style="margin:0">{image}{below}</figure>'
+    decades = figures.scale(low * DECADE, high * DECADE, digits=int(few))
+    return figures.scale(low, high, digits=int(high - low < 4)), decades

@@ -23,7 +23,6 @@ from hdrlab.course import plan
 from hdrlab.course.checks import MISTAKES
 from hdrlab.course.checks.compare import as_listed, plain
 from hdrlab.course.code import inline
-from hdrlab.course.plan import Task
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
 ROUNDING = 1e-3  # relative: so much may float32, or another solver, add to an answer
@@ -54,7 +53,7 @@ def known() -> tuple[Misconception, ...]:
     )
 
 
-def of_task(task: Task) -> Sequence[Misconception]:
+def of_task(task: plan.Task) -> Sequence[Misconception]:
     """Return the mistakes of a task: those that come with hdrlab, or with an instructor's own task."""
     if task.own is None:
         return [one for one in known() if one.task == task.id]
@@ -111,7 +110,7 @@ def _ask_changed(name: str, *given: Any, **named: Any) -> Any:
     return _changed(name)(*given, **named)
 
 
-def closest(asked: Task, calls: Sequence[Call]) -> Misconception | None:
+def closest(asked: plan.Task, calls: Sequence[Call]) -> Misconception | None:
     """Return the misconception whose answers are those of the student in every call, or None.
 
     Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.

@@ -11,7 +11,7 @@ spent before, or will spend in another team, and nobody's days are spent for som
 
 from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime, timedelta
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 GRACE = 10
 DAY = timedelta(days=1)
@@ -98,14 +98,11 @@ def accounts(handed: Iterable[Handed], *, grace: int = GRACE, per_day: float = 1
 
 
 def what_if(
-    handed: Sequence[Handed],
-    project: str,
-    days: Iterable[int] = range(15),
-    *,
-    grace: int = GRACE,
-    per_day: float = 1.0,
+    handed: Sequence[Handed], project: str, days: Iterable[int] = range(15), **terms: Any
 ) -> list[tuple[int, dict[str, Account]]]:
     """Return what `project` would cost each of its students were it so many days late, and else all as it is.
+
+    `terms` are those of `accounts`.
 
     Examples
     --------
@@ -121,6 +118,6 @@ def what_if(
     table = []
     for late in days:
         supposed = [one._replace(late=late) if one.project == project else one for one in handed]
-        rows = accounts(supposed, grace=grace, per_day=per_day)
+        rows = accounts(supposed, **terms)
         table.append((late, {row.student: row for row in rows if row.project == project}))
     return table

@@ -17,7 +17,6 @@ from typing import NamedTuple
 from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.classroom import imitation
-from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
 HOMEWORK = "hw2"
@@ -40,7 +39,7 @@ class Handed(NamedTuple):
     about: str
 
 
-def hand_ins(homework: Homework) -> Iterator[Handed]:
+def hand_ins(homework: plan.Homework) -> Iterator[Handed]:
     """Yield what the toy class has handed in."""
     cells = imitation.texts(homework)
     right = imitation.notebook(homework, cells).encode()
@@ -93,7 +92,7 @@ def write(folder: Path) -> list[Path]:
     return [folder / "submissions" / one.name for one in each]
 
 
-def received(each: Sequence[Handed], homework: Homework) -> list[tuple[str, str]]:
+def received(each: Sequence[Handed], homework: plan.Homework) -> list[tuple[str, str]]:
     """Return when each file came, as the rows of a table."""
     return [(one.name, (homework.due + timedelta(hours=one.hours)).isoformat()) for one in each]
 

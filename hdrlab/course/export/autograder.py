@@ -8,7 +8,6 @@ import sys
 from pathlib import Path
 
 from hdrlab.course import grading, plan
-from hdrlab.course.grading import Conditions
 from hdrlab.course.reports import gradebook
 from hdrlab.course.wording import plain
 
@@ -33,7 +32,7 @@ def graded(root: Path, tier: str) -> bytes:
     homework = plan.read(source / "plan.toml").homeworks[settings["homework"]]
     hidden, secret = source / "hidden", settings["secret"]
     who = student(root) if secret else ""
-    conditions = Conditions(tier, who, secret, hidden if hidden.is_dir() else None)
+    conditions = grading.Conditions(tier, who, secret, hidden if hidden.is_dir() else None)
     return gradebook.gradescope(grading.grade(handed_in(root / "submission"), homework, conditions))
 
 

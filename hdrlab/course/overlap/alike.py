@@ -17,8 +17,6 @@ from copydetect import compare_files
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.code import inline
 from hdrlab.course.overlap import authored, similarity
-from hdrlab.course.overlap.authored import Work
-from hdrlab.course.overlap.similarity import Likeness, Pair, Printed
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 from hdrlab.io.files import write
@@ -73,14 +71,14 @@ def library(homework: Homework) -> str:
     return "\n".join(authored.own(alone[name], homework.name, {*alone} - {name}) for name in alone)
 
 
-def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[Work]:
+def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[authored.Work]:
     """Yield what each team wrote itself, by the teams' names; an archive is unpacked for it."""
     tasks = [task.id for task in homework.tasks]
     for team, one in sorted(handins.items()):
         yield authored.read(team, one.path, homework.name, tasks)
 
 
-def page(homework: Homework, each: Sequence[Printed], found: Likeness) -> str:
+def page(homework: Homework, each: Sequence[similarity.Printed], found: similarity.Likeness) -> str:
     """Return the page; whatever students wrote is text on it."""
     library = {
         task: sorted((each[n].work.team, share) for n, share in all.items() if share >= similarity.THRESHOLD)
@@ -101,7 +99,7 @@ def page(homework: Homework, each: Sequence[Printed], found: Likeness) -> str:
     )
 
 
-def rows(found: Likeness, pair: Pair) -> list[Row]:
+def rows(found: similarity.Likeness, pair: similarity.Pair) -> list[Row]:
     """Return what two works have in common: all tasks together, then each task that was compared."""
     each, signs = [], []
     for task, prints in found.own.items():

@@ -15,7 +15,6 @@ from typing import NamedTuple
 from hdrlab.course import submission
 from hdrlab.course.code import names
 from hdrlab.course.material import handouts, materials
-from hdrlab.course.submission import cells_of
 
 TASK, ALL = 30_000, 100_000  # characters of one task, and of all
 WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
@@ -113,4 +112,4 @@ def handout_code(homework: str) -> tuple[str, ...]:
     file = materials.folder("assignments") / f"{homework}.ipynb"
     if not file.is_file():
         return ()
-    return tuple(cell.text for cell in cells_of(file.read_bytes(), file.name)[0])
+    return tuple(cell.text for cell in submission.cells_of(file.read_bytes(), file.name)[0])

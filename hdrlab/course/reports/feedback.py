@@ -11,15 +11,13 @@ from pathlib import Path
 import jinja2
 
 from hdrlab.course.reports import results
-from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 
 FORBIDDEN = re.compile("[^\t\n\r\u0020-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")  # what XML 1.0 cannot hold
-MARKS = {"holds": "✓", "fails": "✗", "no answer": "✗"}
 
 
-def fragment(result: Result, *, private: bool = False) -> str:
+def fragment(result: results.Result, *, private: bool = False) -> str:
     """Return a Result as a piece of a page, for a notebook's output.
 
     Parameters
@@ -35,34 +33,15 @@ def bar(points: float, whole: float, what: str, unit: str = "points") -> str:
     return str(environment().get_template("feedback.html").module.bar(points, whole, what, unit))  # type: ignore[attr-defined]
 
 
-def page(result: Result, *, private: bool = False) -> str:
+def page(result: results.Result, *, private: bool = False) -> str:
     """Return a Result as a page, complete in itself: it fetches nothing and runs nothing."""
     return environment().get_template("feedback_page.html").render(result=result, private=private).lstrip()
 
 
-def text(result: Result, *, hints: int = 0, private: bool = False) -> str:
+def text(result: results.Result, *, hints: int = 0, private: bool = False) -> str:
     """Return a Result as lines for a terminal, with the first so many hints of what does not hold."""
-    lines = [*result.problems]
-    for task in result.tasks:
-        earned, whole = results.points(result.of(task))
-        lines.append(f"{task}: {number(earned)} of {number(whole)} points")
-        if task in result.misconceptions:
-            lines.append(f"  It looks as if: {result.misconceptions[task]}")
-        for check in result.of(task):
-            from_it = f" (follows from: {check.follows})" if check.follows else ""
-            lines.append(f"  {MARKS[check.outcome]} {check.promise}{from_it}")
-            lines += [f"      {line}" for line in _why(check, hints, private)]
-    lines.append(f"{result.homework}: {number(result.score)} of {number(result.max_score)} points")
-    return "\n".join(lines)
-
-
-def _why(check: Check, hints: int, private: bool) -> list[str]:
-    if check.follows or (check.hidden and not private):
-        return []
-    if check.outcome == "holds":
-        return [check.message] if check.message else []
-    told = [f"Hint {n}: {hint}" for n, hint in enumerate(check.hints[:hints], 1)]
-    return [*check.message.splitlines(), *check.drawing.alts, *told]
+    template = environment().get_template("feedback.plain")
+    return template.render(result=result, hints=hints, private=private)
 
 
 def number(value: float) -> str:
@@ -76,7 +55,7 @@ def number(value: float) -> str:
     return f"{float(value):.2f}".rstrip("0").rstrip(".")
 
 
-def _pictures(drawing: Drawing) -> list[tuple[str, str, str]]:
+def _pictures(drawing: results.Drawing) -> list[tuple[str, str, str]]:
     """Return each picture's address, alt text and caption."""
     frames = [web.data_uri(frame) for frame in drawing.frames]
     return list(zip(frames, drawing.alts, drawing.captions, strict=True))

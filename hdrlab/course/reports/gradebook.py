@@ -8,14 +8,13 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from hdrlab.course.reports import feedback, results, sheets
-from hdrlab.course.reports.results import Check, Result
 from hdrlab.io.files import write
 
 COLUMNS = ("student", "homework", "tier", "score", "max_score")
 FILES = ("result.json", "gradescope.json", "junit.xml", "result.csv", "feedback.html")
 
 
-def gradescope(result: Result) -> bytes:
+def gradescope(result: results.Result) -> bytes:
     """Return results.json as Gradescope's autograder expects it: a test for each promise.
 
     Of a hidden check, the outcome is shown when grades are published, and why it failed never is.
@@ -34,7 +33,7 @@ def gradescope(result: Result) -> bytes:
     return (json.dumps(whole, indent=1) + "\n").encode()
 
 
-def _gradescope_test(check: Check, result: Result) -> dict[str, object]:
+def _gradescope_test(check: results.Check, result: results.Result) -> dict[str, object]:
     earned, whole = results.points((check,))
     said = "" if check.hidden else check.message
     if said and check.task in result.misconceptions:
@@ -50,12 +49,12 @@ def _gradescope_test(check: Check, result: Result) -> dict[str, object]:
     }
 
 
-def junit(result: Result) -> bytes:
+def junit(result: results.Result) -> bytes:
     """Return JUnit's XML: a suite for each task, a case for each promise."""
     return feedback.environment().get_template("junit.xml").render(result=result).encode()
 
 
-def table(graded: Iterable[Result]) -> str:
+def table(graded: Iterable[results.Result]) -> str:
     """Return Results as CSV, a row for each: who, what, and the points of each task."""
     each = list(graded)
     tasks = list(dict.fromkeys(task for one in each for task in one.tasks))
@@ -66,7 +65,7 @@ def table(graded: Iterable[Result]) -> str:
     return sheets.csv_text([*COLUMNS, *tasks], rows)
 
 
-def write_results(folder: Path, result: Result, shown: bytes | None = None) -> list[Path]:
+def write_results(folder: Path, result: results.Result, shown: bytes | None = None) -> list[Path]:
     """Write a Result in all forms into a folder, which is made where it is missing; return the files.
 
     The JSON is written last: where it is, all of it is. It is `shown` where a team is to read it, and the

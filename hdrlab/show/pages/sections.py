@@ -14,14 +14,12 @@ import hdrlab
 from hdrlab.core import colour, metrics
 from hdrlab.core.arrays import to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.metrics import Truth
 from hdrlab.core.types import F32, F64, Array, Flags, Labels, Mask
 from hdrlab.diagnostics import consistency
 from hdrlab.io.web import Image
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
 from hdrlab.show.pages import wording
-from hdrlab.show.pages.wording import CLOSE, KINDS, deviation, offset, share, signed, verdict
 from hdrlab.show.pages.wording import stops as in_stops
 from hdrlab.show.plots import figures
 
@@ -32,8 +30,8 @@ def facts(E: Array, quality: Flags, medians: F64) -> list[tuple[str, str]]:
     spread = consistency.measure_spread(medians)
     return [
         (f"{high - low:.1f} stops", f"of luminance, or {(high - low) * np.log10(2):.1f} decades"),
-        (share(quality == Quality.MEASURED), "of the pixels measured by at least one frame"),
-        (in_stops(spread), f"between what the frames say of the same light: {verdict(spread)}"),
+        (wording.share(quality == Quality.MEASURED), "of the pixels measured by at least one frame"),
+        (in_stops(spread), f"between what the frames say of the same light: {wording.verdict(spread)}"),
     ]
 
 
@@ -46,11 +44,11 @@ def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
         if photographs.linear:  # its numbers are light, and a screen wants them encoded
             small = colour.to_8bit(small / np.float32(255))
         shown = figures.photograph(small, 400, f"Photograph {name}, exposed for {time}")
-        frames.append({"name": name, "time": time, "offset": offset(moved), "picture": shown})
+        frames.append({"name": name, "time": time, "offset": wording.offset(moved), "picture": shown})
     return frames
 
 
-def response(g: F64, truth: Truth | None) -> dict[str, Any]:
+def response(g: F64, truth: metrics.Truth | None) -> dict[str, Any]:
     """Return the plot of the response, over the true one where that is known, and its reach."""
     ax = plots.axes(4.6, 3.4)
     if truth is not None:
@@ -68,7 +66,7 @@ def radiance(E: Array) -> dict[str, Any]:
     ev = figures.stops(E)
     low, high = figures.limits(ev)
     image = figures.false_colour(figures.fit(ev, 1000), low, high)
-    ends = f"from {signed(low)} to {signed(high)} stops around the median luminance"
+    ends = f"from {wording.signed(low)} to {wording.signed(high)} stops around the median luminance"
     shown = figures.photograph(image, 1000, f"The radiance map in false colour, {ends}")
     return {"picture": shown, "scale": figures.scale(low, high)}
 
@@ -80,10 +78,10 @@ def known(quality: Flags, picture: Image) -> dict[str, Any]:
             "kind": kind,
             "meaning": meaning,
             "count": f"{np.count_nonzero(quality == flag):,}",
-            "share": share(quality == flag),
+            "share": wording.share(quality == flag),
             "colour": figures.KNOWN.get(flag),
         }
-        for flag, (kind, meaning) in KINDS.items()
+        for flag, (kind, meaning) in wording.KINDS.items()
         if flag == Quality.MEASURED or np.any(quality == flag)
     ]
     if len(rows) == 1:
@@ -96,7 +94,7 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
     """Return how sure each pixel is, as words and in false colour; None where nobody asked."""
     if s is None:
         return None
-    stops, said = deviation(E, s), wording.certainty(E, s)
+    stops, said = wording.deviation(E, s), wording.certainty(E, s)
     stops = np.where(np.isfinite(stops), stops, np.nan)
     if not np.isfinite(stops).any():
         return {"said": said, "picture": None}
@@ -114,7 +112,7 @@ def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
     """Return how much moved, and the picture with its regions; None where nobody asked or nothing did."""
     if labels is None or not labels.any():
         return None
-    count, part = int(labels.max()), share(labels > 0)
+    count, part = int(labels.max()), wording.share(labels > 0)
     regions = "one region" if count == 1 else f"{count} regions"
     alt = f"The picture in pale gray; what moved lies in {regions}, in orange with dark outlines"
     shown = figures.photograph(figures.regions(picture, labels), 1000, alt)
@@ -128,13 +126,13 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
     spread, found = consistency.measure_spread(medians), consistency.measure_deviations(medians)
     counts = shared.any(axis=1).sum(axis=1).tolist()
     bars = np.nan_to_num(found)  # none, for a frame of which nothing is known
-    widest = max(np.abs(bars).max(), CLOSE)
+    widest = max(np.abs(bars).max(), wording.CLOSE)
     rows = [
         {
             "name": name,
             "time": plots.seconds(time),
             "levels": levels,
-            "stops": signed(by, 3) if np.isfinite(departs) else "–",
+            "stops": wording.signed(by, 3) if np.isfinite(departs) else "–",
             "start": f"{50 + 50 * min(by, 0) / widest:.2f}",
             "width": f"{50 * abs(by) / widest:.2f}",
         }
@@ -142,10 +140,10 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
             photographs.names, photographs.times, found, bars, counts, strict=True
         )
     ]
-    return {"spread": in_stops(spread), "verdict": verdict(spread), "rows": rows}
+    return {"spread": in_stops(spread), "verdict": wording.verdict(spread), "rows": rows}
 
 
-def against(truth: Truth, photographs: Bracket, offsets: Array, g: F64, E: Array) -> dict[str, Any]:
+def against(truth: metrics.Truth, photographs: Bracket, offsets: Array, g: F64, E: Array) -> dict[str, Any]:
     """Return how far radiance, response and offsets lie from the truth."""
     well = metrics.well_exposed(photographs.images, photographs.valid)
     apart = np.abs(metrics.radiance_errors(E, truth.E, well))[well]
@@ -155,21 +153,21 @@ def against(truth: Truth, photographs: Bracket, offsets: Array, g: F64, E: Array
     return {
         "median": f"{100 * np.nanmedian(apart):.2f} %",
         "most": f"{100 * np.nanpercentile(apart, 95):.2f} %",
-        "well": share(well),
+        "well": wording.share(well),
         **error_map(truth, E, well),
         "rmse": [(channel, f"{one:.2f} %") for channel, one in zip(channels, rmse, strict=True)],
-        "offsets": [(name, *map(offset, three)) for name, *three in columns],
+        "offsets": [(name, *map(wording.offset, three)) for name, *three in columns],
         "furthest": int(np.abs(off).max()),
     }
 
 
-def error_map(truth: Truth, E: Array, well: Mask) -> dict[str, Any]:
+def error_map(truth: metrics.Truth, E: Array, well: Mask) -> dict[str, Any]:
     """Return the errors of luminance in false colour and their scale."""
     ratio = 1 + metrics.radiance_errors(colour.luminance(E), colour.luminance(truth.E), well)
     stops = np.where(well, np.log2(np.maximum(ratio, 2.0**-10)), np.nan)
     reach = figures.round_up(np.nanpercentile(np.abs(stops), 99))
     image = figures.false_colour(figures.fit(stops, 1000), -reach, reach, colours="PuOr_r")
-    ends = f"from {signed(-reach, 2)} to {signed(reach, 2)} stops"
+    ends = f"from {wording.signed(-reach, 2)} to {wording.signed(reach, 2)} stops"
     return {
         "picture": figures.photograph(image, 1000, f"Errors of luminance in false colour, {ends}"),
         "scale": figures.scale(-reach, reach, "PuOr_r", digits=2),

@@ -15,7 +15,7 @@ def templates(folder: Path) -> jinja2.Environment:
     """Return the templates of a folder: all is escaped, and a name that is not known is an error."""
     return jinja2.Environment(
         loader=jinja2.FileSystemLoader([folder, HERE]),
-        autoescape=jinja2.select_autoescape(default=True, disabled_extensions=("rst",)),
+        autoescape=jinja2.select_autoescape(default=True, disabled_extensions=("rst", "plain")),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

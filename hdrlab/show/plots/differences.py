@@ -12,7 +12,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.types import Array
 from hdrlab.show import pictures, plots
-from hdrlab.show.pictures import Picture
 from hdrlab.show.plots import figures
 
 Image = NDArray[np.uint8]
@@ -24,7 +23,7 @@ LEVELS = 256
 LONGEST = 28  # letters beside an axis
 
 
-def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
+def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
     """Return expected, came, and came - expected with a ring around the worst pixel, side by side.
 
     Both are drawn with the same black and white. In the difference orange is too large, purple too
@@ -46,10 +45,10 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
         ", ".join(filter(None, (f"{what}, yours", label, _range(answer)))),
         f"{what}, difference: the worst pixel is row {place[0]}, column {place[1]}, off by {error:.4g}",
     )
-    return Picture(tuple(frames), alts, captions)
+    return pictures.Picture(tuple(frames), alts, captions)
 
 
-def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> Picture:
+def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> pictures.Picture:
     """Return both curves in one plot, with a ring where they are furthest apart, and their difference below.
 
     What was expected is a broad gray line.
@@ -72,7 +71,7 @@ def curve(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
     below.set(xlabel="level z" if len(truth) == LEVELS else "index", ylabel="yours - expected")
     alt = f"{what}, expected {_range(truth)} and yours {_range(answer)}; at {k} they differ by {error:.4g}"
     caption = f"expected and yours, and below their difference; furthest apart at {k}"
-    return Picture((pictures.encode(figure),), (alt,), (caption,))
+    return pictures.Picture((pictures.encode(figure),), (alt,), (caption,))
 
 
 def _worst_channel(off: Array) -> Array:

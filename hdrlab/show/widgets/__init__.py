@@ -23,7 +23,6 @@ import traitlets
 from threadpoolctl import ThreadpoolController
 
 from hdrlab.io import web
-from hdrlab.io.web import Image
 from hdrlab.show.pictures import Picture, encode, encode_change, pictured, render, require_alt, short
 from hdrlab.show.plots import reuse
 from hdrlab.show.widgets import positions
@@ -127,7 +126,7 @@ class Tuner(Widget):
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
     area = traitlets.List(traitlets.Float()).tag(sync=True)  # left, top, width, height of what is pressed
 
-    def __init__(self, picture: Callable[[list[int]], Image], grids: positions.Grids, **traits: Any):
+    def __init__(self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any):
         self._picture, self._grids = picture, grids
         texts = [[short(value) for value in grid] for grid in grids.values()]
         super().__init__(names=list(grids), values=texts, **traits)
@@ -207,12 +206,12 @@ def tune(
 
     kept, area = reuse.Kept(), [0.0, 0.0, 1.0, 1.0]
 
-    def finish(drawn: object) -> Image:
+    def finish(drawn: object) -> web.Image:
         image = render(drawn)
         area[:] = pictured(drawn)
         return image
 
-    def picture(at: list[int]) -> Image:
+    def picture(at: list[int]) -> web.Image:
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
             found = f(**positions.values(grids, at))
         return reuse.draw_reusing(draw, found, finish, kept)

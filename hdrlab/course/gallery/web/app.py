@@ -4,6 +4,7 @@ Every answer is a page, a picture or a line of JSON. Nothing is uploaded here an
 and voters come by the command line. Addresses hold no state, pages no inline script or style.
 """
 
+import mimetypes
 import sqlite3
 from collections.abc import Mapping
 from contextlib import asynccontextmanager
@@ -22,12 +23,6 @@ from hdrlab.course.gallery import access_tokens, ballots, counting, pictures, st
 from hdrlab.course.gallery.web.front import HERE, HINTS, Front
 from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_origin
 
-STATIC = {
-    "icon.svg": "image/svg+xml",
-    "gallery.css": "text/css",
-    "wall.js": "text/javascript",
-    "look.js": "text/javascript",
-}
 KEPT = 60 * 60 * 24 * 180  # seconds for which a browser stays signed in
 FOREVER = "private, max-age=31536000, immutable"
 BALLOTS = Rate(30, 1)  # of a voter
@@ -153,11 +148,11 @@ class Gallery(Front):
 
     async def static(self, request: Request) -> Response:
         """Send a style sheet or a script; anybody may have them."""
-        name = request.path_params["name"]
-        if name not in STATIC:
+        file = HERE / "static" / request.path_params["name"]
+        if not file.is_file():
             raise Refusal(404, HINTS[404])
-        data = self.bytes_of(HERE / "static" / name)
-        return Response(data, media_type=STATIC[name], headers={"Cache-Control": "max-age=300"})
+        kind, _ = mimetypes.guess_type(file.name)
+        return Response(self.bytes_of(file), media_type=kind, headers={"Cache-Control": "max-age=300"})
 
 
 def application(gallery: Gallery) -> ASGIApp:

@@ -18,8 +18,6 @@ from numpy.typing import ArrayLike, NDArray
 
 from hdrlab import pipeline
 from hdrlab.capture import autoexposure, camera, exposure, metering, ranges, responses
-from hdrlab.capture.autoexposure import State
-from hdrlab.capture.metering import At
 from hdrlab.capture.sensor import Sensor
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import encode_srgb, luminance
@@ -50,7 +48,7 @@ class Shot(NamedTuple):
 
 
 def meter_scene(
-    scene: Subject, mode: str = "spot", at: At = (0.5, 0.5), *, sensor: Sensor = SENSOR, rng: int = 0
+    scene: Subject, mode: str = "spot", at: metering.At = (0.5, 0.5), *, sensor: Sensor = SENSOR, rng: int = 0
 ) -> Shot:
     """Return the photograph that automatic exposure takes of a scene, in a mode, the spot at a place."""
     coarse = fit(scene.E, COARSE)
@@ -84,7 +82,7 @@ def draw_shot(shot: Shot) -> Axes:
     return sensors.draw_titled(sensors.mark_lost(shot.picture, shot.full, shot.noise), text, ring=shot.asked)
 
 
-def draw_reading(state: State) -> Axes:
+def draw_reading(state: autoexposure.State) -> Axes:
     """Draw one shot of automatic exposure, its reading, and what it asks for next; the ring as above."""
     Z = np.round(255 * encode_srgb(state.B)).astype(np.uint8)
     full = f"{np.mean(state.B >= 1):.0%} of the pixels full"

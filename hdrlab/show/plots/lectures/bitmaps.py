@@ -18,7 +18,6 @@ from matplotlib.patches import Rectangle
 from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.align import mtb
-from hdrlab.align.mtb import State
 from hdrlab.capture.movers import shift_layer
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import Mask
@@ -55,7 +54,7 @@ def difference(fixed: Mask, moving: Mask, offset: Offset, *, title: str = "") ->
     return ax
 
 
-def validated(state: State, validation: Validation) -> Axes:
+def validated(state: mtb.State, validation: Validation) -> Axes:
     """Draw what still differs at the end of a search, under what was found and why not to trust it."""
     found = f"found {_pair(state.offset)}, {100 * validation.after:.2f} % of the bits differ"
     said = wrap(validation.failure or "no reason not to trust it", 68)
@@ -63,7 +62,7 @@ def validated(state: State, validation: Validation) -> Axes:
     return difference(state.fixed, state.moving, state.offset, title=title)
 
 
-def nine(state: State) -> Figure:
+def nine(state: mtb.State) -> Figure:
     """Return the nine offsets that a level compares, the centre in a gray frame and the best in an orange."""
     (height, width), gap = state.fixed.shape[1:], 0.06
     centre = next(iter(state.errors))
