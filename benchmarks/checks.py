@@ -25,7 +25,7 @@ from hdrlab.course import grading, plan
 from hdrlab.course.checks import inprocess
 from hdrlab.course.checks.subject import Subject
 from hdrlab.course.code import closure, inline
-from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Conditions
 from hdrlab.course.sandbox import tiers
 
 STARTS, TRIES = 7, 50
@@ -71,7 +71,7 @@ def homeworks(folder: Path) -> dict[str, Any]:
 def _check(task: str) -> None:
     """Run every check of a task on the library's function."""
     module = import_module(f"hdrlab.course.checks.specification.test_{task}")
-    given = {"subject": inprocess.library(), "rng": plan.generator(0)}
+    given = {"subject": inprocess.library(), "rng": np.random.default_rng(0)}
     for name, check in vars(module).items():
         if name.startswith("test_"):
             check(**{word: given[word] for word in inspect.signature(check).parameters})

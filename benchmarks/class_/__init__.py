@@ -30,7 +30,7 @@ from hdrlab.course import plan
 from hdrlab.course.classroom import handins, journal
 from hdrlab.course.classroom import roster as lists
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import results
 
 COUNT, SCALE = 300, 24

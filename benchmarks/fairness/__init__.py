@@ -20,8 +20,7 @@ from hdrlab.course import grading, plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.classroom import imitation
 from hdrlab.course.code.names import imported
-from hdrlab.course.grading import Conditions
-from hdrlab.course.plan import Homework
+from hdrlab.course.plan import Conditions, Homework
 from hdrlab.course.reports import results
 from hdrlab.course.submission import Submission
 

@@ -11,13 +11,12 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import common
+from hdrlab.course import plan as plans
 
 if TYPE_CHECKING:
     from hdrlab.course.classroom.handins import Handin
     from hdrlab.course.classroom.journal import Done, Executor, Piece
     from hdrlab.course.classroom.run import Course
-    from hdrlab.course.grading import Conditions
-    from hdrlab.course.plan import Homework
 
 
 def grade_folder(folder: Path, out: Path, course: "Course", asked: Any) -> None:
@@ -27,22 +26,19 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Any) -> None:
 
     times = handins.read_times(asked.received) if asked.received else {}
     found = handins.find(folder, course.roster, times)
-    for note in found.notes:
-        click.echo(f"note: {note}", err=True)
+    common.say("note", found.notes)
     since = asked.since.replace(tzinfo=UTC) if asked.since else None
     everything = classroom.pieces(found.handins, course.homework, course.conditions)
     wanted = classroom.select_handins(found.handins, course.roster, asked.only, since)
     with journal.lock_folder(out):
         done = _graded([piece for piece in everything if piece.owner in wanted], out, course, asked)
         lost = [f"{one.piece.owner}: {one.why}" for one in done if one.why]
-        for said in lost:
-            click.echo(f"warning: {said}", err=True)
+        common.say("warning", lost)
         counted = overview.tally(classroom.read(out, everything))
         *_, page = overview.write(out, course, found, counted, lost)
         if asked.moodle:
             rows = overview.marks_of(course, found, counted)
-            for note in moodle.write(out, asked.moodle, rows, course.roster, course.homework):
-                click.echo(f"note: {note}", err=True)
+            common.say("note", moodle.write(out, asked.moodle, rows, course.roster, course.homework))
         _compare(out, course, found.handins)
     fresh = sum(one.fresh for one in done if one.result)
     click.echo(f"{page}: {len(counted.points)} of {len(found.handins)} graded, {fresh} of them now")
@@ -101,9 +97,10 @@ def _executor(course: "Course", asked: Any) -> "Executor":
     return cluster.Cluster(asked.cluster, grader.result, grader.ready)
 
 
-def course_of(homework: "Homework", conditions: "Conditions", plan: Path | None, asked: Any) -> "Course":
+def course_of(
+    homework: plans.Homework, conditions: plans.Conditions, plan: Path | None, asked: Any
+) -> "Course":
     """Return what a class is graded by, read from the files that were named."""
-    from hdrlab.course import plan as plans
     from hdrlab.course.classroom import marks
     from hdrlab.course.classroom import roster as lists
     from hdrlab.course.classroom import run as classroom

@@ -83,6 +83,18 @@ def no_tier(reason: str) -> ValueError:
     return ValueError(f"{line}; {helps}{other}")
 
 
+def say(word: str, lines: Iterable[object]) -> None:
+    """Print lines beside the results, each after a word: "note" or "warning"."""
+    for line in lines:
+        click.echo(f"{word}: {line}", err=True)
+
+
+def list_files(files: Iterable[Path]) -> None:
+    """Print the name of each file as soon as it is there."""
+    for file in files:
+        click.echo(file)
+
+
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
     """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
     from tqdm import tqdm

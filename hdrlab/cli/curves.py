@@ -91,8 +91,7 @@ def calibrate(
         times="estimate" if ready == "times" else "stated",
     )
     state = next(one for one in steps if one.stage == ready)
-    for said in (*state.notes, *state.doubts):
-        click.echo(f"note: {said}", err=True)
+    common.say("note", (*state.notes, *state.doubts))
     if response == "all":
         _every(state, out, plot)
     else:
@@ -113,8 +112,7 @@ def _one(state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None)
 
     assembly = _assembled(state, name)
     g, medians, (_, times, names, *_) = assembly.g, assembly.medians, assembly.bracket
-    for doubt in assembly.doubts:
-        click.echo(f"warning: {doubt}", err=True)
+    common.say("warning", assembly.doubts)
     click.echo(f"{name}, from {len(times)} photographs")
     click.echo("\n".join(calibration.summary(g, medians, names)))
     _write(out, g)

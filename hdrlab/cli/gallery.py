@@ -1,5 +1,7 @@
 """The commands with which a class votes on its artifacts."""
 
+import time
+from contextlib import closing
 from datetime import datetime
 from importlib.util import find_spec
 from pathlib import Path
@@ -7,6 +9,10 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
+from hdrlab.course.classroom import roster as lists
+from hdrlab.course.gallery import store
+from hdrlab.course.reports import sheets
+from hdrlab.course.wording import plain
 
 FOLDER = click.argument("folder", type=common.FILE)
 NEEDS = ("starlette", "uvicorn")
@@ -26,9 +32,6 @@ def gallery() -> None:
 @click.option("--marks", type=click.IntRange(1, 20), default=3, help="Votes on a ballot, at most.")
 def init(folder: Path, title: str, closes: str, marks: int) -> None:
     """Make a gallery in FOLDER."""
-    from hdrlab.course.gallery import store
-    from hdrlab.course.wording import plain
-
     try:
         end = datetime.fromisoformat(closes)
     except ValueError:
@@ -49,11 +52,7 @@ def add(folder: Path, roster: Path, artifacts: tuple[Path, ...]) -> None:
     beside a picture, team7.txt, holds its title and then a caption; archives of `hdrlab submit` hold both
     themselves. What cannot hang is named, and the rest hangs.
     """
-    from contextlib import closing
-
-    from hdrlab.course.classroom import roster as lists
-    from hdrlab.course.gallery import collect, store
-    from hdrlab.course.wording import plain
+    from hdrlab.course.gallery import collect
 
     students = lists.read(roster)
     hung, refused = 0, 0
@@ -91,11 +90,7 @@ def links(
     They are written once and kept nowhere else. Who has a link keeps it, unless --renew or --all-anew
     ends it.
     """
-    from contextlib import closing
-
-    from hdrlab.course.classroom import roster as lists
-    from hdrlab.course.gallery import export, store
-    from hdrlab.course.reports import sheets
+    from hdrlab.course.gallery import export
 
     emails = {one.id: one.email for one in lists.read(roster).students} if roster else {}
     with closing(store.connect(folder)) as db:
@@ -131,8 +126,6 @@ def serve(folder: Path, host: str, port: int, address: str | None, behind_proxy:
 @FOLDER
 def close(folder: Path) -> None:
     """End the vote now, also while the gallery is being served."""
-    from hdrlab.course.gallery import store
-
     with store.writing(folder) as db:
         now = datetime.now().astimezone()
         if not store.settings(db).is_open(now.timestamp()):
@@ -146,18 +139,13 @@ def close(folder: Path) -> None:
 @click.option("-o", "--out", required=True, type=common.OUT, help="CSV for the gradebook.")
 def results(folder: Path, out: Path) -> None:
     """Write who voted and how each artifact fared, after the end of the vote."""
-    import time
-    from contextlib import closing
-
-    from hdrlab.course.gallery import counting, export, store
-    from hdrlab.course.reports import sheets
+    from hdrlab.course.gallery import counting, export
 
     with closing(store.connect(folder)) as db:
         set_up = store.settings(db)
         if set_up.is_open(time.time()):
             raise ValueError(f"{folder}: expected a vote that has ended, it is open until {set_up.closes}")
         rows, changes = list(export.gradebook(db)), store.changes(db)
-    for one in changes:
-        click.echo(f"note: {one}", err=True)
+    common.say("note", changes)
     sheets.write_csv(out, export.GRADEBOOK, rows, private=True)
     click.echo(f"{out}: {len(rows)} students. {counting.METHOD.format(marks=set_up.marks)}")

@@ -7,10 +7,9 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from hdrlab.cli import common
+from hdrlab.course import plan as plans
 
 if TYPE_CHECKING:
-    from hdrlab.course.grading import Conditions
-    from hdrlab.course.plan import Homework
     from hdrlab.course.reports.results import Result
 
 FILE = click.Path(path_type=Path, exists=True, dir_okay=False)
@@ -39,7 +38,6 @@ def check(
 
     Your functions run in a process of their own, which is no sandbox: check what you trust.
     """
-    from hdrlab.course.grading import Conditions
     from hdrlab.course.reports import feedback
     from hdrlab.io.files import write
 
@@ -49,7 +47,7 @@ def check(
         if task not in tasks:
             raise ValueError(f"expected a task out of {', '.join(tasks)}, got {task!r}")
         asked = asked._replace(tasks=(tasks[task],))
-    result = _graded(submission, asked, Conditions(tier="practice", draw=page is not None))
+    result = _graded(submission, asked, plans.Conditions(tier="practice", draw=page is not None))
     click.echo(feedback.text(result, hints=hints))
     if page is not None:
         click.echo(write(page, feedback.page(result)))
@@ -98,14 +96,13 @@ def grade(
     A folder is a class: with --roster, every submission in it is graded, several at a time, and a gradebook
     and a page about the class are written. Stopped at any moment, the next run finishes the rest.
     """
-    from hdrlab.course.grading import Conditions
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 
     if student and secret_file is None:
         raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
     secret, note = secret_of(secret_file)
-    conditions = Conditions(tier, student, secret, hidden, timeout)
+    conditions = plans.Conditions(tier, student, secret, hidden, timeout)
     if submission.is_dir():
         from hdrlab.cli import classroom
 
@@ -137,10 +134,8 @@ def doctor() -> None:
             click.echo(f"{'':<10}{remedy}")
 
 
-def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homework":
+def _homework(submission: Path, name: str | None, plan: Path | None) -> plans.Homework:
     """Return the homework that is asked for, or the one whose name stands in the file's."""
-    from hdrlab.course import plan as plans
-
     homeworks = plans.read(plan).homeworks
     if name is None:
         fitting = [one for one in homeworks if one in submission.stem.lower()]
@@ -155,15 +150,13 @@ def _homework(submission: Path, name: str | None, plan: Path | None) -> "Homewor
 
 def secret_of(file: Path | None) -> tuple[str, str]:
     """Return the course's secret, and a note where it was made, or where there is none."""
-    from hdrlab.course import plan as plans
-
     if file is None:
         return "", "note: for practice: without --secret-file the inputs are public"
     secret, made = plans.read_secret(file)
     return secret, f"note: {file}: a new secret for the course; keep it, and keep it to yourself" * made
 
 
-def _graded(submission: Path, homework: "Homework", conditions: "Conditions") -> "Result":
+def _graded(submission: Path, homework: plans.Homework, conditions: plans.Conditions) -> "Result":
     """Return the Result, while a terminal shows how many checks have been answered."""
     from hdrlab.core.steps import last
     from hdrlab.course import grading

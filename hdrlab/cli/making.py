@@ -6,6 +6,7 @@ import click
 
 from hdrlab.cli import common
 from hdrlab.cli.grading import FOLDER, PLAN, SECRET, secret_of
+from hdrlab.course import plan as plans
 
 
 @click.group(cls=common.Group)
@@ -21,14 +22,12 @@ def course() -> None:
 @PLAN
 def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Path | None) -> None:
     """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates."""
-    from hdrlab.course import plan as plans
     from hdrlab.course.material import handouts
     from hdrlab.course.site import execute
 
     try:
         made = handouts.build_steps(plans.read(plan), sources, out, solutions, jobs=jobs)
-        for file in common.progress(made, "handouts"):
-            click.echo(file)
+        common.list_files(common.progress(made, "handouts"))
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None
     except ImportError as error:
@@ -49,7 +48,6 @@ def export(
     plan: Path | None,
 ) -> None:
     """Write the course in the form of another system, whose tests call the same checks."""
-    from hdrlab.course import plan as plans
     from hdrlab.course.export import gradescope as to_gradescope
     from hdrlab.course.export import nbgrader as to_nbgrader
 
@@ -57,13 +55,13 @@ def export(
         raise ValueError("expected --nbgrader DIR or --gradescope DIR")
     read = plans.read(plan)
     if nbgrader is not None:
-        for file in to_nbgrader.export(read, nbgrader):
-            click.echo(file)
+        common.list_files(to_nbgrader.export(read, nbgrader))
     if gradescope is not None:
         secret, note = secret_of(secret_file)
         click.echo(note, nl=bool(note), err=True)
-        for file in to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret):
-            click.echo(file)
+        common.list_files(
+            to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret)
+        )
 
 
 @course.command("new-task")
@@ -74,8 +72,7 @@ def new_task(task: str, folder: Path, homework: str) -> None:
     """Begin a task of your own: an example that works, whole, to be changed file by file."""
     from hdrlab.course.material import own_task
 
-    for file in own_task.write(folder, task, homework):
-        click.echo(file)
+    common.list_files(own_task.write(folder, task, homework))
     click.echo(f"to try it: python -m pytest {folder}")
 
 
@@ -84,11 +81,9 @@ def new_task(task: str, folder: Path, homework: str) -> None:
 @PLAN
 def pack(folder: Path, plan: Path | None) -> None:
     """Write the model solutions into FOLDER: each homework filled in with the library's functions."""
-    from hdrlab.course import plan as plans
     from hdrlab.course.material import solutions
 
-    for file in solutions.write(plans.read(plan), folder):
-        click.echo(file)
+    common.list_files(solutions.write(plans.read(plan), folder))
 
 
 @course.command()

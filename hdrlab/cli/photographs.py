@@ -103,10 +103,8 @@ def assemble(
         assembly = pipeline.measure_deviation(assembly)
     if metered:
         assembly = pipeline.calibrate(assembly, *metered)
-    for note in assembly.notes:
-        click.echo(f"note: {note}", err=True)
-    for doubt in _shorten(assembly.doubts):
-        click.echo(f"warning: {doubt}", err=True)
+    common.say("note", assembly.notes)
+    common.say("warning", _shorten(assembly.doubts))
     comments = ["unit: cd/m^2"] * bool(metered) + [f"doubt: {doubt}" for doubt in assembly.doubts]
     radiance.write_radiance(out, assembly.E, comments=comments)
     if uncertainty and assembly.s is not None:

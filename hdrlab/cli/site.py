@@ -56,8 +56,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> Non
     in_order = sorted(done, key=lambda one: one.source.stem)
     with elapsed("pages"):
         made = pages.build(out, in_order, handouts, {"commands.md": _commands()}, address=address)
-    for complaint in made.complaints:
-        click.echo(f"note: {complaint}", err=True)
+    common.say("note", made.complaints)
     fresh = sum(one.fresh for one in done)
     click.echo(
         f"{made.front}: {made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks; run now: {fresh}"

@@ -31,8 +31,7 @@ def report(project: Path, example: bool) -> None:
         return
     with elapsed("report"):
         written = reports.write_report(projects.look(project))
-    for note in written.notes:
-        click.echo(f"note: {note}", err=True)
+    common.say("note", written.notes)
     click.echo(f"{written.page}: with {', '.join(written.placed) or 'words alone'}")
 
 
@@ -67,6 +66,5 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     told = handing.summary(files)
     if told["cleaned"]:
         click.echo(f"left out of {told['cleaned']} pictures: {', '.join(told['removed'])}")
-    for one in told["remains"]:
-        click.echo(f"warning: {one}", err=True)
+    common.say("warning", told["remains"])
     click.echo(f"{out}: {len(files)} files, {out.stat().st_size / 1e6:.1f} MB, {digest[:12]}")

@@ -13,7 +13,7 @@ import tempfile
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import scipy
@@ -23,7 +23,7 @@ from hdrlab.core.steps import last
 from hdrlab.course import plan, submission
 from hdrlab.course.checks import SPECIFICATION, running
 from hdrlab.course.material import handouts
-from hdrlab.course.plan import Homework
+from hdrlab.course.plan import Conditions, Homework
 from hdrlab.course.reports import causes
 from hdrlab.course.reports.results import Check, Drawing, Result
 from hdrlab.course.sandbox import tiers
@@ -31,31 +31,8 @@ from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.submission import Submission
 from hdrlab.course.wording import lines
 
-PATIENCE = 10.0  # seconds for one answer
 WHOLE = 240.0  # seconds for all checks of a homework: its calls have 200, see `subject`
 MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
-
-
-class Conditions(NamedTuple):
-    """Under which a submission is checked.
-
-    Attributes
-    ----------
-    tier : "strict", "container" or "practice"
-    student, secret : what the inputs are drawn from; without a student they are the public ones
-    hidden : folder with checks of the instructor's own, test_<task>.py
-    timeout : seconds for one answer
-    draw : whether differences are drawn
-    """
-
-    tier: str = "strict"
-    student: str = ""
-    secret: str = ""
-    hidden: Path | None = None
-    timeout: float = PATIENCE
-    draw: bool = True
-
-
 STRICT = Conditions()
 SILENT = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
 

@@ -17,7 +17,7 @@ from hdrlab.course.reports import feedback
 from hdrlab.course.reports.results import Result
 from hdrlab.course.submission import Submission
 
-PRACTICE = grading.Conditions(tier="practice")
+PRACTICE = plans.Conditions(tier="practice")
 _latest: dict[str, Result] = {}  # of each task in this kernel, for the homework's bar
 _plan: dict[str, plans.Homework] = {}  # the homeworks whose sheets said in this kernel what is asked
 

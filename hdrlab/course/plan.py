@@ -7,6 +7,7 @@ in a file beside the plan; its checks are test_<id>.py in the same folder, and i
 """
 
 import hmac
+import math
 import os
 import runpy
 import secrets
@@ -18,9 +19,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
-import numpy as np
-
 PLAN = Path(__file__).with_name("plan.toml")
+PATIENCE = 10.0  # seconds for one answer
 
 
 class Task(NamedTuple):
@@ -93,6 +93,26 @@ class Plan(NamedTuple):
         return tasks[id]
 
 
+class Conditions(NamedTuple):
+    """Under which a submission is checked.
+
+    Attributes
+    ----------
+    tier : "strict", "container" or "practice"
+    student, secret : what the inputs are drawn from; without a student they are the public ones
+    hidden : folder with checks of the instructor's own, test_<task>.py
+    timeout : seconds for one answer
+    draw : whether differences are drawn
+    """
+
+    tier: str = "strict"
+    student: str = ""
+    secret: str = ""
+    hidden: Path | None = None
+    timeout: float = PATIENCE
+    draw: bool = True
+
+
 def read(path: str | Path | None = None) -> Plan:
     """Return the Plan that stands in the file at `path`; None is the one that comes with hdrlab.
 
@@ -149,7 +169,7 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     if not isinstance(made.due, datetime) or made.due.tzinfo is None:
         raise ValueError(f"{path}: expected due of {here} as a date with time and zone, got {made.due!s:.80}")
     points = [one.points for one in tasks] + [one.points for one in by_hand]
-    if not (points and min(points) >= 0 and sum(points) < np.inf):
+    if not (points and min(points) >= 0 and sum(points) < math.inf):
         raise ValueError(f"{path}: expected tasks or work by hand, of 0 points or more each, in {here}")
     if at_most is not None and not 0 < at_most <= sum(points):
         most = sum(points)
@@ -204,8 +224,3 @@ def seed(secret: str, student: str, task: str) -> int:
     """
     drawn = hmac.digest(secret.encode(), f"{student}\0{task}".encode(), "sha256")
     return int.from_bytes(drawn, "big")
-
-
-def generator(seed: int) -> np.random.Generator:
-    """Return the Generator of one check: every check of a task begins afresh, so their order is free."""
-    return np.random.default_rng(seed)

@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 
 from hdrlab.course import grading, plan
-from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import feedback
 
 PAYLOAD = (

@@ -17,8 +17,7 @@ from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster, Student
-from hdrlab.course.grading import Conditions
-from hdrlab.course.plan import Homework, Late, Task
+from hdrlab.course.plan import Conditions, Homework, Late, Task
 from hdrlab.course.reports import sheets
 from hdrlab.course.reports.results import Check, Result
 

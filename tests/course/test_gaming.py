@@ -9,7 +9,7 @@ import scoring
 from hdrlab.capture import responses
 from hdrlab.course import grading, plan
 from hdrlab.course.checks import inprocess
-from hdrlab.course.grading import Conditions
+from hdrlab.course.plan import Conditions
 from hdrlab.course.submission import Submission
 
 PLAN = plan.read()

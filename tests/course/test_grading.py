@@ -14,8 +14,8 @@ import pytest
 from hdrlab.course import grading, plan
 from hdrlab.course.classroom import imitation
 from hdrlab.course.code import inline
-from hdrlab.course.grading import Conditions
 from hdrlab.course.material import handouts, materials
+from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import feedback, gradebook, results
 from hdrlab.course.sandbox import tiers
 from hdrlab.course.sandbox.running import Unavailable

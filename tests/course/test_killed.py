@@ -25,8 +25,7 @@ from hats import GOOD, PLAN
 from hdrlab.course import grading
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom import run as classroom
-from hdrlab.course.grading import Conditions
-from hdrlab.course.plan import Homework, Task
+from hdrlab.course.plan import Conditions, Homework, Task
 from hdrlab.course.reports import results
 from hdrlab.course.sandbox import doctor
 

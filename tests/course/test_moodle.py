@@ -11,8 +11,7 @@ from hdrlab.course.classroom import marks, moodle
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.roster import Roster, Student
-from hdrlab.course.grading import Conditions
-from hdrlab.course.plan import Homework, Late, Task
+from hdrlab.course.plan import Conditions, Homework, Late, Task
 from hdrlab.course.reports import sheets
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)

@@ -11,8 +11,8 @@ from hdrlab.course import grading, notebook, plan
 from hdrlab.course.checks import misconceptions
 from hdrlab.course.code import inline
 from hdrlab.course.export import gradescope
-from hdrlab.course.grading import Conditions
 from hdrlab.course.material import handouts, own_task, stubs
+from hdrlab.course.plan import Conditions
 
 WRONG = "def flat_field(Z, flat):\n    return Z / flat\n"
 FILE = "flat_field.py:flat_field"

@@ -20,10 +20,10 @@ from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.code import closure, inline
-from hdrlab.course.grading import Conditions
 from hdrlab.course.material import materials
 from hdrlab.course.overlap import alike, authored, similarity
 from hdrlab.course.overlap.authored import Work
+from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import sheets
 
 HW2 = plan.read().homeworks["hw2"]

@@ -144,7 +144,7 @@ def test_a_site_is_made_without_a_complaint_and_writes_in_its_folder_and_its_cac
 def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
     site = made[1]
     parts = {path.name for path in site.iterdir()} - {page.name for page in site.glob("*.html")}
-    folders = {"notebooks", "reference", "_modules", "_static", "_widgets"}
+    folders = {"notebooks", "reference", "_images", "_modules", "_static", "_widgets"}
     assert parts == folders | {"searchindex.js", "objects.inv", ".nojekyll"}
     assert {path.name for path in site.rglob(".*")} == {".nojekyll"}
     kinds = [".html", ".js", ".css", ".svg", ".png", ".jpg", ".webp", ".inv"]

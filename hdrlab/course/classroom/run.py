@@ -20,8 +20,7 @@ from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.journal import Done, Piece
 from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster
-from hdrlab.course.grading import Conditions
-from hdrlab.course.plan import Homework, Late
+from hdrlab.course.plan import Conditions, Homework, Late
 from hdrlab.course.reports import gradebook, results
 from hdrlab.course.reports.results import Result
 from hdrlab.course.sandbox import doctor

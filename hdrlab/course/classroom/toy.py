@@ -9,10 +9,11 @@ FOLDER/
 Nobody in it is a person: the students are called by their numbers.
 """
 
+import tomllib
 from collections.abc import Iterator, Sequence
 from datetime import timedelta
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
@@ -22,8 +23,8 @@ from hdrlab.course.reports import sheets
 HOMEWORK = "hw2"
 TEAM, MEMBERS = "t1", ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
-DONE = ("hat", "irradiance", "update")  # of who has not come to the end
 ATTACKS = Path(__file__).parent / "toy_attacks.txt"  # in place of functions
+HANDED: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_name("toy.toml").read_text("utf8"))
 COMMAND = (
     "hdrlab grade {folder}/submissions --homework hw2 --roster {folder}/roster.csv"
     " --received {folder}/received.csv --secret-file {folder}/secret.txt -o {folder}/results"
@@ -40,34 +41,15 @@ class Handed(NamedTuple):
 
 
 def hand_ins(homework: plan.Homework) -> Iterator[Handed]:
-    """Yield what the toy class has handed in."""
-    cells = imitation.texts(homework)
-    right = imitation.notebook(homework, cells).encode()
-
-    def wrong(*mistakes: str) -> bytes:
-        return imitation.notebook(homework, imitation.texts(homework, mistakes)).encode()
-
-    yield Handed("s01_hw2.ipynb", right, -30, "All right: 100 points.")
-    yield Handed("s02_hw2.py", imitation.script(cells).encode(), -2, "The same as a Python file: 100 points.")
-    yield Handed("t1_hw2.ipynb", right, 70, "A team of s03 and s04, three days late: 100 points, no penalty.")
-    yield Handed("s05_hw2.ipynb", right, 11.5 * 24, "All right, two days beyond the ten that are free: 98.")
-    yield Handed("s06_hw2.ipynb", wrong("gsolve_log2_of_the_times"), -9, "A well-known mistake in gsolve.")
-    two = wrong("gsolve_log2_of_the_times", "hat_zero_in_the_middle")
-    yield Handed("s07_hw2.ipynb", two, -8, "The same one, and another in hat.")
-    two = wrong("irradiance_not_weighted", "recover_one_curve_for_all")
-    yield Handed("s08_hw2.ipynb", two, 20, "Mistakes in irradiance and recover; a day late, no penalty.")
-    begun = homework._replace(tasks=tuple(task for task in homework.tasks if task.id in DONE))
-    half = imitation.notebook(homework, imitation.texts(begun)).encode()
-    yield Handed("s09_hw2.ipynb", half, -1, f"Not finished: {', '.join(DONE)} are right, 30 points.")
-    blank = imitation.notebook(homework).encode()
-    yield Handed("s10_hw2.ipynb", blank, -3, "As it was handed out: 0 points.")
-    archive = packed({"hw2.ipynb": right, "notes.txt": b"All tasks.\n"})
-    yield Handed("s11_hw2.zip", archive, -5, "An archive: 100.")
-    trap = packed({"hw2.ipynb": right, "../s01_hw2.ipynb": b"{}"})
-    yield Handed("s12_hw2.zip", trap, -4, "An archive that would overwrite another's file: refused, 0.")
-    yield Handed(
-        "s13_hw2.py", ATTACKS.read_bytes(), -6, "Attacks on the grader in place of functions: 0 points."
-    )
+    """Yield what the toy class has handed in: what toy.toml says of each file."""
+    for name, one in HANDED.items():
+        done = [task for task in homework.tasks if "done" not in one or task.id in one["done"]]
+        cells = imitation.texts(homework._replace(tasks=tuple(done)), one.get("mistakes", ()))
+        text = imitation.script(cells) if name.endswith(".py") else imitation.notebook(homework, cells)
+        data = ATTACKS.read_bytes() if one.get("attacks") else text.encode()
+        if beside := one.get("beside"):
+            data = packed({"hw2.ipynb": data, **{other: held.encode() for other, held in beside.items()}})
+        yield Handed(name, data, one["hours"], one["about"])
 
 
 def write(folder: Path) -> list[Path]:

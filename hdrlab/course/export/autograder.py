@@ -32,7 +32,7 @@ def graded(root: Path, tier: str) -> bytes:
     homework = plan.read(source / "plan.toml").homeworks[settings["homework"]]
     hidden, secret = source / "hidden", settings["secret"]
     who = student(root) if secret else ""
-    conditions = grading.Conditions(tier, who, secret, hidden if hidden.is_dir() else None)
+    conditions = plan.Conditions(tier, who, secret, hidden if hidden.is_dir() else None)
     return gradebook.gradescope(grading.grade(handed_in(root / "submission"), homework, conditions))
 
 

@@ -27,7 +27,8 @@ FRONT = PAGES / "front.ipynb"  # the picture of the first page
 MARK = ".nojekyll"  # keeps GitHub's pages from leaving out what begins with _; its text tells a site of ours
 MADE = b"Made by hdrlab site, which replaces what is in this folder.\n"
 WIDGETS = "_widgets"  # where the pages find them
-OWN = ("notebooks", "assignments", "reference", "_modules", WIDGETS)  # folders whose files are all ours
+# folders whose files are all ours
+OWN = ("notebooks", "assignments", "reference", "_images", "_modules", WIDGETS)
 # what a notebook says of running it, where nothing runs
 OF_RUNNING = re.compile(
     r"(?s)Run the cells from the top\. |Choose \*Run\*.*?read on\. |, and you can break.nothing:.*?it back"
