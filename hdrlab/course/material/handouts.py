@@ -234,9 +234,12 @@ def write_text(file: Path, text: str) -> Path:
 
 
 @cache
-def given_cells(homework: str) -> tuple[Cell, ...]:
-    """Return the cells that a homework's handout gives, out of our own copy of it."""
+def cells(homework: str) -> tuple[Cell, ...]:
+    """Return the cells of code in a homework's handout, out of our own copy of it, if there is one."""
     file = materials.folder("assignments") / f"{homework}.ipynb"
-    if not file.is_file():
-        return ()
-    return tuple(cell for cell in cells_of(file.read_bytes(), file.name)[0] if cell.given)
+    return tuple(cells_of(file.read_bytes(), file.name)[0]) if file.is_file() else ()
+
+
+def given_cells(homework: str) -> tuple[Cell, ...]:
+    """Return those that the handout gives."""
+    return tuple(cell for cell in cells(homework) if cell.given)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from hdrlab.course import submission
 from hdrlab.course.code import names
-from hdrlab.course.material import handouts, materials
+from hdrlab.course.material import handouts
 
 TASK, ALL = 30_000, 100_000  # characters of one task, and of all
 WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
@@ -106,10 +106,6 @@ def _given(homework: str) -> frozenset[str]:
     return frozenset(part for cell in handouts.given_cells(homework) for _, part in _statements(cell.text))
 
 
-@cache
 def handout_code(homework: str) -> tuple[str, ...]:
     """Return the code of a homework's handout: what is given, and the beginnings of the tasks."""
-    file = materials.folder("assignments") / f"{homework}.ipynb"
-    if not file.is_file():
-        return ()
-    return tuple(cell.text for cell in submission.cells_of(file.read_bytes(), file.name)[0])
+    return tuple(cell.text for cell in handouts.cells(homework))

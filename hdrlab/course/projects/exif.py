@@ -6,21 +6,13 @@ left out as well: positions, serial numbers, owners, notes that only the maker c
 """
 
 import struct
-from typing import NamedTuple
+import tomllib
+from pathlib import Path
+from typing import Any, NamedTuple
 
-SIZES = {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 6: 1, 7: 1, 8: 2, 9: 4, 10: 8, 11: 4, 12: 8}  # bytes of a type
-POINTER = 0x8769  # to the directory of the camera's settings
-POSITION = 0x8825  # to the directory of where it was taken
-NOTES = 0x927C  # of the maker
-PERSONAL = {0xA430: "owner", 0x013B: "artist", 0x8298: "copyright", 0x9286: "comment", 0x010E: "description"}
-SERIALS = {0xA431, 0xA435, 0xC62F, 0xA420}  # body, lens, camera of a DNG, the picture's own number
-OTHERS = {0x02BC, 0x83BB, 0x8649, 0x9286, 0xA430, 0x9010, 0x9011, 0x9012}  # XMP, IPTC, ... and time zones
-KEPT = {0x010F, 0x0110, 0x0112, 0x011A, 0x011B, 0x0128, 0x0131, 0x0132, 0x0213}  # maker, model, upright, date
-SETTINGS = {
-    *(0x829A, 0x829D, 0x8822, 0x8824, 0x8827, *range(0x8830, 0x8836), 0x9000, 0x9003, 0x9004, 0x9101, 0x9102),
-    *(*range(0x9201, 0x920B), 0x9290, 0x9291, 0x9292, *range(0xA000, 0xA004), 0xA20E, 0xA20F, 0xA210),
-    *(0xA215, 0xA217, 0xA300, 0xA301, *range(0xA401, 0xA40D), 0xA432, 0xA433, 0xA434, 0xA500),
-}
+TAGS: dict[str, Any] = tomllib.loads(Path(__file__).with_name("exif.toml").read_text("utf8"))
+POINTER, POSITION, NOTES = TAGS["pointer"], TAGS["position"], TAGS["notes"]
+PERSONAL, SERIALS, OTHERS = TAGS["personal"], TAGS["serials"], TAGS["others"]
 
 
 class Entry(NamedTuple):
@@ -52,7 +44,7 @@ def directory(block: bytes, at: int, sign: str) -> tuple[list[Entry], int]:
     for k in range(count):
         place = at + 2 + 12 * k
         tag, kind, length = struct.unpack_from(f"{sign}HHL", block, place)
-        size = SIZES.get(kind, 0) * length
+        size = TAGS["sizes"].get(str(kind), 0) * length
         start = place + 8 if size <= 4 else struct.unpack_from(f"{sign}L", block, place + 8)[0]
         left -= size
         if size and start + size <= len(block) and left >= 0:
@@ -79,9 +71,9 @@ def list_personal_data(block: bytes) -> set[str]:
     entries, following = directory(block, first(block), order(block))
     settings = pointed(block, entries)
     tags = {entry.tag for entry in [*entries, *settings]}
-    told = {name for tag, name in PERSONAL.items() if tag in tags}
+    told = {name for name, tag in PERSONAL.items() if tag in tags}
     told |= {"location"} if POSITION in tags else set()
-    told |= {"serial numbers"} if tags & SERIALS else set()
+    told |= {"serial numbers"} if tags & {*SERIALS} else set()
     told |= {"notes of the maker"} if NOTES in tags else set()
     return told | ({"a small picture"} if following else set())
 
@@ -96,8 +88,8 @@ def cleaned(block: bytes) -> bytes:
     """
     sign = order(block)
     entries, _ = directory(block, first(block), sign)
-    kept = [entry for entry in entries if entry.tag in KEPT]
-    settings = [entry for entry in pointed(block, entries) if entry.tag in SETTINGS]
+    kept = [entry for entry in entries if entry.tag in TAGS["kept"]]
+    settings = [entry for entry in pointed(block, entries) if entry.tag in TAGS["settings"]]
     start = 8 + 2 + 12 * (len(kept) + bool(settings)) + 4
     spill = sum(_spilled(entry) for entry in kept)
     if settings:

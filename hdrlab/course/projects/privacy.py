@@ -150,7 +150,8 @@ def _png(data: bytes) -> Cleaned:
 
 def _tiff(data: bytes, *, raw: bool) -> Cleaned:
     out, sign = bytearray(data), exif.order(data)
-    gone = {exif.POSITION, *exif.SERIALS, *exif.OTHERS, *exif.PERSONAL} | (set() if raw else {exif.NOTES})
+    gone = {exif.POSITION, *exif.SERIALS, *exif.OTHERS, *exif.PERSONAL.values()}
+    gone |= set() if raw else {exif.NOTES}
     at = exif.first(data)
     seen: set[int] = set()
     removed = exif.list_personal_data(data) - (

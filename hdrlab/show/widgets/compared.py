@@ -8,7 +8,7 @@ All of it happens in the browser, on a page without a kernel too.
 """
 
 from collections.abc import Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 import traitlets
@@ -22,14 +22,6 @@ from hdrlab.show.widgets.scripts import Widget, script
 
 SIDE = 2000  # pixels: what is larger is shown by means of k x k pixels, or the page gets too heavy to open
 SHORTEST = 0.2  # seconds: more than three flashes in a second can harm a reader [WCAG 2.3.1]
-
-
-class Readout(NamedTuple):
-    """Values as they travel: half floats, what they were multiplied by, and how many a pixel has."""
-
-    data: bytes
-    scale: float
-    channels: int
 
 
 class Comparison(Widget):
@@ -159,9 +151,7 @@ def _traits(drawn: list[object], alt: str, labels: Sequence[str], values: Any, u
         "pictures": [web.encode_webp(fit(picture, SIDE), lossless=True) for picture in pictures],
         "alt": require_alt(alt),
         "labels": list(labels),
-        "values": [one.data for one in read],
-        "scales": [one.scale for one in read],
-        "channels": [one.channels for one in read],
+        **{name: [one[name] for one in read] for name in ("values", "scales", "channels")},
         "unit": unit,
     }
 
@@ -175,8 +165,9 @@ def _each(values: Any, count: int) -> list[Array]:
     return [np.asarray(one) for one in each]
 
 
-def _readout(values: Array, size: tuple[int, ...]) -> Readout:
+def _readout(values: Array, size: tuple[int, ...]) -> dict[str, Any]:
     fits = values.shape[:2] == size and values.shape[2:] in ((), (3,)) and values.dtype.kind in "uif"
     if not fits or not np.isfinite(values).all():
         raise ValueError(f"expected finite values {size} or {(*size, 3)}, got {describe(values)}")
-    return Readout(*web.encode_halves(fit(values.astype(np.float32), SIDE)), 3 if values.ndim == 3 else 1)
+    data, scale = web.encode_halves(fit(values.astype(np.float32), SIDE))
+    return {"values": data, "scales": scale, "channels": 3 if values.ndim == 3 else 1}
