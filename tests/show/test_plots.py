@@ -166,7 +166,7 @@ def test_a_figure_of_pyplot_is_rendered_and_closed():
 def test_a_picture_carries_its_alt_text_into_the_page():
     shown = pictures.picture(np.zeros((4, 5), np.uint8), alt='A "black" square', caption="black < gray")
     page = shown._repr_html_()
-    assert 'alt="A &quot;black&quot; square"' in page and "black &lt; gray" in page
+    assert 'alt="A &#34;black&#34; square"' in page and "black &lt; gray" in page
     assert 'src="data:image/webp;base64,' in page and repr(shown) == 'A "black" square'
 
 
