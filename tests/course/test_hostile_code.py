@@ -10,7 +10,7 @@ from xml.etree import ElementTree
 import hostile
 import pytest
 
-from hdrlab.course import grading
+from hdrlab.course import grading, plan
 from hdrlab.course.checks.subject import NoAnswer, Subject
 from hdrlab.course.classroom import run as classroom
 from hdrlab.course.classroom.journal import Done, Piece
@@ -141,7 +141,7 @@ def test_the_words_of_the_grader_in_an_exception_buy_no_second_try(tmp_path, mon
         return result(message=message, kind="raised" if len(tries) < 9 else "")
 
     monkeypatch.setattr(grading, "grade", graded)
-    grader = classroom.Grader(None, grading.Conditions("practice"))
+    grader = classroom.Grader(None, plan.Conditions("practice"))
     grader.result(Piece("b1", tmp_path / "b1.py", "key"))
     assert len(tries) == 1
 
