@@ -126,8 +126,25 @@ pictures.picture(
     colour.to_8bit(colour.recolour(room, L, Ld)), alt="The room with its light compressed, details kept"
 )
 
+# %% [markdown] about="fix_uncertain"
+# ## 6 · Durand and Dorsey: uncertain pixels ({points})
+#
+# The sum below the fraction, $k(p)$, says how many pixels the mean at $p$ rests on. A pixel unlike all
+# around it rests on itself alone, is its own base, and keeps no detail. There the paper takes another base,
+# and this is ours: the mean, blurred by a Gaussian of $\sigma = 2$ pixels. How certain a base is rises with
+# the logarithm of $k$, from 0 at one pixel to 1 at the root of all,
+#
+# $$u = \frac{\ln k}{\ln \sqrt{2 \pi \sigma_s^2}}, \text{ at least 0 and at most 1}, \qquad
+#   \text{base} = u\, \text{mean} + (1 - u)\, \mathrm{blur}(\text{mean}).$$
+#
+# (`mean` and `k` are (H, W), $k$ is above 0, and $\sigma_s$ at least 1. What the blur meets past the edge
+# is yours to choose: the checks look at pixels ten or more from it.)
+
+# %% task="fix_uncertain"
+# Return u mean + (1 - u) blur(mean), (H, W): the certainty u rises with ln k.
+
 # %% [markdown] about="adjust_steps"
-# ## 6 · Ward: a histogram that may not exaggerate ({points})
+# ## 7 · Ward: a histogram that may not exaggerate ({points})
 #
 # Equalising the histogram $h$ of ln luminance gives each brightness its share of the display, and
 # exaggerates the contrast of those that fill the picture. A ceiling keeps every slope at or below 1: with
@@ -144,7 +161,7 @@ pictures.picture(
 # Yield (h, ceiling, T, trimmings): the histogram as it is, and after every trim.
 
 # %% [markdown] about="scale"
-# ## 7 · Chiu: a scale that varies slowly ({points})
+# ## 8 · Chiu: a scale that varies slowly ({points})
 #
 # The eye does not mind a scale that varies slowly: $s = 1 / (k\, \mathrm{blur}(L))$ with a Gaussian blur,
 # so that a pixel $k$ times as bright as its neighbourhood becomes white ($k$ is `headroom`). Where a
@@ -162,7 +179,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="attenuation_steps"
-# ## 8 · Fattal: flatten what is steep ({points})
+# ## 9 · Fattal: flatten what is steep ({points})
 #
 # Large contrasts have steep slopes somewhere in the pyramid of $l = \ln L$. Level $k$ has half the size of
 # level $k - 1$ (blur, then every second pixel; sides rounded up), as long as neither side falls below 32.
@@ -180,7 +197,7 @@ pictures.picture(
 # Yield (k, lL, slope, phi, Phi) of the levels k = d ... 0: Phi_d = phi_d, Phi_k = enlarged(Phi_(k+1)) phi_k.
 
 # %% [markdown] about="divergence"
-# ## 9 · Fattal: the divergence ({points})
+# ## 10 · Fattal: the divergence ({points})
 #
 # A gradient field $G = (G_y, G_x)$, `(2, H, W)`, holds forward differences: $G_y(y, x)$ is the step from
 # row $y$ to row $y + 1$. Its divergence takes *backward* differences, so that the two together are the
@@ -194,7 +211,7 @@ pictures.picture(
 # %% task="divergence"
 
 # %% [markdown] about="solve"
-# ## 10 · Fattal: the picture with these gradients ({points})
+# ## 11 · Fattal: the picture with these gradients ({points})
 #
 # No picture has exactly the gradients that were asked for. The nearest one solves
 # $\nabla^2 u = \operatorname{div} G$, with nothing flowing through the edges. In cosines the Laplacian is a

@@ -7,7 +7,7 @@
 # made of lines instead of neighbours, contrast lowered scale by scale with no base at all, and a code for
 # displays that are brighter than paper. Then questions of the lecture that no other sheet asks: a
 # sensor's gain, levels that two histograms bring together, how sure a level is, what a good pixel is,
-# what a meter asks for and of whom, and where ghosts are. You write the heart of each.
+# what a meter asks for and of whom, and where a surface is even. You write the heart of each.
 #
 # {choice}
 #
@@ -350,46 +350,58 @@ pictures.picture(
     alt="The room, dark but for a disc at the lower half of the window",
 )
 
-# %% [markdown] about="dilate"
-# ## 12 · A margin for ghosts ({points})
+# %% [markdown] about="centre"
+# ## 12 · A meter that asks all, and the middle most ({points})
 #
-# Where something moved, a mask (H, W) marks pixels that the photographs contradict each other about.
-# Movement is seen at outlines, so the mask is widened: to it belongs every pixel of which the middle is
-# at most `margin` pixels from the middle of a pixel of the mask, by the straight line, and then all that
-# the widened mask encloses, its holes. (A hole is what no walk from pixel to neighbour, above, below, left or
-# right, leads out of the picture from.)
+# A centre-weighted meter has no rim. A pixel's weight is a Gaussian, $\exp\bigl(-d^2 / (2 \sigma^2)\bigr)$,
+# of its distance $d$ from the middle `at`, measured in parts of the picture: in heights down, in widths to
+# the right, $d^2 = (\Delta y / H)^2 + (\Delta x / W)^2$. All weights add up to 1. And $\sigma$ is the one
+# with which the part `inside` of all the weight lies on the pixels that a spot meter of this `share` and
+# `at` asks.
 #
-# (`mask` is an array of bool, `margin` a whole number above 0. An empty mask stays empty. The answer is
-# of bool, or 0 and 1.)
+# (`shape` is (H, W), and `inside` is larger than `share`. You may call your `spot`.)
 
-# %% task="dilate"
-# Return the mask (H, W), all within margin pixels of it, and what that encloses.
+# %% task="centre"
+# Return w (H, W), a Gaussian about `at` whose sum is 1: `inside` of it lies on the pixels of a spot.
 
-# %% about="dilate"
-down, right = np.indices((180, 240)) - np.reshape((90, 120), (2, 1, 1))
-outline = (abs(np.hypot(down, right) - 55) < 1) & (np.arctan2(down, right) % 0.5 > 0.15)
+# %% about="centre"
 pictures.picture(
-    colour.to_8bit(0.5 * outline + 0.5 * dilate(outline, 12)),
-    alt="An outline with gaps, white, on a gray disc that it and its margin enclose",
+    colour.to_8bit(np.clip(L / np.quantile(L, 0.95), 0, 1) * centre(L.shape) / centre(L.shape).max()),
+    alt="The room, which becomes darker and darker from the middle to the edges of the picture",
 )
 
-# %% [markdown] about="label"
-# ## 13 · Ghost by ghost ({points})
+# %% [markdown] about="flat"
+# ## 13 · Is that patch flat? Ask chi-square ({points})
 #
-# Each region takes its pixels from one photograph, so regions are told apart: pixels of the mask belong
-# to one region if a walk within the mask leads from one to the other, each step to one of eight
-# neighbours, across corners too. Label the regions from 1 to their number, in whichever order, and with 0
-# what is not in the mask.
+# Whoever calibrates with pixels takes those on even surfaces ([Mitsunaga and Nayar,
+# 1999](https://doi.org/10.1109/CVPR.1999.786966)). `A` (t, H, W) are $t$ frames of one exposure, where 1 is
+# full. Take the average of the frames, and in it the patch of $s$ = `size`$^2$ pixels around each pixel
+# (`size` is odd). On an even surface its variance $\sigma_s^2$ (the mean of the squares, divided by $s$) is
+# that of noise alone.
+#
+# - Of **one frame** the noise is known, $\sigma$ = `sigma`. Then $s\,\sigma_s^2 / \sigma^2$ is chi-square
+#   with $s - 1$ degrees of freedom: the patch is flat if it is at most $\chi^2_{s-1}(\psi)$, which noise
+#   exceeds by chance in the part $\psi$ = `psi` of all flat patches: `scipy.stats.chi2.isf(psi, s - 1)`.
+# - Of **more frames** the noise is seen, and `sigma` has no say. A pixel's variance over the frames,
+#   divided by $t - 1$, is that of one frame; its mean over the patch is $\sigma_t^2$. The average of $t$
+#   frames has $\sigma_t^2 / t$. And as that is an estimate of $s\,(t - 1)$ degrees of freedom, the limit is
+#   another: flat is where
+#
+# $$\frac{s\,\sigma_s^2}{\sigma_t^2 / t} \le (s - 1)\, F_{s-1,\; s(t-1)}(\psi),$$
+#
+#   `scipy.stats.f.isf(psi, s - 1, s * (t - 1))`.
+#
+# Where a patch is cut by the edge of the picture, within `size // 2` pixels of it, nothing is flat. Return
+# a mask (H, W), of bool, or 0 and 1.
 
-# %% task="label"
-# Return labels (H, W) of the connected regions of a mask of bool, 0 elsewhere.
+# %% task="flat"
+# Return where the patch around a pixel is flat, (H, W), of frames A (t, H, W).
 
-# %% about="label"
-squares = np.random.default_rng(3).uniform(size=(15, 20)) < 0.25
-regions = label(np.kron(squares, np.ones((12, 12), bool)))
+# %% about="flat"
+frames = np.clip(L / np.quantile(L, 0.95), 0, 1) + np.random.default_rng(8).normal(0, 0.01, (4, *L.shape))
 pictures.picture(
-    colour.to_8bit(regions / regions.max()),
-    alt="Squares on black, each group that touches, in a side or a corner, in a gray of its own",
+    colour.to_8bit(flat(frames).astype(float)),
+    alt="White on most of the walls; black along edges, on most of the floor, and at the picture's rim",
 )
 
 # %% [markdown]

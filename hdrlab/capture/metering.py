@@ -36,19 +36,7 @@ def _places(shape: tuple[int, int], at: At) -> tuple[Array, Array]:
     return down[:, None], right[None, :]
 
 
-def _disc(shape: tuple[int, int], share: float, at: At) -> F64:
-    """Return equal weight in a disc: the `share` of the pixels that are nearest to `at`."""
-    if not 0 < share <= 1:
-        raise ValueError(f"expected a share of the picture from 0 to 1, got {share}")
-    height, width = shape
-    down, right = _places(shape, at)
-    distance = np.hypot(down * height, right * width)
-    reach = np.sort(distance, axis=None)[max(round(share * distance.size), 1) - 1]
-    return _normal(distance <= reach)
-
-
-def _normal(w: ArrayLike) -> F64:
-    w = np.asarray(w, np.float64)
+def _normal(w: Array) -> F64:
     return w / w.sum()
 
 
@@ -58,13 +46,21 @@ def average(shape: tuple[int, int]) -> F64:
 
 
 def spot(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.03) -> F64:
-    """Return equal weight in a disc of 1 to 5 % of the picture, and none elsewhere."""
-    return _disc(shape, share, at)
+    """Return equal weight in a disc, the `share` of the pixels nearest to `at`, and none elsewhere.
+
+    A spot meter's disc is 1 to 5 % of the picture.
+    """
+    if not 0 < share <= 1:
+        raise ValueError(f"expected a share of the picture from 0 to 1, got {share}")
+    down, right = _places(shape, at)
+    distance = np.hypot(down * shape[0], right * shape[1])
+    reach = np.sort(distance, axis=None)[max(round(share * distance.size), 1) - 1]
+    return _normal(distance <= reach)
 
 
 def partial(shape: tuple[int, int], *, at: At = (0.5, 0.5), share: float = 0.12) -> F64:
     """Return equal weight in a disc of 10 to 15 % of the picture, and none elsewhere."""
-    return _disc(shape, share, at)
+    return spot(shape, at=at, share=share)
 
 
 def centre(shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, at: At = (0.5, 0.5)) -> F64:
@@ -76,16 +72,13 @@ def centre(shape: tuple[int, int], *, inside: float = 0.7, share: float = 0.25, 
         raise ValueError(f"expected more than {share} of the weight inside, and less than 1, got {inside}")
     down, right = _places(shape, at)
     squared = down**2 + right**2
-    core = _disc(shape, share, at) > 0
+    core = spot(shape, at=at, share=share) > 0
     low, high = 0.01, 100.0
     for _ in range(60):
         sigma = np.sqrt(low * high)
-        low, high = (sigma, high) if _feather(squared, sigma)[core].sum() > inside else (low, sigma)
-    return _feather(squared, sigma)
-
-
-def _feather(squared: Array, sigma: float) -> F64:
-    return _normal(np.exp(-squared / (2 * sigma**2)))
+        w = _normal(np.exp(-squared / (2 * sigma**2)))
+        low, high = (sigma, high) if w[core].sum() > inside else (low, sigma)
+    return w
 
 
 def _honeycomb(down: Array, right: Array) -> Array:

@@ -1,6 +1,7 @@
 """Durand and Dorsey's operator, fast: the bilateral filter on its grid; bands where all is certain stay."""
 
-from hdrlab.core.filters.bilateral import Filtered
+from functools import partial
+
 from hdrlab.core.types import F32
 from hdrlab.fast import with_parts
 from hdrlab.fast._bands import banded
@@ -11,9 +12,9 @@ from hdrlab.tonemap import durand
 _fix = with_parts(__name__, durand.fix_uncertain, gaussian_filter=gaussian)
 
 
-def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
+def fix_uncertain(mean: F32, k: F32, *, sigma_s: float) -> F32:
     """Return the lesson's base."""
-    return banded(lambda *rows: _fix(Filtered(*rows), sigma_s=sigma_s), *found, margin=4 * durand.NEAR)
+    return banded(partial(_fix, sigma_s=sigma_s), mean, k, margin=4 * durand.NEAR)
 
 
 def combine(base: F32, detail: F32) -> F32:

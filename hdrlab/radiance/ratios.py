@@ -78,27 +78,23 @@ def collect_equations(h_A: ArrayLike, h_B: ArrayLike, scheme: str = "mid-step") 
     return Equations(np.concatenate([level[a], back[b]]), np.concatenate([T[a], level[b]]), v)
 
 
-def count_overlap(found: Equations) -> int:
-    """Return how many levels (of 256) of the darker frame have a place in the brighter one."""
-    return len(np.unique(np.round(found.x)))
-
-
 def solve_ratio(found: Equations, used: Mask) -> float:
     """Return k of least squares, sum v^2 x y / sum v^2 x^2."""
-    v2 = found.v[used] ** 2
-    return float(np.sum(v2 * found.x[used] * found.y[used]) / np.sum(v2 * found.x[used] ** 2))
+    x, y, v = (part[used] for part in found)
+    return float(np.sum(v**2 * x * y) / np.sum(v**2 * x**2))
 
 
 def square_errors(found: Equations, k: float) -> F64:
     """Return (v (y - k x))^2 of all equations."""
-    return (found.v * (found.y - k * found.x)) ** 2
+    x, y, v = found
+    return (v * (y - k * x)) ** 2
 
 
 def ratio_steps(
     found: Equations, *, limit: float = 9.0, tolerance: float = 1e-6, rounds: int = 100
 ) -> Iterator[State]:
     """Yield the State of the first solution, of all equations, and after each round without outliers."""
-    used = np.ones(len(found.x), bool)
+    used = np.ones(len(found[0]), bool)
     k = solve_ratio(found, used)
     yield State(k, used, float(np.mean(square_errors(found, k))))
     for _ in range(rounds):
@@ -163,6 +159,7 @@ def _estimate_pair(h_A: Array, h_B: Array, scheme: str) -> float:
         return 1 / _estimate_pair(h_B, h_A, scheme)
     parts = [collect_equations(a, b, scheme) for a, b in zip(h_A, h_B, strict=True)]
     found = Equations._make(np.concatenate(column) for column in zip(*parts, strict=True))
-    if (overlap := count_overlap(found)) < FEWEST:
+    overlap = len(np.unique(np.round(found.x)))  # levels of the darker frame that the brighter one has, too
+    if overlap < FEWEST:
         raise ValueError(f"expected frames that overlap in brightness by {FEWEST} levels, got {overlap}")
     return last(ratio_steps(found, limit=SCHEMES[scheme].limit)).k

@@ -17,7 +17,7 @@ do not.
 from typing import NamedTuple
 
 import numpy as np
-from scipy.ndimage import uniform_filter
+from scipy.ndimage import binary_erosion, uniform_filter
 from scipy.stats import chi2, f
 
 from hdrlab.core.arrays import as_stack, describe, to_256
@@ -100,7 +100,7 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     noise = uniform_filter(variance, size) / t
     _, spread = spatial_average(mean, size=size)
     passed = s * spread <= threshold(s, psi=psi, estimated=estimated) * noise
-    return passed & _inner(passed.shape, size // 2)
+    return passed & binary_erosion(np.ones(passed.shape), np.ones((3, 3)), iterations=size // 2)
 
 
 def radius(shape: tuple[int, int]) -> F64:
@@ -135,10 +135,3 @@ def circle(A: ArrayLike, B: ArrayLike, *, tolerance: float = 1.0, rings: int = 4
     off[-1] = off[-2]
     ends = np.flatnonzero(off[:-1] & off[1:])
     return float(edges[ends[0]] if len(ends) else outer)
-
-
-def _inner(shape: tuple[int, ...], border: int) -> Mask:
-    """Return (H, W), False within `border` pixels of the edge, where a patch is not whole."""
-    inner = np.zeros(shape, bool)
-    inner[border : shape[0] - border, border : shape[1] - border] = True
-    return inner

@@ -23,7 +23,7 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.arrays import as_luminance
 from hdrlab.core.extremes import positive_median
-from hdrlab.core.filters.bilateral import Filtered, bilateral
+from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
@@ -50,22 +50,22 @@ def logarithm(L: F32) -> F32:
     return np.log(np.maximum(L, floor)) * np.float32(1 / math.log(10))
 
 
-def fix_uncertain(found: Filtered, *, sigma_s: float) -> F32:
-    """Return u mean + (1 - u) blur(mean): a base that rests on few pixels is fixed [Durand02].
+def fix_uncertain(mean: F32, k: F32, *, sigma_s: float) -> F32:
+    """Return u mean + (1 - u) blur(mean): a base that rests on few pixels k is fixed [Durand02].
 
     A pixel unlike all around it is its own base: without detail, and compressed like light. The certainty u
     rises with log k, as in the paper, here from one pixel, 0, to the root of all, 1.
     """
-    mean, enough = found.mean, (2 * math.pi * sigma_s**2) ** 0.5
-    if enough <= 1 or found.k.min() >= enough:
+    enough = (2 * math.pi * sigma_s**2) ** 0.5
+    if enough <= 1 or k.min() >= enough:
         return mean
-    u = np.log(np.clip(found.k, 1, enough)) / math.log(enough)
+    u = np.log(np.clip(k, 1, enough)) / math.log(enough)
     return mean + (1 - u) * (gaussian_filter(mean, NEAR) - mean)
 
 
 def layers(lL: F32, *, sigma_s: float, sigma_r: float = 0.4) -> Layers:
     """Return base = bil(lL) and detail = lL - base."""
-    base = fix_uncertain(bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
+    base = fix_uncertain(*bilateral(lL, sigma_s=sigma_s, sigma_r=sigma_r), sigma_s=sigma_s)
     return Layers(base, lL - base)
 
 

@@ -42,7 +42,7 @@ def test_spot_asks_1_to_5_percent_and_partial_10_to_15(mode, low, high):
 def test_centre_gives_its_share_of_the_weight_to_the_central_quarter(inside):
     w = metering.centre(SHAPE, inside=inside)
     assert np.sort(w.ravel())[::-1][: w.size // 4].sum() >= inside - 0.005
-    assert w[metering._disc(SHAPE, 0.25, (0.5, 0.5)) > 0].sum() == pytest.approx(inside, abs=1e-3)
+    assert w[metering.spot(SHAPE, share=0.25) > 0].sum() == pytest.approx(inside, abs=1e-3)
     row = w[40, 60:]
     assert np.all(np.diff(row) < 0) and row[-1] > 0  # feathered: it falls all the way, and never to nothing
 

@@ -2,6 +2,9 @@
 
 # %%
 import numpy as np
+from scipy.ndimage import binary_fill_holes
+from scipy.ndimage import label as connected
+from scipy.signal import convolve2d
 
 f32 = np.float32
 
@@ -90,3 +93,78 @@ def to_pixels(E):
 def to_radiance(pixels):
     m, e = pixels[..., :3].astype(f32), pixels[..., 3:].astype(f32)
     return np.where(e > 0, m / f32(256) * np.exp2(e - f32(128)), f32(0))
+
+
+# %% task="dilate"
+
+
+def dilate(mask, margin):
+    H, W = mask.shape
+    padded = np.pad(mask, margin)
+    wide = np.zeros((H, W), bool)
+    for dy in range(2 * margin + 1):
+        for dx in range(2 * margin + 1):
+            if np.hypot(dy - margin, dx - margin) <= margin:
+                wide |= padded[dy : dy + H, dx : dx + W]
+    return binary_fill_holes(wide).astype(np.uint8)
+
+
+# %% task="label"
+
+
+def label(mask):
+    labels, _ = connected(mask, structure=np.ones((3, 3)))
+    return labels
+
+
+# %% task="decode_half"
+
+
+def decode_half(bits):
+    b = bits.astype(np.uint32)
+    sign, e, m = (b & 0x8000) << 16, (b >> 10) & 31, b & 1023
+    exponent = np.where(e == 31, 255, e + 112).astype(np.uint32)
+    word = sign | exponent << 23 | m << 13
+    value = word.view(np.float32)
+    small = np.float32(2.0**-24) * m.astype(np.float32)
+    return np.where(e == 0, np.where(sign > 0, -small, small), value)
+
+
+# %% task="weighted_variance"
+
+
+def weighted_variance(x, w):
+    x, w = np.float32(x), np.float32(w)
+    share = w / np.maximum(w.sum(0, keepdims=True), np.float32(1e-20))
+    mean = np.einsum("phw,phw->hw", share, x)
+    return np.einsum("phw,phw->hw", share, np.square(x - mean))
+
+
+# %% task="find_seeds"
+
+
+def find_seeds(score):
+    ones = np.ones((3, 3))
+    whole = convolve2d((score > 1) * 1.0, ones, mode="valid") > 8.5
+    return convolve2d(whole * 1.0, ones, mode="full") > 0.5
+
+
+# %% task="ratio_steps"
+
+
+def ratio_steps(found, *, limit=9.0, tolerance=1e-6, rounds=100):
+    x, y, v = found
+    vx, vy = v * x, v * y
+    used = np.arange(len(x)) >= 0
+    k = (vx @ vy) / (vx @ vx)
+    V = np.var(vy - k * vx) + np.mean(vy - k * vx) ** 2
+    states = [(k, used.copy(), V)]
+    change, i = np.inf, 0
+    while i < rounds and not change < tolerance:
+        used = np.abs(vy - k * vx) <= np.sqrt(limit * V)
+        a, b = vx[used], vy[used]
+        change, k = abs(a @ b / (a @ a) - k), a @ b / (a @ a)
+        V = np.dot(b - k * a, b - k * a) / used.sum()
+        states.append((k, used.copy(), V))
+        i += 1
+    yield from states

@@ -109,3 +109,111 @@ def to_radiance(pixels):
             if e:
                 E[y, x] = [m / 256 * 2.0 ** (e - 128) for m in (r, g, b)]
     return E
+
+
+# %% task="dilate"
+
+
+def dilate(mask, margin):
+    H, W = mask.shape
+    wide = np.zeros((H + 2, W + 2), bool)
+    for y, x in zip(*np.nonzero(mask), strict=True):
+        for dy in range(-margin, margin + 1):
+            for dx in range(-margin, margin + 1):
+                if dy * dy + dx * dx <= margin * margin and 0 <= y + dy < H and 0 <= x + dx < W:
+                    wide[y + dy + 1, x + dx + 1] = True
+    outside, waiting = np.zeros_like(wide), [(0, 0)]
+    while waiting:
+        y, x = waiting.pop()
+        if 0 <= y < H + 2 and 0 <= x < W + 2 and not wide[y, x] and not outside[y, x]:
+            outside[y, x] = True
+            waiting += [(y + 1, x), (y - 1, x), (y, x + 1), (y, x - 1)]
+    return ~outside[1:-1, 1:-1]
+
+
+# %% task="label"
+
+
+def label(mask):
+    labels, count = np.zeros(mask.shape, int), 0
+    for start in np.argwhere(mask):
+        if labels[tuple(start)]:
+            continue
+        count += 1
+        waiting = [tuple(start)]
+        while waiting:
+            y, x = waiting.pop()
+            if 0 <= y < mask.shape[0] and 0 <= x < mask.shape[1] and mask[y, x] and not labels[y, x]:
+                labels[y, x] = count
+                waiting += [(y + a, x + b) for a in (-1, 0, 1) for b in (-1, 0, 1)]
+    return labels
+
+
+# %% task="decode_half"
+
+
+def one(word):
+    text = f"{int(word):016b}"
+    s, e, m = int(text[0], 2), int(text[1:6], 2), int(text[6:], 2)
+    if e == 31:
+        return float("nan") if m else (-1) ** s * float("inf")
+    if e == 0:
+        return (-1) ** s * 2**-14 * m / 1024
+    return (-1) ** s * 2 ** (e - 15) * (1 + m / 1024)
+
+
+def decode_half(bits):
+    return np.vectorize(one, otypes=[float])(bits)
+
+
+# %% task="weighted_variance"
+
+
+def weighted_variance(x, w):
+    P, H, W = x.shape
+    v = np.zeros((H, W))
+    for i in range(H):
+        for j in range(W):
+            s = sum(w[:, i, j])
+            if s == 0:
+                continue
+            m = sum(w[p, i, j] * x[p, i, j] for p in range(P)) / s
+            v[i, j] = sum(w[p, i, j] * (x[p, i, j] - m) ** 2 for p in range(P)) / s
+    return v
+
+
+# %% task="find_seeds"
+
+
+def find_seeds(score):
+    H, W = score.shape
+    mask = np.zeros((H, W), bool)
+    for y in range(H - 2):
+        for x in range(W - 2):
+            if all(score[y + i, x + j] > 1 for i in range(3) for j in range(3)):
+                mask[y : y + 3, x : x + 3] = True
+    return mask
+
+
+# %% task="ratio_steps"
+
+
+def ratio_steps(found, *, limit=9.0, tolerance=1e-6, rounds=100):
+    pairs = list(zip(*(one.tolist() for one in found), strict=True))
+    inside = [True] * len(pairs)
+    k = V = math.nan
+    for turn in range(rounds + 1):
+        before = k
+        if turn:
+            inside = [(v * (y - k * x)) ** 2 <= limit * V for x, y, v in pairs]
+        top = bottom = 0.0
+        for (x, y, v), counts in zip(pairs, inside, strict=True):
+            if counts:
+                top += v * v * x * y
+                bottom += v * v * x * x
+        k = top / bottom
+        errors = [(v * (y - k * x)) ** 2 for (x, y, v), counts in zip(pairs, inside, strict=True) if counts]
+        V = sum(errors) / len(errors)
+        yield k, list(inside), V
+        if abs(k - before) < tolerance:
+            return

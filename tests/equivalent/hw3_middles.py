@@ -2,6 +2,8 @@
 
 # %%
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
+from scipy.ndimage import binary_fill_holes, distance_transform_edt, maximum_filter
 
 # %% task="to_radiance"
 
@@ -76,3 +78,80 @@ def merge(images, times, g, w=None):
     E = np.where(unseen & (levels[0] > 200), np.exp(lE[0]), E)
     E = np.where(unseen & (levels[-1] < 50), np.exp(g[1, 0] - np.log(t[-1])), E)
     return E.reshape(Z.shape[1:])
+
+
+# %% task="dilate"
+
+
+def dilate(mask, margin):
+    if not mask.any():
+        return mask.copy()
+    return binary_fill_holes(distance_transform_edt(~mask) <= margin)
+
+
+# %% task="label"
+
+
+def label(mask):
+    own = np.where(mask, np.arange(1, mask.size + 1).reshape(mask.shape), 0)
+    while True:
+        wider = np.where(mask, maximum_filter(own, size=3), 0)
+        if np.array_equal(wider, own):
+            break
+        own = wider
+    values = np.unique(own[mask])
+    return np.where(mask, np.searchsorted(values, own) + 1, 0).astype(float)
+
+
+# %% task="decode_half"
+
+
+def decode_half(bits):
+    bits = np.array(bits, dtype=np.int32)
+    e = (bits & 0x7C00) >> 10
+    m = bits & 0x03FF
+    out = np.ldexp((m + 1024).astype(float), e - 25)
+    out[e == 0] = np.ldexp(m[e == 0].astype(float), -24)
+    out[(e == 31) & (m == 0)] = np.inf
+    out[(e == 31) & (m != 0)] = np.nan
+    out[bits & 0x8000 != 0] *= -1
+    return out
+
+
+# %% task="weighted_variance"
+
+
+def weighted_variance(x, w):
+    x = x - x.mean(axis=0)
+    s = np.maximum(w.sum(axis=0), 1e-12)
+    first, second = (w * x).sum(axis=0) / s, (w * x * x).sum(axis=0) / s
+    return np.maximum(second - first**2, 0)
+
+
+# %% task="find_seeds"
+
+
+def find_seeds(score):
+    good = sliding_window_view(score, (3, 3)).min(axis=(2, 3)) > 1
+    mask = np.zeros(score.shape, int)
+    for dy in range(3):
+        for dx in range(3):
+            mask[dy : dy + good.shape[0], dx : dx + good.shape[1]] |= good
+    return mask
+
+
+# %% task="ratio_steps"
+
+
+def ratio_steps(found, *, limit=9.0, tolerance=1e-6, rounds=100):
+    x, y, v = found
+    weight, ratio = (v * x) ** 2, y / x
+    used, k, V, left = np.ones(x.shape, bool), None, None, rounds
+    while True:
+        new = np.average(ratio[used], weights=weight[used])
+        V = np.average((weight * (ratio - new) ** 2)[used])
+        yield float(new), used, float(V)
+        if left == 0 or (k is not None and abs(new - k) < tolerance):
+            return
+        k, left = new, left - 1
+        used = weight * (ratio - k) ** 2 <= limit * V

@@ -3,7 +3,7 @@
 # %%
 import numpy as np
 from scipy.fft import dctn, idctn
-from scipy.ndimage import gaussian_filter, zoom
+from scipy.ndimage import gaussian_filter, gaussian_filter1d, zoom
 
 f32 = np.float32
 
@@ -121,3 +121,15 @@ def solve(f):
     eigenvalue = 2 * np.cos(np.pi * y / H) + 2 * np.cos(np.pi * x / W) - 4
     eigenvalue[0, 0] = np.inf
     return idctn(dctn(f, norm="ortho") / eigenvalue.astype(f32), norm="ortho")
+
+
+# %% task="fix_uncertain"
+
+
+def fix_uncertain(mean, k, *, sigma_s):
+    base = np.array(mean, np.float32)
+    smooth = gaussian_filter1d(gaussian_filter1d(base, 2, axis=0), 2, axis=1, mode="mirror")
+    u = np.log(np.maximum(k, 1)) / np.log(np.float32(np.sqrt(2 * np.pi) * sigma_s))
+    uncertain = u < 1
+    base[uncertain] = (u * base + (1 - u) * smooth)[uncertain]
+    return base

@@ -2,7 +2,7 @@
 
 # %%
 import numpy as np
-from scipy.ndimage import convolve1d, gaussian_filter1d
+from scipy.ndimage import convolve1d, fourier_gaussian, gaussian_filter1d
 from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import spsolve
 
@@ -157,3 +157,13 @@ def display(Lm, adaptation, white=None):
 
 def log_average(L, *, delta=1e-6):
     return 2 ** np.log2(L.astype(float) + delta).mean()
+
+
+# %% task="fix_uncertain"
+
+
+def fix_uncertain(mean, k, *, sigma_s):
+    smooth = np.fft.ifft2(fourier_gaussian(np.fft.fft2(mean), 2)).real
+    root = np.sqrt(2 * np.pi) * sigma_s
+    u = np.where(k >= root, 1, np.where(k <= 1, 0, np.log2(np.maximum(k, 1e-9)) / np.log2(root)))
+    return u * mean + (1 - u) * smooth

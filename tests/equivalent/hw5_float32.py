@@ -2,9 +2,9 @@
 
 # %%
 import numpy as np
-from scipy.ndimage import binary_fill_holes, convolve1d
-from scipy.ndimage import label as connected
-from scipy.stats import rankdata
+from scipy.ndimage import convolve1d
+from scipy.optimize import minimize_scalar
+from scipy.stats import chi2, f, rankdata
 
 f32 = np.float32
 
@@ -138,23 +138,43 @@ def spot(shape, *, at=(0.5, 0.5), share=0.03):
     return ((ranks <= k) / np.float32(k)).astype(np.float32).tolist()
 
 
-# %% task="dilate"
+# %% task="centre"
 
 
-def dilate(mask, margin):
-    H, W = mask.shape
-    padded = np.pad(mask, margin)
-    wide = np.zeros((H, W), bool)
-    for dy in range(2 * margin + 1):
-        for dx in range(2 * margin + 1):
-            if np.hypot(dy - margin, dx - margin) <= margin:
-                wide |= padded[dy : dy + H, dx : dx + W]
-    return binary_fill_holes(wide).astype(np.uint8)
+def centre(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
+    y, x = (np.indices(shape).reshape(2, -1).T + 0.5).T
+    d2 = (y / shape[0] - at[0]) ** 2 + (x / shape[1] - at[1]) ** 2
+    pixels = (y - at[0] * shape[0]) ** 2 + (x - at[1] * shape[1]) ** 2
+    rank = np.argsort(np.argsort(pixels))
+    core = rank < round(share * pixels.size)
+
+    def off(log_sigma):
+        w = np.exp(-d2 / (2 * np.exp(2 * log_sigma)))
+        return (w[core].sum() / w.sum() - inside) ** 2
+
+    best = minimize_scalar(off, bounds=(np.log(0.05), np.log(3)), method="bounded", options={"xatol": 1e-8})
+    w = np.exp(-d2 / (2 * np.exp(2 * best.x)))
+    return (w / w.sum()).reshape(shape).astype(np.float32)
 
 
-# %% task="label"
+# %% task="flat"
 
 
-def label(mask):
-    labels, _ = connected(mask, structure=np.ones((3, 3)))
-    return labels
+def boxes(a, n):
+    S = np.pad(a, ((1, 0), (1, 0))).cumsum(0).cumsum(1)
+    return S[n:, n:] - S[:-n, n:] - S[n:, :-n] + S[:-n, :-n]
+
+
+def flat(A, *, size=5, psi=0.05, sigma=0.01):
+    t, s, r = len(A), size**2, size // 2
+    mean = A.mean(axis=0)
+    a = mean - mean.mean()
+    squares = boxes(a * a, size) - boxes(a, size) ** 2 / s
+    mask = np.zeros(mean.shape, np.uint8)
+    if t == 1:
+        good = squares <= sigma**2 * chi2.isf(psi, s - 1)
+    else:
+        one = boxes(A.var(axis=0, ddof=1), size) / s
+        good = squares * t <= one * (s - 1) * f.isf(psi, s - 1, s * (t - 1))
+    mask[r : r + good.shape[0], r : r + good.shape[1]] = good
+    return mask

@@ -4,6 +4,7 @@
 import math
 
 import numpy as np
+from scipy import stats
 
 # %% task="variance"
 
@@ -176,39 +177,48 @@ def spot(shape, *, at=(0.5, 0.5), share=0.03):
     return w
 
 
-# %% task="dilate"
+# %% task="centre"
 
 
-def dilate(mask, margin):
-    H, W = mask.shape
-    wide = np.zeros((H + 2, W + 2), bool)
-    for y, x in zip(*np.nonzero(mask), strict=True):
-        for dy in range(-margin, margin + 1):
-            for dx in range(-margin, margin + 1):
-                if dy * dy + dx * dx <= margin * margin and 0 <= y + dy < H and 0 <= x + dx < W:
-                    wide[y + dy + 1, x + dx + 1] = True
-    outside, waiting = np.zeros_like(wide), [(0, 0)]
-    while waiting:
-        y, x = waiting.pop()
-        if 0 <= y < H + 2 and 0 <= x < W + 2 and not wide[y, x] and not outside[y, x]:
-            outside[y, x] = True
-            waiting += [(y + 1, x), (y - 1, x), (y, x + 1), (y, x - 1)]
-    return ~outside[1:-1, 1:-1]
+def centre(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
+    H, W = shape
+    places = []
+    for i in range(H):
+        for j in range(W):
+            v, u = (i + 0.5) / H - at[0], (j + 0.5) / W - at[1]
+            places.append((math.hypot(v * H, u * W), v * v + u * u, i, j))
+    places.sort()
+    count = max(1, round(share * H * W))
+
+    def part(precision):
+        each = [math.exp(-precision * d2) for _, d2, _, _ in places]
+        return sum(each[:count]) / sum(each)
+
+    low, high = 1e-6, 1e4
+    for _ in range(60):
+        middle = math.sqrt(low * high)
+        if part(middle) < inside:
+            low = middle
+        else:
+            high = middle
+    w = np.zeros((H, W))
+    for _, d2, i, j in places:
+        w[i, j] = math.exp(-low * d2)
+    return w / w.sum()
 
 
-# %% task="label"
+# %% task="flat"
 
 
-def label(mask):
-    labels, count = np.zeros(mask.shape, int), 0
-    for start in np.argwhere(mask):
-        if labels[tuple(start)]:
-            continue
-        count += 1
-        waiting = [tuple(start)]
-        while waiting:
-            y, x = waiting.pop()
-            if 0 <= y < mask.shape[0] and 0 <= x < mask.shape[1] and mask[y, x] and not labels[y, x]:
-                labels[y, x] = count
-                waiting += [(y + a, x + b) for a in (-1, 0, 1) for b in (-1, 0, 1)]
-    return labels
+def flat(A, *, size=5, psi=0.05, sigma=0.01):
+    t, H, W = A.shape
+    s, r = size**2, size // 2
+    found = np.zeros((H, W))
+    limit = stats.chi2.isf(psi, s - 1) if t == 1 else (s - 1) * stats.f.isf(psi, s - 1, s * (t - 1))
+    for y in range(r, H - r):
+        for x in range(r, W - r):
+            patch = A[:, y - r : y + r + 1, x - r : x + r + 1]
+            noise = sigma**2 if t == 1 else np.mean(np.var(patch, axis=0, ddof=1))
+            average = patch.sum(axis=0) / t
+            found[y, x] = s * np.var(average) <= limit * noise / t
+    return found

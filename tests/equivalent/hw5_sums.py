@@ -2,7 +2,7 @@
 
 # %%
 import numpy as np
-from scipy.ndimage import binary_fill_holes, distance_transform_edt, maximum_filter
+from scipy import stats
 
 # %% task="variance"
 
@@ -132,24 +132,42 @@ def spot(shape, *, at=(0.5, 0.5), share=0.03):
     return (w / w.sum()).reshape(shape)
 
 
-# %% task="dilate"
+# %% task="centre"
 
 
-def dilate(mask, margin):
-    if not mask.any():
-        return mask.copy()
-    return binary_fill_holes(distance_transform_edt(~mask) <= margin)
+def centre(shape, *, inside=0.7, share=0.25, at=(0.5, 0.5)):
+    H, W = shape
+    y, x = np.mgrid[0:H, 0:W]
+    dy, dx = (y + 0.5) / H - at[0], (x + 0.5) / W - at[1]
+    order = np.lexsort((np.hypot(dy * H, dx * W).ravel(),))
+    core = np.zeros(H * W, bool)
+    core[order[: max(1, round(share * H * W))]] = True
+    d2 = (dy**2 + dx**2).ravel()
+    a, b = np.log(0.005), np.log(200)
+    for _ in range(80):
+        m = 0.5 * (a + b)
+        e = -d2 / (2 * np.exp(2 * m))
+        w = np.exp(e - e.max())
+        a, b = (m, b) if w[core].sum() / w.sum() > inside else (a, m)
+    return (w / w.sum()).reshape(H, W)
 
 
-# %% task="label"
+# %% task="flat"
 
 
-def label(mask):
-    own = np.where(mask, np.arange(1, mask.size + 1).reshape(mask.shape), 0)
-    while True:
-        wider = np.where(mask, maximum_filter(own, size=3), 0)
-        if np.array_equal(wider, own):
-            break
-        own = wider
-    values = np.unique(own[mask])
-    return np.where(mask, np.searchsorted(values, own) + 1, 0).astype(float)
+def flat(A, *, size=5, psi=0.05, sigma=0.01):
+    t, H, W = A.shape
+    r, s = size // 2, size**2
+    average = A.mean(axis=0)
+    offsets = [(dy, dx) for dy in range(-r, r + 1) for dx in range(-r, r + 1)]
+    moved = np.array([np.roll(average, one, axis=(0, 1)) for one in offsets])
+    spread = ((moved - moved.mean(axis=0)) ** 2).mean(axis=0)
+    if t > 1:
+        single = A.var(axis=0, ddof=1)
+        noise = sum(np.roll(single, one, axis=(0, 1)) for one in offsets) / s
+        top = (s - 1) * stats.f.isf(psi, s - 1, s * (t - 1))
+    else:
+        noise, top = sigma**2, stats.chi2.isf(psi, s - 1)
+    y, x = np.indices((H, W))
+    inside = (y >= r) & (y < H - r) & (x >= r) & (x < W - r)
+    return inside & (s * spread / (noise / t) <= top)

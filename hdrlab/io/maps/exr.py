@@ -109,6 +109,24 @@ def read(path: str | Path) -> F32:
     return _place(path, E.astype(np.float32, copy=False), header)
 
 
+def decode_half(bits: Array) -> F32:
+    """Return the values (float32) of half floats, given as bits (uint16) of any shape.
+
+    A sign s, an exponent e of 5 bits and a mantissa m of 10 are (-1)^s 2^(e - 15) (1 + m / 1024). Where e = 0
+    they are (-1)^s 2^-14 m / 1024; where e = 31 infinite, or NaN with a mantissa.
+
+    Examples
+    --------
+    >>> decode_half(np.array([0x3C00, 0xC100, 0x0001], np.uint16)).tolist()
+    [1.0, -2.5, 5.960464477539063e-08]
+    """
+    bits = np.asarray(bits, np.int64)
+    sign, e, m = 1 - 2 * (bits >> 15), bits >> 10 & 31, bits & 1023
+    value = np.where(e > 0, 1024 + m, 2 * m) * 2.0 ** (e - 25)
+    value[e == 31] = np.where(m[e == 31] > 0, np.nan, np.inf)
+    return (sign * value).astype(np.float32)
+
+
 def read_dtypes(path: str | Path) -> tuple[str, ...]:
     """Return the name of each channel's dtype: float16, float32 or uint32."""
     header = read_header(path)

@@ -18,7 +18,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter
 
 from hdrlab.core.arrays import as_table
-from hdrlab.core.types import F32, Array, ArrayLike, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import ROWS
 
@@ -32,6 +32,19 @@ class Deviation(NamedTuple):
     v: F32
     s2: F32
     r: F32
+
+
+def weighted_variance(x: Array, w: Array) -> F64:
+    """Return v = sum w (x - m)^2 / sum w, m = sum w x / sum w, of frames (P, H, W); 0 where no w is above 0.
+
+    Examples
+    --------
+    >>> weighted_variance(np.array([[[0.0, 1]], [[0, 3]]]), np.ones((2, 1, 2)))
+    array([[0., 1.]])
+    """
+    total = np.maximum(w.sum(axis=0), 1e-30)
+    m = (w * x).sum(axis=0) / total
+    return (w * (x - m) ** 2).sum(axis=0) / total
 
 
 def measure_deviation(taken: Calibrated, w: ArrayLike) -> Deviation:

@@ -1,0 +1,5 @@
+"""A threshold alone."""
+
+
+def find_seeds(score):
+    return score > 1

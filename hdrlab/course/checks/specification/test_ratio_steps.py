@@ -1,0 +1,73 @@
+"""The ratio of two exposures: ratio_steps(found, limit, tolerance, rounds) -> states (k, used, V)."""
+
+import pytest
+
+from hdrlab.course.checks.compare import parts, same, states
+from hdrlab.radiance import ratios
+
+
+def drawn(rng, off=10, scatter=0.1):
+    """Return 60 equations of one ratio, within a scatter; the first `off` are of something that moved."""
+    x, v = rng.uniform(10, 60, 60), rng.uniform(0.2, 1, 60)
+    y = x * rng.uniform(2, 6) * (1 + rng.uniform(-scatter, scatter, 60))
+    y[:off] *= rng.uniform(0.3, 0.5, off)
+    return ratios.Equations(x, y, v)
+
+
+def asked(subject, found, **knobs):
+    """Return the student's states as (k, used, V) each, and the library's."""
+    came = states(subject.ratio_steps(found, **knobs), what="the states")
+    return [parts(one, 3, what="a state") for one in came], list(ratios.ratio_steps(found, **knobs))
+
+
+@pytest.mark.points(3)
+def test_the_first_ratio_is_that_of_least_squares(subject, rng):
+    """Which k makes the sum of (v (y - k x))^2 smallest?
+
+    Set the derivative to 0: k is a quotient of two sums over all pairs.
+
+    k = sum v^2 x y / sum v^2 x^2, and V is the mean of (v (y - k x))^2.
+    """
+    (came, *_), (expected, *_) = asked(subject, drawn(rng))
+    same(came[0], expected.k, 1e-4 * expected.k, what="the first k")
+    same(came[2], expected.V, 1e-3 * expected.V, what="the first V")
+
+
+@pytest.mark.points(4)
+def test_a_round_leaves_out_what_misses_by_much_more_than_the_rest(subject, rng):
+    """Which pairs are those of something that moved?
+
+    Those whose square error is above `limit` times the mean V of the last state.
+
+    Then take k, and V, of the pairs that are left.
+    """
+    for limit in (3.0, 2.0):
+        came, expected = asked(subject, drawn(rng), limit=limit, tolerance=0.0, rounds=1)
+        same(came[-1][1], expected[1].used, 0, what="the pairs in use after one round", kind="values")
+        same(came[-1][0], expected[1].k, 1e-4 * expected[1].k, what="k after one round")
+
+
+@pytest.mark.points(2, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
+def test_a_pair_that_fits_again_comes_back(subject, rng):
+    """The first k was drawn aside by what moved. Who was left out for that alone?
+
+    Every round asks all pairs, those that the last one left out, too.
+
+    `used` is made anew in each round, of the errors of all pairs.
+    """
+    for _ in range(3):
+        came, expected = asked(subject, drawn(rng, 25, 0.02), limit=1.2)
+        same(came[-1][1], expected[-1].used, 0, what="the pairs in use at last", kind="values")
+
+
+@pytest.mark.points(1, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
+def test_there_is_a_state_before_the_first_round_and_one_after_each(subject, rng):
+    """How many states are there after three rounds?
+
+    The first one has all pairs, and no round before it.
+
+    Yield the state of a round before you ask whether k stands still.
+    """
+    for knobs in ({"tolerance": 0.0, "rounds": 3}, {"tolerance": 1e9}):
+        came, expected = asked(subject, drawn(rng), **knobs)
+        same(len(came), len(expected), 0, what="the number of states")

@@ -1,0 +1,56 @@
+"""The contradiction of frames at a pixel: weighted_variance(x, w) -> v (H, W)."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks.compare import finite, same
+
+
+def drawn(rng):
+    """Return x (P, H, W), in which a square moved in one frame, and weights, some of them 0."""
+    x = rng.uniform(-9, 3, (20, 30)) + rng.normal(0, 0.02, (4, 20, 30))
+    x[int(rng.integers(0, 4)), 5:12, 8:20] += float(rng.uniform(0.5, 1.5))
+    return x, rng.uniform(0, 1, x.shape) * (rng.uniform(size=x.shape) > 0.2)
+
+
+@pytest.mark.points(3)
+def test_frames_contradict_each_other_by_the_weighted_variance(subject, rng):
+    """By how much do the answers of the frames differ from their mean?
+
+    Both means are weighted: that of x, and that of the squares around it.
+
+    v = sum w (x - m)^2 / sum w, with m = sum w x / sum w, over the frames.
+    """
+    x, w = drawn(rng)
+    w += 0.01
+    v = np.sum(w * (x - np.average(x, axis=0, weights=w)) ** 2, axis=0) / w.sum(axis=0)
+    same(subject.weighted_variance(x, w), v, 1e-3 * v.max(), what="v", picture=True)
+
+
+@pytest.mark.points(1)
+def test_one_frame_alone_contradicts_nobody(subject, rng):
+    """Where all frames but one are clipped, what does v say? And where all are?
+
+    Who is alone agrees with himself, and 0 / 0 is not a number.
+
+    Where the sum of the weights is 0, v is 0.
+    """
+    x, w = drawn(rng)
+    w[1:, :, ::3], w[:, ::2, 1::3] = 0, 0
+    alone = np.count_nonzero(w, axis=0) < 2
+    came = finite(subject.weighted_variance(x, w), alone.shape, what="v")
+    same(came, 0 * x[0], 1e-6, what="v where at most one frame measures", picture=True, where=alone)
+
+
+@pytest.mark.points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
+def test_the_unit_of_light_and_of_the_weights_cancels(subject, rng):
+    """In another unit of light all x are larger by one number. And their differences?
+
+    Nothing changes, as long as the mean is taken off.
+
+    Weights that are twice as large are so above and below the fraction.
+    """
+    x, w = drawn(rng)
+    before = finite(subject.weighted_variance(x, w + 0.01), x[0].shape, what="v")
+    came = subject.weighted_variance(x + 2, 3 * w + 0.03)
+    same(came, before, 1e-3 * float(np.max(before)), what="v in other units", picture=True)
