@@ -565,3 +565,9 @@ def test_a_submission_that_has_used_up_its_processor_is_told_so():
         subject._running.left = 0.0
         with pytest.raises(NoAnswer, match="s of a processor for a whole submission are used up"):
             subject.scaled(1.0)
+
+
+@pytest.mark.parametrize(("tier", "counts"), [("strict", True), ("container", True), ("practice", False)])
+def test_a_score_may_count_where_walls_hold(tier, counts):
+    opened(tier)
+    assert tiers.choose(tier).credit is counts

@@ -82,7 +82,7 @@ def test_as_many_members_as_are_allowed_are_unpacked_and_one_more_is_refused(kin
 
 
 @pytest.mark.parametrize("mode", ["w:gz", "w:bz2", "w:xz"])
-def test_an_archive_that_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_all_would_fit(mode, tmp_path):
+def test_what_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_it_would_fit(mode, tmp_path):
     files = [(info(f"{k}.txt"), bytes(900_000)) for k in range(4)]
     archive, plain_tar = tarred(tmp_path / "packed", files, mode), tarred(tmp_path / "plain", files)
     assert len(unpack(plain_tar, tmp_path / "new")) == 4
