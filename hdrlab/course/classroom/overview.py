@@ -11,7 +11,6 @@ from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
-from urllib.parse import quote
 
 from hdrlab.course.classroom import journal, marks, moodle
 from hdrlab.course.classroom.handins import Found
@@ -98,13 +97,8 @@ def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Se
         count=len(scores),
         median=statistics.median(scores) if scores else 0,
         bins=[(100 // BINS * k, bins[k]) for k in range(BINS)],
-        promises=[
-            (*key, each.total(), each["holds"], each["fails"], each["no answer"])
-            for key, each in counted.outcomes.items()
-        ],
+        outcomes=counted.outcomes,
         met=counted.met.most_common(),
         notes=list(notes),
-        students=[(row, f"feedback/{quote(row.team)}/feedback.html") for row in rows],
-        nothing=[row for row in rows if not row.received],
-        late=[row for row in rows if row.late],
+        rows=rows,
     )

@@ -124,9 +124,11 @@ def _build(
     files |= {f"cases/{one.name}": one.read_bytes() for one in PAGES.glob("cases/*.webp")}
     for name, content in files.items():
         live.write_changed(source / name, content)
-    _forget(source, set(files))
+    _keep(source, set(files))
     complaints = _sphinx(source, html, address)
-    _forget_pages(html, set(texts), set(titles))
+    for part in ("notebooks", "assignments", "reference"):
+        _keep(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
+    _forget_widgets(html / WIDGETS, {*titles, "front"})
     _publish(html, out)
     return Site(out / "index.html", len(texts), widgets + 1, complaints)
 
@@ -208,31 +210,25 @@ def _sphinx(source: Path, html: Path, address: str) -> list[str]:
     return [line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()]
 
 
-def _forget(source: Path, names: set[str]) -> None:
-    """Remove sources of pages that are no more, and what Sphinx has noted of them."""
-    for file in [one for one in source.rglob("*") if one.is_file()]:
-        if file.relative_to(source).as_posix() not in names:
+def _keep(folder: Path, names: set[str], part: str = "") -> None:
+    """Remove all files of a part of a folder but those that are named."""
+    for file in [one for one in (folder / part).rglob("*") if one.is_file()]:
+        if file.relative_to(folder).as_posix() not in names:
             file.unlink()
 
 
-def _forget_pages(html: Path, names: set[str], notebooks: set[str]) -> None:
-    """Remove pages and widgets that belong to nothing any more."""
-    pages = {name.rpartition(".")[0] + ".html" for name in names}
-    for folder in ("notebooks", "assignments", "reference"):
-        for file in (html / folder).glob("*.html"):
-            if file.relative_to(html).as_posix() not in pages:
-                file.unlink()
-    for file in (html / WIDGETS).iterdir():
-        if re.sub(r"-\d+$", "", file.stem) not in notebooks | {"front"}:
+def _forget_widgets(folder: Path, notebooks: set[str]) -> None:
+    """Remove widgets that belong to no notebook any more."""
+    for file in folder.iterdir():
+        if re.sub(r"-\d+$", "", file.stem) not in notebooks:
             file.unlink()
 
 
 def _publish(html: Path, out: Path) -> None:
     """Bring what was made to its place, and remove from our folders there what was not."""
-    made = {file.relative_to(html) for file in html.rglob("*") if file.is_file() and file.name[0] != "."}
+    files = [file for file in html.rglob("*") if file.is_file() and file.name[0] != "."]
+    made = {file.relative_to(html).as_posix() for file in files}
     for name in sorted(made):
         live.write_changed(out / name, (html / name).read_bytes())
-    for folder in OWN:
-        for file in [one for one in (out / folder).rglob("*") if one.is_file()]:
-            if file.relative_to(out) not in made:
-                file.unlink()
+    for part in OWN:
+        _keep(out, made, part)

@@ -11,7 +11,7 @@ import hashlib
 import secrets
 import time
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple, Self
@@ -32,13 +32,6 @@ LONELY = 120.0  # seconds without any worker, after which the run ends
 TICK = 0.05  # seconds between two looks at what has ended
 # a submission may be of many photographs
 WARNING = {"distributed.admin.large-graph-warning-threshold": "4 GiB"}
-
-
-class Seat(NamedTuple):
-    """A worker: its address, and how many pieces it may have."""
-
-    address: str
-    threads: int
 
 
 class Task(NamedTuple):
@@ -116,7 +109,7 @@ class Cluster:
         patience: float = PATIENCE,
     ) -> None:
         self._address, self._work, self._ready, self._patience = address, work, ready, patience
-        self._running: dict[Future[Any], tuple[Piece, Seat]] = {}
+        self._running: dict[Future[Any], tuple[Piece, str]] = {}  # with its worker's address
         self._taken: set[str] = set()  # workers that one piece has to itself
         self._met = time.monotonic()  # when there was a worker, last
 
@@ -141,15 +134,15 @@ class Cluster:
 
     def start(self, piece: Piece, *, alone: bool = False) -> bool:
         """Begin a piece on the worker with most room, if there is any."""
-        seats, busy = self._present(), Counter(seat.address for _, seat in self._running.values())
-        room = {seat: seat.threads - busy[seat.address] for seat in seats if seat.address not in self._taken}
-        fitting = [seat for seat in room if room[seat] > 0 and not (alone and busy[seat.address])]
+        threads, busy = self._present(), self._busy()
+        room = {one: threads[one] - busy[one] for one in threads if one not in self._taken}
+        fitting = [one for one in room if room[one] > 0 and not (alone and busy[one])]
         if not fitting:
             return False
-        seat = max(fitting, key=room.__getitem__)
+        worker = max(fitting, key=room.__getitem__)
         if alone:
-            self._taken.add(seat.address)
-        self._running[self._sent(piece, seat)] = piece, seat
+            self._taken.add(worker)
+        self._running[self._sent(piece, worker)] = piece, worker
         return True
 
     def endings(self) -> list[Ending]:
@@ -158,8 +151,7 @@ class Cluster:
         while not any(one.done() for one in self._running) and time.monotonic() < until:
             time.sleep(TICK)
         ended = [one for future in list(self._running) if (one := self._ending(future))]
-        present = {seat.address for seat in self._present()}
-        return ended + self._lost({seat.address for _, seat in self._running.values()} - present)
+        return ended + self._lost(set(self._busy()) - set(self._present()))
 
     def _check(self) -> None:
         """Raise a ValueError for another hdrlab over there, or for a worker that cannot do the work."""
@@ -185,33 +177,37 @@ class Cluster:
             says = f"the cluster at {self._address} is lost; what is graded stays graded: {why}"
             raise ValueError(says) from None
 
-    def _present(self) -> list[Seat]:
-        """Return the workers that there are."""
+    def _busy(self) -> "Counter[str]":
+        """Return how many pieces each worker has."""
+        return Counter(worker for _, worker in self._running.values())
+
+    def _present(self) -> dict[str, int]:
+        """Return the workers that there are, and how many pieces each may have."""
         with self._talking():
-            known = self._client.nthreads()
+            known: dict[str, int] = self._client.nthreads()
         now = time.monotonic()
         self._met = now if known else self._met
         if now - self._met > LONELY:
             raise ValueError(f"the cluster at {self._address} has had no worker for {LONELY:.0f} s")
-        return [Seat(address, threads) for address, threads in known.items()]
+        return known
 
-    def _sent(self, piece: Piece, seat: Seat) -> "Future[Any]":
+    def _sent(self, piece: Piece, worker: str) -> "Future[Any]":
         task = Task(self._work, self._ready, piece, piece.path.read_bytes(), self._patience, version())
         key = f"hdrlab-grade-{secrets.token_hex(8)}"
         with self._talking(), dask.config.set(WARNING):
-            return self._client.submit(do, task, key=key, workers=[seat.address], pure=False)
+            return self._client.submit(do, task, key=key, workers=[worker], pure=False)
 
     def _ending(self, future: "Future[Any]") -> Ending | None:
         """Return how a piece has ended, if it has; that its worker is lost shows elsewhere, as a rule."""
-        piece, seat = self._running[future]
+        piece, worker = self._running[future]
         if future.status == "finished":
             return self._answer(future, piece)
         if future.status == "error":
             with self._talking():
                 why = future.exception()
             if not isinstance(why, KilledWorker):
-                raise ValueError(f"{seat.address} of the cluster cannot do it: {why}")
-            return self._lost({seat.address}, only=future)[0]  # again and again, at the same address
+                raise ValueError(f"{worker} of the cluster cannot do it: {why}")
+            return self._lost({worker}, only=future)[0]  # again and again, at the same address
         if future.status in ("cancelled", "lost"):  # somebody has cleared the cluster
             self._forget(future)
             return Ending(piece, None, "it was cancelled", blamed=False)
@@ -229,20 +225,18 @@ class Cluster:
         return Ending(piece, answer[1:]) if whole else Ending(piece, None, answer[1:].decode())
 
     def _forget(self, future: "Future[Any]") -> None:
-        _, seat = self._running.pop(future)
-        self._taken.discard(seat.address)
+        _, worker = self._running.pop(future)
+        self._taken.discard(worker)
 
     def _lost(self, gone: set[str], only: "Future[Any] | None" = None) -> list[Ending]:
         """Return the endings of pieces whose worker is gone: one that was alone there is to blame."""
-        company = Counter(seat.address for _, seat in self._running.values())
+        company = self._busy()
         lost = [
-            one for one, (_, seat) in self._running.items() if seat.address in gone and only in (None, one)
+            (one, *which) for one, which in self._running.items() if which[1] in gone and only in (None, one)
         ]
         with self._talking():
-            self._client.cancel(lost, force=True)
-        return [self._without(one, company) for one in lost]
-
-    def _without(self, future: "Future[Any]", company: Mapping[str, int]) -> Ending:
-        piece, seat = self._running[future]
-        self._forget(future)
-        return Ending(piece, None, f"its worker {seat.address} was lost", blamed=company[seat.address] == 1)
+            self._client.cancel([one for one, *_ in lost], force=True)
+        for one, *_ in lost:
+            self._forget(one)
+        why = "its worker {} was lost".format
+        return [Ending(piece, None, why(worker), blamed=company[worker] == 1) for _, piece, worker in lost]
