@@ -34,14 +34,15 @@ def test_the_inside_of_a_figure_belongs_to_it(subject, rng):
 
     Fill the holes after the margin was added.
     """
-    ring = np.zeros((40, 40), bool)
-    ring[6:34, 6:34] = True
-    ring[8:32, 8:32] = False
+    closed = np.zeros((40, 40), bool)
+    closed[6:34, 6:34] = True
+    closed[8:32, 8:32] = False
+    ring = closed.copy()
     ring[6:8, 18:20] = False
-    margin = int(rng.integers(2, 4))
-    same(
-        subject.dilate(ring, margin), regions.dilate(ring, margin), 0, what="the mask of a ring", picture=True
-    )
+    margin = int(rng.integers(3, 5))
+    for mask in (closed, ring):
+        came = subject.dilate(mask, margin)
+        same(came, regions.dilate(mask, margin), 0, what="the mask of a ring", picture=True)
 
 
 @pytest.mark.points(1, needs="test_all_within_the_margin_belongs_to_the_mask")
