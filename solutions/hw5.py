@@ -404,6 +404,27 @@ pictures.picture(
     alt="White on most of the walls; black along edges, on most of the floor, and at the picture's rim",
 )
 
+# %% [markdown] about="solve_by_svd"
+# ## 14 · Least squares by the SVD ({points})
+#
+# Debevec and Malik's system $A x = b$ has more rows than unknowns; and if the row $g(n/2) = 0$ is left out,
+# not one answer but many, for a number that is added to all $g$ and all $\ln E$ changes no other row. The
+# singular value decomposition $A = U \Sigma V^\top$ finds among all $x$ of the smallest $\sum (A x - b)^2$
+# the shortest one:
+#
+# $$x = \sum_{\sigma_i > \text{rtol}\, \sigma_1} \frac{u_i^\top b}{\sigma_i}\, v_i,$$
+#
+# with the columns $u_i$ of $U$ and $v_i$ of $V$, and $\sigma_1$ the largest singular value. What is at most
+# `rtol` times as large is taken for 0, and its term left out. (`A` is (m, k), with $m \ge k$, `b` (m,) and
+# `x` (k,).)
+
+# %% task="solve_by_svd"
+# Return the shortest x (k,) that minimises |A x - b|, by the SVD of A.
+
+# %% about="solve_by_svd"
+chain = np.array([[1.0, -1, 0], [0, 1, -1], [1, 0, -1]])  # differences of three numbers, and no number
+print(solve_by_svd(chain, np.array([1.0, 1, 2])), "as the differences say: 1, 1 and 2; their mean is 0")
+
 # %% [markdown]
 # ## The whole sheet
 

@@ -52,6 +52,21 @@ def system(Z: Indices, B: F64, smoothness: float, w: F64) -> tuple[F64, F64]:
     return A, b
 
 
+def solve_by_svd(A: ArrayLike, b: ArrayLike, *, rtol: float = 1e-10) -> F64:
+    """Return the shortest x that minimises |A x - b|: sum of (u_i^T b / sigma_i) v_i, A = U Sigma V^T.
+
+    Singular values up to rtol times the largest are taken for 0, and their terms left out.
+
+    Examples
+    --------
+    >>> solve_by_svd([[1, -1], [2, -2]], [2, 4]).round(6)  # x_0 - x_1 = 2, and no more is known
+    array([ 1., -1.])
+    """
+    U, sigma, Vt = np.linalg.svd(np.asarray(A, np.float64), full_matrices=False)
+    kept = sigma > rtol * sigma[0]
+    return Vt[kept].T @ (U[:, kept].T @ b / sigma[kept])
+
+
 def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solution:
     """Return g and lE of the least sum of squares, by the shortest x that minimises |A x - b|.
 

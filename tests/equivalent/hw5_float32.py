@@ -178,3 +178,15 @@ def flat(A, *, size=5, psi=0.05, sigma=0.01):
         good = squares * t <= one * (s - 1) * f.isf(psi, s - 1, s * (t - 1))
     mask[r : r + good.shape[0], r : r + good.shape[1]] = good
     return mask
+
+
+# %% task="solve_by_svd"
+
+
+def solve_by_svd(A, b, *, rtol=1e-10):
+    Q, R = np.linalg.qr(A)
+    U, s, Vt = np.linalg.svd(R)
+    c = U.T @ (Q.T @ b)
+    return sum(
+        (c[i] / s[i] * Vt[i] for i in range(len(s)) if s[i] > rtol * s[0]), np.zeros(A.shape[1])
+    ).tolist()

@@ -222,3 +222,15 @@ def flat(A, *, size=5, psi=0.05, sigma=0.01):
             average = patch.sum(axis=0) / t
             found[y, x] = s * np.var(average) <= limit * noise / t
     return found
+
+
+# %% task="solve_by_svd"
+
+
+def solve_by_svd(A, b, *, rtol=1e-10):
+    U, s, Vt = np.linalg.svd(A)
+    x = np.zeros(A.shape[1])
+    for i in range(len(s)):
+        if s[i] > rtol * s[0]:
+            x += U[:, i] @ b / s[i] * Vt[i]
+    return x

@@ -2,7 +2,7 @@
 
 # %%
 import numpy as np
-from scipy import stats
+from scipy import linalg, stats
 
 # %% task="variance"
 
@@ -171,3 +171,13 @@ def flat(A, *, size=5, psi=0.05, sigma=0.01):
     y, x = np.indices((H, W))
     inside = (y >= r) & (y < H - r) & (x >= r) & (x < W - r)
     return inside & (s * spread / (noise / t) <= top)
+
+
+# %% task="solve_by_svd"
+
+
+def solve_by_svd(A, b, rtol=1e-10):
+    U, s, Vh = linalg.svd(A, full_matrices=False)
+    large = s > rtol * s.max()
+    inverse = np.where(large, 1 / np.where(large, s, 1), 0)
+    return Vh.T @ np.diag(inverse) @ U.T @ b[:, None]
