@@ -50,7 +50,7 @@ DIGEST = """(el) => {
     return hash;
 }"""
 
-PATIENCE = 60_000  # ms until a moved control shows: a limit for errors; speed is for benchmarks
+PATIENCE = 300_000  # ms until a moved control shows: a limit for errors; speed is for benchmarks
 
 # What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
 PAGE = """<!DOCTYPE html><html lang="en"><title>A widget</title><style>{css}</style>
@@ -103,12 +103,12 @@ class Lab(NamedTuple):
             timeout=PATIENCE,
         )
 
-    def run_all(self, page: Any, *, timeout: float = 100) -> None:
+    def run_all(self, page: Any, *, timeout: float = 600) -> None:
         """Run every cell from the top and wait until the last one is done."""
         page.evaluate("() => { window.jupyterapp.commands.execute('notebook:run-all-cells'); }")
         self.until_done(page, timeout=timeout)
 
-    def until_done(self, page: Any, *, timeout: float = 100) -> None:
+    def until_done(self, page: Any, *, timeout: float = 600) -> None:
         """Wait until the last cell is done."""
         page.wait_for_function(
             """() => window.jupyterapp.shell.currentWidget.content.widgets
@@ -125,7 +125,7 @@ class Lab(NamedTuple):
     def _ask(self, method: str, path: str) -> bytes:
         headers = {"Authorization": f"token {self.token}"}
         request = urllib.request.Request(self.address + path, method=method, headers=headers)
-        with urllib.request.urlopen(request, timeout=20) as answer:
+        with urllib.request.urlopen(request, timeout=300) as answer:
             return bytes(answer.read())
 
 
@@ -235,7 +235,7 @@ def _environment(home: Path) -> dict[str, str]:
     return {**os.environ, **folders, "PYTHONPATH": path}
 
 
-def _wait_for(server: subprocess.Popen[bytes], address: str, *, patience: float = 60) -> None:
+def _wait_for(server: subprocess.Popen[bytes], address: str, *, patience: float = 300) -> None:
     end = time.monotonic() + patience
     while time.monotonic() < end:
         if server.poll() is not None:

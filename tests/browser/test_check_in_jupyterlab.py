@@ -13,7 +13,7 @@ RIGHT = """def hat(n=256):
 z = np.arange(n)
 return np.minimum(z, n - 1 - z) / ((n - 2) // 2)"""
 AT = "[...window.jupyterapp.shell.currentWidget.content.widgets]"
-ANSWER = 60_000  # ms until a check has answered: a limit for errors
+ANSWER = 300_000  # ms until a check has answered: a limit for errors
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,7 @@
 """`hdrlab compare`, and the sign of life of commands that take their time."""
 
 import io
+import re
 import time
 
 import numpy as np
@@ -84,12 +85,13 @@ class Terminal(io.StringIO):
 def test_long_work_shows_the_seconds_and_leaves_a_clean_line():
     terminal = Terminal()
     with elapsed("tone mapping", stream=terminal, delay=0.01):
-        deadline = time.monotonic() + 10
-        while terminal.getvalue().count("tone mapping: 0 s") < 2 and time.monotonic() < deadline:
+        deadline = time.monotonic() + 300
+        while terminal.getvalue().count("\rtone mapping: ") < 2 and time.monotonic() < deadline:
             time.sleep(0.01)
     said = terminal.getvalue()
-    assert said.startswith("\rtone mapping: 0 s\rtone mapping: 0 s")
-    assert said.endswith("\r" + " " * len("tone mapping: 0 s") + "\r")
+    lines = re.findall(r"\rtone mapping: \d+ s", said)
+    assert len(lines) >= 2 and said.startswith(lines[0] + lines[1])
+    assert said.endswith(lines[-1] + "\r" + " " * (len(lines[-1]) - 1) + "\r")
 
 
 def test_short_work_and_a_pipe_are_told_nothing():

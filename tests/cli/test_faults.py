@@ -23,7 +23,7 @@ from hdrlab.io.photos import write_picture
 
 resource = pytest.importorskip("resource", reason="a system without limits cannot play a full disk")
 
-PATIENCE = 300  # seconds
+PATIENCE = 1800  # seconds: what hangs ends
 # bytes of the largest file that a full disk has room for
 ROOM = 3000
 # what assemble and tonemap write, and a file that stood there before

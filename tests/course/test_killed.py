@@ -85,7 +85,7 @@ def different(some, other):
 def finished(home, out):
     """Run to the end, and return what is there."""
     run = begin(home, out)
-    said = run.communicate(timeout=300)[1].decode()
+    said = run.communicate(timeout=1800)[1].decode()
     assert run.returncode == 0 and "warning" not in said, said
     return contents(out)
 
@@ -119,7 +119,7 @@ def graded(home, out, rng, most, *more, others=list):
     while "warning" in told:  # of one that was killed three times: the next run grades it
         run = begin(home, out, *more)
         now = besieged(run, rng, most - kills, others)
-        told = run.communicate(timeout=300)[1].decode()
+        told = run.communicate(timeout=1800)[1].decode()
         stopped = now >= doctor.TRIES and "sandbox did not start: it was ended by signal 9" in told
         assert run.returncode in (0, -signal.SIGKILL) or stopped, told
         kills += now
@@ -146,7 +146,7 @@ def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(fo
         results, more = graded(folder, folder / f"round{rounds}", rng, 20 - kills)
         assert different(results, whole) == {}
         kills += more
-    until = time.monotonic() + 20
+    until = time.monotonic() + 300
     while processes.of(folder / "scratch") and time.monotonic() < until:
         time.sleep(0.05)
     assert not processes.of(folder / "scratch")
@@ -185,7 +185,7 @@ def killing():
 
 
 def _kill(words, below):
-    until = time.monotonic() + 60
+    until = time.monotonic() + 300
     while time.monotonic() < until:
         said = processes.told("cmdline")
         for one in family(os.getpid()):

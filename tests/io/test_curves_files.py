@@ -177,7 +177,7 @@ def pfstools(bracket, *options):
     out = bracket / "theirs.pfm"
     steps = f"pfsinhdrgen list.hdrgen | pfshdrcalibrate {' '.join(map(str, options))} | pfsout {out}"
     done = subprocess.run(
-        ["bash", "-o", "pipefail", "-c", steps], cwd=bracket, capture_output=True, timeout=60
+        ["bash", "-o", "pipefail", "-c", steps], cwd=bracket, capture_output=True, timeout=600
     )
     assert done.returncode == 0, done.stderr.decode()
     return pfm.read(out)

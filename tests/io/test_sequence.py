@@ -23,7 +23,7 @@ FILMS = [
         ),
     ),
 ]
-PATIENCE = 120  # seconds
+PATIENCE = 600  # seconds: what hangs ends
 
 
 def moving(count=6, shape=(48, 64)):
