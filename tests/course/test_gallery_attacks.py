@@ -13,6 +13,7 @@ import socket
 import sqlite3
 import struct
 import threading
+import time
 import zipfile
 import zlib
 from contextlib import closing, contextmanager
@@ -32,6 +33,7 @@ from hdrlab.course import gallery
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import access_tokens, collect, export, pictures, store
 from hdrlab.course.gallery.web import app, guard, serve
+from hdrlab.course.gallery.web.writer import Writer
 from hdrlab.course.reports import sheets
 
 ORIGIN = {"origin": small.ADDRESS}
@@ -48,7 +50,7 @@ def browser(room, address=small.ADDRESS):
     """Yield a browser that stands before the gallery."""
     pages = app.Gallery(room.folder, address, room.clock)
     yield small.Browser(app.application(pages), address)
-    pages.close()
+    asyncio.run(pages.close())
 
 
 @pytest.fixture
@@ -703,3 +705,23 @@ def test_formulas_in_a_table(tmp_path):
         rows = list(export.gradebook(db))
     text = sheets.csv_text(export.GRADEBOOK, rows)
     assert "'=cmd|" in text and "'@SUM(A1)" in text and not re.search(r"(^|,)\"?[=@]", text, re.M)
+
+
+def test_what_is_being_written_when_the_gallery_ends_is_written_though_whoever_asked_has_gone(room):
+    begun = threading.Event()
+
+    def slowly(db):
+        begun.set()
+        time.sleep(0.2)
+        db.execute("UPDATE voters SET name = 'Written' WHERE id = (SELECT min(id) FROM voters)")
+
+    async def asked_and_gone():
+        writer = Writer(room.folder)
+        asking = asyncio.create_task(writer.do(slowly))
+        await asyncio.to_thread(begun.wait)
+        asking.cancel()
+        await writer.close()
+
+    asyncio.run(asked_and_gone())
+    with closing(store.connect(room.folder)) as db:
+        assert "Written" in [voter.name for voter in store.voters(db)]

@@ -161,7 +161,7 @@ def application(gallery: Gallery) -> ASGIApp:
     @asynccontextmanager
     async def life(app: Starlette) -> Any:
         yield
-        gallery.close()
+        await gallery.close()
 
     routes = [
         Route("/", gallery.wall),

@@ -39,9 +39,9 @@ class Front:
         self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
         self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
 
-    def close(self) -> None:
+    async def close(self) -> None:
         """Write what waits, and let go of the database."""
-        self.writer.close()
+        await self.writer.close()
         self.db.close()
 
     def page(self, name: str, status: int = 200, **words: Any) -> HTMLResponse:

@@ -33,8 +33,10 @@ class Writer:
             self._task = asyncio.create_task(self._write())  # of its own: whoever asked may go
         return await waiting
 
-    def close(self) -> None:
-        """End, when all that waited is written."""
+    async def close(self) -> None:
+        """End, when all that waited is written, though whoever asked for it has gone."""
+        if self._busy:
+            await self._task
         self._db.close()
 
     async def _write(self) -> None:
