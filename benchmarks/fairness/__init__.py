@@ -3,7 +3,8 @@
 right/<task>/<way>.py  a right way that keeps to what the task's sheet says: another order of a scan, another
                        solver, gauge, fill, rounding, type or shape; none may lose a point
 wrong/<task>/<way>.py  a plausible answer without the method that is asked for; at most a third of the points
-mistakes               the named ones, of `hdrlab/course/checks/mistakes`: each strictly between, and named
+mistakes               the named ones, of `hdrlab/course/checks/mistakes`: each strictly between, and named;
+                       those that do not miss what their task is about cost half of it at most
 
 Every file is graded on SEEDS students' inputs in the practice tier, as `check` in a notebook does it. The
 k-th files of a homework's tasks are one submission. `SEEDS=3 python -m benchmarks fairness` is a shorter run.
@@ -137,9 +138,14 @@ def named(_: Path) -> dict[str, Any]:
     found = scores(mistakes(), max(SEEDS // 5, 1))
     print(table(found))
     sentences = {one.name: one.sentence for one in misconceptions.known()}
+    method = [one.name for one in misconceptions.known() if not one.once]
+    print(f"  of these miss what their task is about: {', '.join(method)}")
     return {
         "answers with a mistake": len(found),
         "of which with no point or all": sum(one.share in (0, 1) for one in found),
+        "of the others, that cost more than half": sum(
+            one.share < 1 / 2 and one.way not in method for one in found
+        ),
         "named, %": 100 * sum(one.named == sentences[one.way] for one in found) / len(found),
     }
 
@@ -163,6 +169,10 @@ ROWS = (
         "mistakes",
         "the named mistakes",
         named,
-        (at_most("of which with no point or all", 0), at_least("named, %", 95)),
+        (
+            at_most("of which with no point or all", 0),
+            at_most("of the others, that cost more than half", 0),
+            at_least("named, %", 95),
+        ),
     ),
 )
