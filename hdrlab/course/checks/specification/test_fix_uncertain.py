@@ -35,7 +35,7 @@ def test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood(subject, r
         same(came, base, 0.02, what="the base", picture=True, where=inner)
 
 
-@pytest.mark.points(2)
+@pytest.mark.points(2, needs="test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood")
 def test_a_base_that_rests_on_many_stays(subject, rng):
     """And a pixel with many of its kind around it?
 

@@ -27,7 +27,7 @@ def test_frames_contradict_each_other_by_the_weighted_variance(subject, rng):
     same(subject.weighted_variance(x, w), v, 1e-3 * v.max(), what="v", picture=True)
 
 
-@pytest.mark.points(1)
+@pytest.mark.points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
 def test_one_frame_alone_contradicts_nobody(subject, rng):
     """Where all frames but one are clipped, what does v say? And where all are?
 
