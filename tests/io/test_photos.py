@@ -51,6 +51,16 @@ def test_png_keeps_every_bit_that_opencv_wrote(tmp_path, name):
     assert read.dtype == image.dtype and np.array_equal(read, image)
 
 
+@pytest.mark.parametrize("shape", [(1, 1), (1, 5, 3), (13, 21), (13, 21, 3), (70, 300, 3)])
+def test_png_is_written_so_that_opencv_and_pillow_read_every_bit(tmp_path, shape):
+    image, path = RNG.integers(0, 256, shape, np.uint8), tmp_path / "x.png"
+    write_picture(path, image)
+    read = cv2.imread(str(path), cv2.IMREAD_UNCHANGED)
+    assert np.array_equal(read[..., ::-1] if image.ndim == 3 else read, image)
+    with Image.open(path) as opened:
+        opened.verify()
+
+
 @pytest.mark.parametrize("name", IMAGES)
 @pytest.mark.parametrize("how", [{}, {"compression": "deflate", "predictor": True}, {"byteorder": ">"}])
 def test_tiff_keeps_every_bit(tmp_path, name, how):
