@@ -16,7 +16,6 @@ from typing import NamedTuple
 
 import numpy as np
 import scipy
-from scipy.ndimage import maximum_filter
 
 from hdrlab.align import light
 from hdrlab.core.filters import warp
@@ -57,7 +56,7 @@ def correlation(X: F32) -> F64:
 
 def peaks(c: F64, count: int) -> Indices:
     """Return the shifts (count, 2) of the highest peaks, the highest first: argmax [Cerman06 eq. 5]."""
-    y, x = np.nonzero((c == maximum_filter(c, 5)) & (c > 0))
+    y, x = np.nonzero((c == scipy.ndimage.maximum_filter(c, 5)) & (c > 0))
     best = np.argsort(-c[y, x], kind="stable")[:count]
     return np.stack([y[best], x[best]], axis=-1) - np.array(c.shape) // 2
 

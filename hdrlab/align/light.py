@@ -22,7 +22,7 @@ from collections.abc import Iterator
 from itertools import pairwise
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, map_coordinates
+import scipy
 
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_transform as transform
@@ -69,7 +69,7 @@ def pair(fixed: Array, moving: Array, bright: F64, dark: F64) -> list[F32]:
 
 def pyramid(X: F32, kept: Mask) -> list[F32]:
     """Return X (2, h, w) at every size, full resolution first, each half the one before; NaN unless kept."""
-    smooth = np.where(kept, gaussian_filter(X, (0, SMOOTH, SMOOTH)), np.float32(np.nan))
+    smooth = np.where(kept, scipy.ndimage.gaussian_filter(X, (0, SMOOTH, SMOOTH)), np.float32(np.nan))
     h, w = (side // 2 * 2 for side in X.shape[1:])
     if min(h, w) < 2 * SMALLEST:
         return [smooth]
@@ -81,9 +81,8 @@ def pyramid(X: F32, kept: Mask) -> list[F32]:
 def local_mean(x: F32) -> F32:
     """Return the mean of x (h, w) around each pixel, of what is kept."""
     kept = np.isfinite(x)
-    total, share = (
-        gaussian_filter(one, NEIGHBOURHOOD) for one in (np.where(kept, x, 0), kept.astype(np.float32))
-    )
+    each = np.stack([np.where(kept, x, 0), kept]).astype(np.float32)
+    total, share = scipy.ndimage.gaussian_filter(each, (0, NEIGHBOURHOOD, NEIGHBOURHOOD))
     return np.asarray(total / np.maximum(share, 1e-6), np.float32)
 
 
@@ -98,7 +97,7 @@ def differences(X: F32, H: F64, p: F64) -> F64:
     """Return d at the pixels p [Cerman06 eq. 6]."""
     q, (x, y) = warp.apply(np.linalg.inv(H), p), p.astype(int).T
     a = X[0][y, x].astype(np.float64)
-    b = map_coordinates(X[1], q.T[::-1], order=1, cval=np.nan, output=np.float64)
+    b = scipy.ndimage.map_coordinates(X[1], q.T[::-1], order=1, cval=np.nan, output=np.float64)
     t = 1e-3 * np.max(X[0], where=np.isfinite(X[0]), initial=1e-9)
     return np.asarray((a - b) / np.maximum((a + b) / 2, t))
 

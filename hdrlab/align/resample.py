@@ -13,7 +13,7 @@ Clipped pixels are not light. Where one takes part in a mean, the nearest pixel 
 """
 
 import numpy as np
-from scipy.ndimage import maximum_filter
+import scipy
 
 from hdrlab.align.light import BRIGHT
 from hdrlab.core.arrays import as_mask, as_stack, as_table, levels
@@ -105,7 +105,9 @@ def _back(H: F64, shown: tuple[slice, slice]) -> F64:
 
 def _touched(mask: Mask, back: F64, size: tuple[int, int]) -> Mask:
     """Return where one of the 4 x 4 pixels of a cubic mean is in the mask."""
-    wide = maximum_filter(mask.view(np.uint8), size=4, origin=-1)  # from one before to two after
+    wide = scipy.ndimage.maximum_filter(
+        mask.view(np.uint8), size=4, origin=-1
+    )  # from one before to two after
     return warp.before(wide.astype(np.float32), back, size) > 0.5
 
 

@@ -2,6 +2,7 @@
 
 import os
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -97,6 +98,8 @@ def list_files(files: Iterable[Path]) -> None:
 
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
     """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
+    if not sys.stderr.isatty():
+        return items
     from tqdm import tqdm
 
     return tqdm(items, what, total, leave=False, delay=1, disable=None)
@@ -141,7 +144,7 @@ def read_map(source: Path, clean: bool) -> Any:
 
 def size(E: Any) -> str:
     """Return what a radiance map is, in words: its size and its decades."""
-    from hdrlab.scenes import decades
+    from hdrlab.core.extremes import decades
 
     every = max(1, int((E.shape[0] * E.shape[1] / PIXELS) ** 0.5))
     few = E[::every, ::every]

@@ -6,7 +6,8 @@ cut  fraction left out    of the positive pixels, and at least one pixel
 
 import numpy as np
 
-from hdrlab.core.types import F32
+from hdrlab.core.colour import luminance
+from hdrlab.core.types import F32, ArrayLike
 
 # pixels: a larger picture is ranked by every second, third, ... of its pixels
 ENOUGH = 1 << 18
@@ -46,3 +47,35 @@ def _ranked(values: F32, cut: float, *, from_top: bool) -> float:
     left_out = min(max(1, int(cut * values.size)), (values.size - 1) // 2)  # of a tiny picture, some stay
     rank = values.size - 1 - left_out if from_top else left_out
     return float(np.partition(values, rank)[rank])
+
+
+def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
+    """Return log10(L_high / L_low), the range of a scene or of a radiance map.
+
+    Parameters
+    ----------
+    E : (H, W) or (H, W, 3), radiance
+    tail : share of the positive pixels left out at each end, so that one odd pixel decides nothing; with 0,
+        L_high and L_low are the maximum and the minimum
+
+    Returns
+    -------
+    decades : powers of ten; times 3.32 it is stops, times 20 decibels
+
+    Raises
+    ------
+    ValueError
+        For radiance that is not finite or negative, without a positive pixel, or a tail outside [0, 0.5).
+
+    Examples
+    --------
+    >>> round(decades([[0.01, 1000.0]], tail=0), 3)
+    5.0
+    """
+    if not 0 <= tail < 0.5:
+        raise ValueError(f"expected a tail in [0, 0.5), got {tail}")
+    L = luminance(E)
+    if not L.any():
+        raise ValueError("expected radiance with a positive pixel, got zeros")
+    low, high = np.quantile(L[L > 0].astype(np.float64), [tail, 1 - tail])
+    return float(np.log10(high / low))

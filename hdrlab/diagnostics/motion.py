@@ -12,8 +12,10 @@ over levels, as in `consistency`, does not see them. An edge that is off by a pi
 what counts is at least two blocks wide and high.
 """
 
+from itertools import product
+
 import numpy as np
-from scipy.ndimage import binary_opening
+from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.arrays import as_mask
 from hdrlab.core.types import F32, Array, ArrayLike, Mask
@@ -71,8 +73,10 @@ def measure_motion(
     few = np.s_[:, ::every, ::every]
     Z = stack[few].reshape(*stack[few].shape[:3], -1)
     trust = weigh_levels(Z, w, top, None if mask is None else mask[few])
-    x = curves[Z, np.arange(Z.shape[-1])] - np.log(t)[:, None, None, None]
-    r = x - (trust * x).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
+    r = np.empty(Z.shape, np.float32)
+    for c, (j, time) in product(range(Z.shape[-1]), enumerate(t)):
+        r[j, ..., c] = (curves[:, c] - np.log(time)).astype(np.float32).take(Z[j, ..., c])
+    r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
     R, W = sum_blocks(trust * r), sum_blocks(trust)
     W[W < FAINT * BLOCK**2 * Z.shape[-1]] = 0
     R /= np.maximum(W, 1e-9)
@@ -80,7 +84,8 @@ def measure_motion(
         one -= np.median(one[own > 0]) if own.any() else 0
     d = np.sqrt((W * R**2).sum(axis=0) / np.maximum(W.sum(axis=0), 1e-9))
     measured = (W > 0).sum(axis=0) > 1
-    moved = binary_opening(measured & (d > STILL), np.ones((2, 2)))
+    whole = sliding_window_view(np.pad(measured & (d > STILL), 1), (2, 2)).all(axis=(2, 3))
+    moved = sliding_window_view(whole, (2, 2)).any(axis=(2, 3))
     return float(moved.sum() / measured.sum()) if np.mean(measured) > FEWEST else 0.0
 
 
@@ -88,7 +93,7 @@ def weigh_levels(Z: Array, w: Array, top: int, valid: Mask | None) -> F32:
     """Return the weights (P, H, W, C), the highest 1; 0 for black levels and for pixels that clip."""
     table = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
     seen = (Z < top).all(axis=-1, keepdims=True)
-    return table[Z] * (seen if valid is None else seen & valid[..., None])
+    return table.take(Z) * (seen if valid is None else seen & valid[..., None])
 
 
 def sum_blocks(values: Array) -> F32:

@@ -20,13 +20,13 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-import scipy
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import ArrayLike
 
 from hdrlab.align import homography, light
-from hdrlab.align.cerman import peaks
 from hdrlab.align.mtb import exclusion
 from hdrlab.core.filters import warp
+from hdrlab.core.filters.blur import blur_matrix
 from hdrlab.core.types import F32, F64, Array, Mask
 
 # pixels of the overview: the distances at which other answers are compared
@@ -241,10 +241,19 @@ def confidence(e: float, elsewhere: Sequence[float]) -> float:
 
 def rivals(middle: F32) -> list[Array]:
     """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation."""
-    x = np.where(np.isfinite(middle), middle - light.local_mean(middle), 0)
-    h, w = x.shape
-    c = scipy.fft.fftshift(scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (2 * h, 2 * w))) ** 2, (2 * h, 2 * w)))
-    found = peaks(c[:, w:], RIVALS + 1) + [0, w // 2]  # c is symmetric
+    (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.NEIGHBOURHOOD)
+    k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.NEIGHBOURHOOD) ** 2)
+    down, across = (blur_matrix(n, k / k.sum()) for n in (h, w))
+    total, share = (down @ one @ across for one in (np.where(kept, middle, 0), kept))  # `light.local_mean`
+    x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
+    c = np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2, (2 * h, 2 * w))
+    c = np.fft.fftshift(c[:, :w], axes=0)  # it is symmetric
+    near = np.pad(c, 2, "edge")
+    for axis in (0, 1):
+        near = sliding_window_view(near, 5, axis).max(axis=-1)
+    y, x = np.nonzero((c == near) & (c > 0))
+    best = np.argsort(-c[y, x], kind="stable")[: RIVALS + 1]
+    found = np.stack([y[best] - h, x[best]], axis=-1)
     return [shift for shift in found if np.abs(shift).max() > NEAR]
 
 

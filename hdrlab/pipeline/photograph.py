@@ -12,18 +12,20 @@ one; its a and b are found on a coarse grid (He and Sun, Fast guided filter, 201
 """
 
 import numpy as np
-from scipy.ndimage import uniform_filter
 
 from hdrlab.core import colour
 from hdrlab.core.arrays import as_luminance, as_radiance
-from hdrlab.core.types import F32, ArrayLike
+from hdrlab.core.extremes import positive_median
+from hdrlab.core.filters.blur import blur_matrix
+from hdrlab.core.types import F32, Array, ArrayLike
 from hdrlab.fast._bands import banded
-from hdrlab.fast.reinhard import LIMIT
-from hdrlab.tonemap.durand import logarithm
-from hdrlab.tonemap.reinhard import display
 
 # half of the guided filter's window, of the longer side; nodes of the coarse grid in that half
 REACH, NODES = 0.03, 4
+# of the median luminance: what is darker has no more detail
+DARK = 1e-6
+# scaled luminance, at most
+LIMIT = np.float32(1e15)
 # decades: a step of light that stays an edge
 EDGE = 0.35
 # decades of light that a display shows with ease, and the least share that stays of more
@@ -53,17 +55,19 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     {'share': 0.67, 'key': 0.24, 'white': 4.37, 'black': 0.01, 'saturation': 1.0}
     """
     E = as_radiance(E)
-    step = max(1, min(E.shape[:2]) // ENOUGH)
-    E = E[::step, ::step]
-    lL, share = logarithm(L := colour.luminance(E)), 1.0
-    low, high = np.quantile(large_scale_light(lL), [0.005, 0.995])
+    every = max(1, min(E.shape[:2]) // ENOUGH)
+    E = E[::every, ::every]
+    L, share = colour.luminance(E), 1.0
+    lL, step = take_decades(L, find_floor(L)), space_nodes(L.shape)
+    a, b, down = light = filter_light(lL[::step, ::step], step, L.shape)
+    low, high = np.quantile(down @ a * lL + down @ b, [0.005, 0.995])
     if high - low > RANGE:
         share = max(LEAST, RANGE / float(high - low))
-    low, mean, high = find_levels(x := compress_light(lL, share))
+    low, mean, high = find_levels(x := compress_light(lL, share, *light))
     key = MIDDLE * 2 ** ((2 * mean - low - high) / max(high - low, 1e-6))
     Lm = scale(x, mean, key)
     white = max(1.0, float(np.quantile(Lm, 1 - WHITE)))
-    black = min(DEEPEST, float(np.quantile(display(Lm, Lm, white), BLACK)))
+    black = min(DEEPEST, float(np.quantile(display(Lm, white), BLACK)))
     saturation = 1.0
     if E.ndim == 3 and L.any():
         colours = E[L > 0]
@@ -71,30 +75,49 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     return {"share": share, "key": key, "white": white, "black": black, "saturation": saturation}
 
 
-def large_scale_light(lL: F32) -> F32:
-    """Return the light a lL + b (H, W): a is near 1 at edges of light and near 0 in detail [He15]."""
-    reach = max(1, round(REACH * max(lL.shape)))
-    step = max(1, reach // NODES)
-    few, width = lL[::step, ::step], 2 * (reach // step) + 1
-    mean = uniform_filter(few, width)
-    variance = np.maximum(uniform_filter(few * few, width) - mean * mean, 0)
+def take_decades(L: F32, floor: float) -> F32:
+    """Return lL = log10 L, and for what is darker the level of the floor."""
+    return np.log(np.maximum(L, np.float32(floor))) * np.float32(1 / np.log(10))
+
+
+def find_floor(L: F32) -> float:
+    """Return a millionth of the median luminance: what is darker has no detail."""
+    return max(DARK * positive_median(L), 1e-37)
+
+
+def filter_light(few: F32, step: int, shape: tuple[int, ...]) -> tuple[Array, Array, F32]:
+    """Return the light's a and b at nodes, (h, W), and the weights (H, h) of these in each row [He15].
+
+    few : (h, w), lL at each `step`-th pixel of a picture (H, W); a is near 1 at edges of light, 0 in detail
+    """
+    width = 2 * (max(1, round(REACH * max(shape))) // step) + 1
+    H, W = (blur_matrix(n, np.full(width, 1 / width)) for n in few.shape)
+    mean: Array = H @ few @ W
+    variance: Array = np.maximum(H @ (few * few) @ W - mean * mean, 0)
     a = variance / (variance + np.float32(EDGE**2))
-    a, b = (enlarge(uniform_filter(one, width), step, lL.shape) for one in (a, mean - a * mean))
-    return a * lL + b
+    down, across = (draw_lines(n, m, step) for n, m in zip(shape, few.shape, strict=True))
+    across = W @ across.T
+    return H @ a @ across, H @ (mean - a * mean) @ across, down
 
 
-def enlarge(nodes: F32, step: int, shape: tuple[int, ...]) -> F32:
-    """Return the values of nodes on every `step`-th pixel at all pixels, by linear interpolation."""
-    weights = []
-    for n, m in zip(shape, nodes.shape, strict=True):
-        at = np.minimum(np.arange(n, dtype=np.float32) / np.float32(step), m - 1)
-        weights.append(np.maximum(1 - np.abs(at[:, None] - np.arange(m, dtype=np.float32)), 0))
-    return weights[0] @ nodes @ weights[1].T
+def space_nodes(shape: tuple[int, ...]) -> int:
+    """Return the step from node to node."""
+    return max(1, round(REACH * max(shape)) // NODES)
 
 
-def compress_light(lL: F32, share: float) -> F32:
-    """Return x = lL - (1 - share) light."""
-    return lL if share == 1 else lL - np.float32(1 - share) * large_scale_light(lL)
+def draw_lines(n: int, m: int, step: int) -> F32:
+    """Return (n, m): from m values, at every `step`-th of n pixels, those at all, on lines between them."""
+    at = np.minimum(np.arange(n, dtype=np.float32) / np.float32(step), m - 1)
+    return np.maximum(1 - np.abs(at[:, None] - np.arange(m, dtype=np.float32)), 0)
+
+
+def compress_light(lL: F32, share: float, a: Array, b: Array, down: F32) -> F32:
+    """Return x = lL - (1 - share) (a lL + b) of some rows (n, W), by their weights (n, h) of the nodes."""
+    if share == 1:
+        return lL
+    near = np.flatnonzero(down.any(axis=0))
+    a, b = (down[:, near] @ (np.float32(1 - share) * one[near]) for one in (a, b))
+    return np.asarray(lL - (a * lL + b), np.float32)
 
 
 def find_levels(x: F32) -> tuple[float, float, float]:
@@ -102,6 +125,11 @@ def find_levels(x: F32) -> tuple[float, float, float]:
     few = x[:: max(1, len(x) // ENOUGH), :: max(1, x.shape[1] // ENOUGH)]
     low, high = np.quantile(few, [0.01, 0.99])
     return float(low), float(np.clip(few, low, high).mean(dtype=np.float64)), float(high)
+
+
+def display(Lm: F32, white: float) -> F32:
+    """Return Lm (1 + Lm / white^2) / (1 + Lm), at most 1: `tonemap.reinhard.display`."""
+    return np.minimum(Lm * (1 + Lm / np.float32(white**2)) / (1 + Lm), 1)
 
 
 def scale(x: F32, mean: float, key: float) -> F32:
@@ -123,12 +151,14 @@ def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: f
         got = f"{share=}, {key=}, {white=}, {black=}"
         raise ValueError(f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}")
     L = as_luminance(L)
-    x = compress_light(logarithm(L), share)
-    _, mean, _ = find_levels(x)
+    floor, step = find_floor(L), space_nodes(L.shape)
+    a, b, down = filter_light(take_decades(L[::step, ::step], floor), step, L.shape)
+    some = np.s_[:: max(1, len(L) // ENOUGH)]
+    _, mean, _ = find_levels(compress_light(take_decades(L[some], floor), share, a, b, down[some]))
 
-    def curve(x: F32, L: F32) -> F32:
-        Lm = scale(x, mean, key)
-        Ld = np.clip((display(Lm, Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
+    def curve(L: F32, down: F32) -> F32:
+        Lm = scale(compress_light(take_decades(L, floor), share, a, b, down), mean, key)
+        Ld = np.clip((display(Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
         return np.where(L > 0, Ld, 0)
 
-    return banded(curve, x, L)
+    return banded(curve, L, down)

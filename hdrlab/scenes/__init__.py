@@ -10,7 +10,8 @@ scenes.decades(E)                                     the range of a scene or of
 How they were made: `scenes.models`, and `python -m scenes.render`; room and subjects: `scenes.computed`.
 """
 
-from hdrlab.scenes.places import PLACES, chapel, compose, decades, layers, room, street, workshop
+from hdrlab.core.extremes import decades
+from hdrlab.scenes.places import PLACES, chapel, compose, layers, room, street, workshop
 from hdrlab.scenes.real import photographs, probe
 
 __all__ = ["PLACES", "chapel", "compose", "decades", "layers", "photographs", "probe", "room"]

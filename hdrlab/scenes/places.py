@@ -16,7 +16,6 @@ import numpy as np
 
 from hdrlab.capture.movers import Figure, compose_moment
 from hdrlab.core.arrays import describe
-from hdrlab.core.colour import luminance
 from hdrlab.core.types import F32, F64, ArrayLike
 from hdrlab.io.maps.layers import read_layers
 
@@ -195,35 +194,3 @@ def mean_between(layer: F32, edges: F64, axis: int) -> F32:
     sums = (1 - share) * total.take(whole, axis) + share * total.take(whole + 1, axis)
     means = np.diff(sums, axis=axis) / (edges[1] - edges[0])
     return np.maximum(means, 0).astype(np.float32)  # where all is 0, rounding may have left less
-
-
-def decades(E: ArrayLike, *, tail: float = 0.001) -> float:
-    """Return log10(L_high / L_low), the range of a scene or of a radiance map.
-
-    Parameters
-    ----------
-    E : (H, W) or (H, W, 3), radiance
-    tail : share of the positive pixels left out at each end, so that one odd pixel decides nothing; with 0,
-        L_high and L_low are the maximum and the minimum
-
-    Returns
-    -------
-    decades : powers of ten; times 3.32 it is stops, times 20 decibels
-
-    Raises
-    ------
-    ValueError
-        For radiance that is not finite or negative, without a positive pixel, or a tail outside [0, 0.5).
-
-    Examples
-    --------
-    >>> round(decades([[0.01, 1000.0]], tail=0), 3)
-    5.0
-    """
-    if not 0 <= tail < 0.5:
-        raise ValueError(f"expected a tail in [0, 0.5), got {tail}")
-    L = luminance(E)
-    if not L.any():
-        raise ValueError("expected radiance with a positive pixel, got zeros")
-    low, high = np.quantile(L[L > 0].astype(np.float64), [tail, 1 - tail])
-    return float(np.log10(high / low))

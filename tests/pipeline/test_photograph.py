@@ -2,12 +2,13 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import uniform_filter
 
 from hdrlab import scenes
 from hdrlab.core import colour
 from hdrlab.core.picture import gray, statistics
 from hdrlab.pipeline import develop, develop_and_describe
-from hdrlab.pipeline.photograph import choose_settings, compress_light, enlarge, photograph
+from hdrlab.pipeline.photograph import choose_settings, compress_light, draw_lines, filter_light, photograph
 
 PLACES = {name: getattr(scenes, name) for name in ("chapel", "workshop", "street", "room")}
 GRAY = np.geomspace(1, 1e4, 96 * 128, dtype=np.float32).reshape(96, 128)
@@ -65,15 +66,29 @@ def test_more_light_of_one_colour_is_never_shown_darker():
 def test_light_is_compressed_and_detail_is_not():
     stripes = 0.05 * (np.arange(200) % 2)
     lL = (np.where(np.arange(200) < 100, 0, 4) + stripes + np.zeros((150, 1))).astype(np.float32)
-    x = compress_light(lL, 0.5)[75]
+    light = filter_light(lL, 1, lL.shape)
+    x = compress_light(lL, 0.5, *light)[75]
     assert np.median(x[150:]) - np.median(x[:50]) == pytest.approx(2, abs=0.1)
-    assert np.ptp(x[20:22]) == pytest.approx(0.05, rel=0.1) and np.array_equal(compress_light(lL, 1.0), lL)
+    assert np.ptp(x[20:22]) == pytest.approx(0.05, rel=0.1) and np.array_equal(
+        compress_light(lL, 1.0, *light), lL
+    )
 
 
 def test_a_grid_is_enlarged_along_straight_lines_and_past_its_end_stays():
-    nodes = np.float32([[0, 3, 6], [10, 13, 16]])
-    assert np.allclose(enlarge(nodes, 3, (5, 8))[[0, 1, 3, 4]][:, [0, 1, 6, 7]].round(3)[0], [0, 1, 6, 6])
-    assert enlarge(nodes, 3, (5, 8))[4, 7] == pytest.approx(16)
+    large = draw_lines(5, 2, 3) @ np.float32([[0, 3, 6], [10, 13, 16]]) @ draw_lines(8, 3, 3).T
+    assert np.allclose(large[0, [0, 1, 6, 7]], [0, 1, 6, 6]) and np.allclose(large[[3, 4], 7], 16)
+    assert large[1, 0] == pytest.approx(10 / 3)
+
+
+def test_the_light_is_that_of_the_guided_filter_on_a_grid_whose_means_are_those_of_a_plain_filter():
+    lL = np.log10(PLACES["room"]((160, 240))).mean(axis=-1).astype(np.float32)
+    few, width = lL[::2, ::2], 2 * 3 + 1
+    mean = uniform_filter(few, width)
+    variance = np.maximum(uniform_filter(few * few, width) - mean * mean, 0)
+    slope = variance / (variance + 0.35**2)
+    a, b, down = filter_light(few, 2, lL.shape)
+    for found, plain in (a, slope), (b, mean - slope * mean):
+        assert np.abs((down @ found)[::2, ::2] - uniform_filter(plain, width)).max() < 1e-4
 
 
 def test_the_settings_are_told_and_can_be_replaced():

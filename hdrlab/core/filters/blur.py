@@ -6,7 +6,8 @@ g      kernel, exp(-(x^2 + y^2) / (2 sigma^2)), sum 1, cut off at 4 sigma
 """
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+import scipy
+from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.core.types import F32, ArrayLike
 
@@ -36,4 +37,17 @@ def gaussian(image: ArrayLike, sigma: float) -> F32:
     image = np.asarray(image, np.float32)
     if image.ndim != 2 or 0 in image.shape or not 0 < sigma < np.inf:
         raise ValueError(f"expected an image (H, W) and a positive sigma, got shape {image.shape}, {sigma=}")
-    return gaussian_filter(image, sigma)
+    return scipy.ndimage.gaussian_filter(image, sigma)
+
+
+def blur_matrix(n: int, k: ArrayLike) -> F32:
+    """Return K (n, n) symmetric, whose product with n values is their blur by the symmetric taps k (2r + 1,).
+
+    Examples
+    --------
+    >>> blur_matrix(3, [0.25, 0.5, 0.25]).tolist()
+    [[0.75, 0.25, 0.0], [0.25, 0.5, 0.25], [0.0, 0.25, 0.75]]
+    """
+    k = np.asarray(k, np.float32)
+    values = np.pad(np.eye(n, dtype=np.float32), ((0, 0), (len(k) // 2, len(k) // 2)), "symmetric")
+    return np.asarray(sliding_window_view(values, len(k), axis=1) @ k)
