@@ -98,7 +98,8 @@ def assemble(
     methods["method"] = merge
     methods["times"] = "stated" if keep_times or times == "stated" else "correct"
     methods["times"] = "estimate" if times == "estimate" else methods["times"]
-    assembly = _assembled(read_bracket(photos, times, mask, stops), methods | {"response": recover})
+    knobs = {"response": recover, "release": not (report or uncertainty)}
+    assembly = _assembled(read_bracket(photos, times, mask, stops), methods | knobs)
     if uncertainty:
         assembly = pipeline.measure_deviation(assembly)
     if metered:

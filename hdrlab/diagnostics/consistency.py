@@ -14,7 +14,7 @@ import warnings
 import numpy as np
 
 from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, to_256
-from hdrlab.core.types import F32, F64, ArrayLike, Flags
+from hdrlab.core.types import F32, F64, ArrayLike, Flags, Indices, Mask
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)
@@ -55,21 +55,39 @@ def measure_level_exposures(
     times, mask = as_times(times, len(stack)), as_mask(valid, stack)
     if E.shape != stack.shape[1:]:
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
-    step = max(1, int(np.sqrt(E.shape[0] * E.shape[1] / PIXELS)))
-    channels = 1 if E.ndim == 2 else E.shape[-1]
-    Z = to_256(stack[:, ::step, ::step]).reshape(len(stack), -1, channels)
-    with np.errstate(divide="ignore"):
-        lE = np.log2(E[::step, ::step].reshape(-1, channels))
-    whole = np.all(Z <= TOP, axis=-1)
+    few, channels = choose_grid(E.shape), 1 if E.ndim == 2 else E.shape[-1]
+    Z = np.moveaxis(to_256(stack[:, *few]).reshape(len(stack), -1, channels), -1, 0).copy()
+    whole: Mask = np.all(Z <= TOP, axis=0)
     if mask is not None:
-        whole &= mask[:, ::step, ::step].reshape(len(stack), -1)
-    medians = np.empty((len(Z), Z.shape[-1], 256))
-    for c in range(channels):
-        rising = np.argsort(lE[:, c])[np.isinf(lE[:, c]).sum() :]  # once for all frames
-        for j, levels in enumerate(Z[..., c]):
-            own = rising[whole[j].take(rising)]
-            medians[j, c] = _median_per_level(levels.take(own), lE[:, c].take(own)) + np.log2(times[j])
+        whole &= mask[:, *few].reshape(len(stack), -1)
+    medians = np.empty((len(stack), channels, 256))
+    for c, light in enumerate(E[few].reshape(-1, channels).T):
+        rising = rank_light(light)  # once for all frames
+        lE = np.log2(light.take(rising))
+        for j, levels in enumerate(Z[c]):
+            own = whole[j].take(rising)
+            medians[j, c] = _median_per_level(levels.take(rising)[own], lE[own]) + np.log2(times[j])
     return medians
+
+
+def rank_light(E: F32) -> Indices:
+    """Return the indices of E above 0, (n,), from dark to bright, by the halves of its bits, which rise so.
+
+    Examples
+    --------
+    >>> rank_light(np.float32([3, 0, 1e-9, 2])).tolist()
+    [2, 3, 0]
+    """
+    bits = np.abs(E).view(np.uint32)  # of -0, too
+    by_low = np.argsort((bits & 0xFFFF).astype(np.uint16), kind="stable")
+    rising = by_low[np.argsort((bits >> 16).astype(np.uint16).take(by_low), kind="stable")]
+    return rising[np.count_nonzero(bits == 0) :]
+
+
+def choose_grid(shape: tuple[int, ...]) -> tuple[slice, slice]:
+    """Return the rows and columns of a picture (H, W[, 3]) that stand for all of it, about PIXELS places."""
+    step = max(1, int(np.sqrt(shape[0] * shape[1] / PIXELS)))
+    return np.s_[::step, ::step]
 
 
 def _median_per_level(Z: Flags, lE: F32) -> F64:

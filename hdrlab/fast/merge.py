@@ -11,12 +11,16 @@ look-up a frame, a as the real and b as the imaginary part of one number, and tw
 together.
 """
 
+import ctypes
+import mmap
 import os
+import sys
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import nullcontext
 from itertools import product
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -24,10 +28,12 @@ from hdrlab.core.arrays import as_mask
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
-from hdrlab.radiance.stuck import repair_stuck
+from hdrlab.radiance.stuck import find_repairable, repair_stuck
 
 # of a block: its planes and sums stay in the processor's cache
 ROWS = 16
+# rows whose memory is given back at once, and bytes of a large page
+BAND, PAGE = 256, 1 << 21
 THREADS = os.cpu_count() or 1
 # the terms a, b of one frame of t seconds, from w and g over the levels
 TERMS: dict[str, Callable[[F64, F64, float], tuple[F64, F64]]] = {
@@ -49,6 +55,10 @@ class _Plan(NamedTuple):
     finish: Callable[[Array], Array]  # from the quotient to E
 
 
+class Expendable(np.ndarray[Any, np.dtype[Any]]):
+    """Photographs that are lost when they are merged: their memory goes back to the system, band by band."""
+
+
 def merge(images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None = None) -> F32:
     """Return the radiance map, the lesson's."""
     return merge_with_quality(images, times, g, w, repair=False).E
@@ -68,7 +78,7 @@ def merge_with_quality(
     """Return the radiance map and the quality flags of its pixels, the lesson's."""
     stack, t, w, g, first = as_tables(images, times, g, w, method, top)
     mask, order = as_mask(valid, stack), short_to_long(stack, t)
-    plan = _plan(t[order], g, w, first, method)
+    plan, stuck = _plan(t[order], g, w, first, method), find_repairable(stack, t, mask) if repair else None
     pixels = stack.reshape(*stack.shape[:3], -1)
     E, quality = np.empty(pixels.shape[1:], np.float32), np.empty(pixels.shape[1:3], np.uint8)
 
@@ -77,15 +87,25 @@ def merge_with_quality(
         shown = None if mask is None else np.stack([mask[j, rows] for j in order])
         _merge_block([pixels[j, rows] for j in order], shown, plan, E[rows], quality[rows])
 
-    starts = range(0, len(quality), ROWS)
-    if THREADS == 1:  # a thread of its own would have a memory pool of its own, which is slower
-        deque(map(merge_rows, starts), maxlen=0)
-    else:
-        with ThreadPoolExecutor(THREADS) as pool:
-            deque(pool.map(merge_rows, starts), maxlen=0)
-    if repair:
-        quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
+    # a thread of its own would have a memory pool of its own, which is slower
+    with nullcontext() if THREADS == 1 else ThreadPoolExecutor(THREADS) as pool:
+        for band in range(0, len(quality), BAND):
+            starts = range(band, min(band + BAND, len(quality)), ROWS)
+            deque((pool.map if pool else map)(merge_rows, starts), maxlen=0)
+            if isinstance(images, Expendable):
+                for frame in stack:
+                    _release(frame[: band + BAND])
+    if stuck is not None:
+        quality[repair_stuck(E, stuck)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)
+
+
+def _release(rows: Array) -> None:
+    """Give the memory of rows that lie together back, in whole pages: Linux fills them with 0 when read."""
+    start, stop = -(-rows.ctypes.data // PAGE) * PAGE, (rows.ctypes.data + rows.nbytes) // PAGE * PAGE
+    if sys.platform == "linux" and rows.flags.c_contiguous and stop > start:
+        size = ctypes.c_size_t(stop - start)
+        ctypes.CDLL(None).madvise(ctypes.c_void_p(start), size, mmap.MADV_DONTNEED)
 
 
 def _plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:

@@ -15,14 +15,13 @@ from hdrlab.core import weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency, motion
-from hdrlab.diagnostics.contradictions import find_contradictions, warn_of_contradictions
+from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions, warn_of_contradictions
 from hdrlab.diagnostics.outlying_frames import find_outlying_frames
-from hdrlab.fast.merge import merge_with_quality
+from hdrlab.fast.merge import Expendable, merge_with_quality
 from hdrlab.pipeline import recovery, timing
 from hdrlab.pipeline.assembly import Assembly, Method, Table, take_frames
 from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as lens
-from hdrlab.radiance.deghosting import ghosts as moving
 from hdrlab.radiance.merge import METHODS, Merged
 from hdrlab.radiance.scales import fit_unit
 
@@ -106,10 +105,12 @@ def assemble_steps(
     ghosts: str = "auto",
     flare: str = "none",
     in_place: bool = False,
+    release: bool = False,
 ) -> Iterator[Assembly]:
     """Yield the Assembly after each of STAGES; the parameters are those of `assemble`.
 
     in_place : whether shifts may overwrite the photographs of `bracket`, which spares a copy of them all
+    release : whether the merge may give their memory back, too, where nothing asks for them any more
     """
     asked = {"a weight": weight, "a method": method, "times": times, "ghosts": ghosts, "flare": flare}.items()
     for (what, given), known in zip(asked, ((*WEIGHTS,), (*METHODS,), TIMES, GHOSTS, FLARE), strict=True):
@@ -134,15 +135,24 @@ def assemble_steps(
     yield (state := state._replace(stage="response", g=g, notes=notes, doubts=doubts))
     w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
     images, seconds, _, valid, _ = state.bracket
+    few = np.s_[:, *consistency.choose_grid(images.shape[1:3])]  # judged while there are photographs
+    shown = None if valid is None else valid[few]
+    E = merge(images[few], seconds, g, w(g), valid=shown, repair=False).E
+    medians = consistency.measure_level_exposures(images[few], seconds, E, valid=shown)
+    contrary = find_contradictions(images, seconds, valid=valid)
+    moved = motion.measure_motion(images, seconds, g, w(g), valid=valid)
+    remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
+    if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
+        state = state._replace(bracket=state.bracket._replace(images=images[:0]))
+        images = images.view(Expendable)
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))
-    moved = motion.measure_motion(images, seconds, g, w(g), valid=valid)
-    if ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED):
+    if remove:
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
     left = moved if state.moving is None else 0.0
-    yield assess(state, consistency.measure_level_exposures(images, seconds, E, valid=valid), left)
+    yield assess(state, medians, contrary, left)
 
 
 def leave_out_contrary(state: Assembly) -> Assembly:
@@ -161,6 +171,8 @@ def leave_out_contrary(state: Assembly) -> Assembly:
 
 def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Callable[..., Merged]) -> Assembly:
     """Return the Assembly without the ghosts of what moved; the reference is the middle photograph."""
+    from hdrlab.radiance.deghosting import ghosts as moving  # SciPy's filters: a fifth of a second
+
     images, times, names, valid, _ = state.bracket
     found = moving.remove_ghosts(
         images,
@@ -196,8 +208,8 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     return state._replace(E=state.E * np.float32(k), s=s, notes=(*state.notes, note))
 
 
-def assess(state: Assembly, medians: NDArray[np.float64], moved: float) -> Assembly:
-    """Return the Assembly with the medians of each level, and the warnings that follow.
+def assess(state: Assembly, medians: NDArray[np.float64], found: Contradictions, moved: float) -> Assembly:
+    """Return the Assembly with the medians of each level, and the warnings that follow from what was found.
 
     `moved` is the share of the picture in which ghosts are left; it counts where nothing else explains it.
     """
@@ -205,11 +217,10 @@ def assess(state: Assembly, medians: NDArray[np.float64], moved: float) -> Assem
     if state.spread > timing.WORTHLESS:
         why = f"the photographs contradict each other by {state.spread:.2f} stops"
         state = state._replace(fallback=why)
-    images, times, names, valid, _ = state.bracket
+    names = state.bracket.names
     if np.isnan(state.spread):
         why = "no level stands in two frames, so nothing supports times and map: take photographs in between"
         return state._replace(doubts=(*state.doubts, why), fallback=why)
-    found = find_contradictions(images, times, valid=valid)
     said = warn_of_contradictions(found, names, state.spread)
     if not said and moved > motion.MOVED:
         said = (

@@ -1,6 +1,7 @@
 """The chapters in a row: from photographs to a map that explains them, and to a picture."""
 
 import math
+import sys
 from functools import cache
 
 import cv2
@@ -13,6 +14,7 @@ from hdrlab.capture import camera, responses
 from hdrlab.core.bracket import bracket
 from hdrlab.core.colour import luminance
 from hdrlab.diagnostics import consistency
+from hdrlab.fast import merge as quick
 from hdrlab.pipeline import assemble, assemble_steps, catalogue, develop
 from hdrlab.pipeline.alignment import register
 from hdrlab.radiance.merge import METHODS, Quality
@@ -52,6 +54,24 @@ def test_in_place_the_map_is_the_same_in_the_memory_of_the_photographs(hand_held
     assert np.array_equal(found.E, expected.E) and found.doubts == expected.doubts
     assert np.array_equal(found.bracket.images, expected.bracket.images)
     assert np.shares_memory(found.bracket.images, taken.images)
+
+
+def test_photographs_that_may_be_lost_give_the_same_map_and_doubts_and_their_memory_back(
+    hand_held, monkeypatch
+):
+    monkeypatch.setattr(quick, "PAGE", 1 << 12)
+    expected = assemble(hand_held[0])
+    taken = hand_held[0]._replace(images=hand_held[0].images.copy())
+    *_, found = assemble_steps(taken, in_place=True, release=True)
+    assert np.array_equal(found.E, expected.E) and np.array_equal(found.quality, expected.quality)
+    assert (found.notes, found.doubts, found.spread) == (expected.notes, expected.doubts, expected.spread)
+    assert found.bracket.images.size == 0 and (sys.platform != "linux" or np.mean(taken.images == 0) > 0.8)
+
+
+def test_photographs_whose_ghosts_are_removed_are_kept_to_the_end(hand_held):
+    taken = hand_held[0]._replace(images=hand_held[0].images.copy())
+    *_, found = assemble_steps(taken, ghosts="regions", in_place=True, release=True)
+    assert found.bracket.images.any()
 
 
 def test_a_hand_held_bracket_becomes_the_radiance_of_the_room(room, hand_held):
