@@ -105,9 +105,8 @@ def _back(H: F64, shown: tuple[slice, slice]) -> F64:
 
 def _touched(mask: Mask, back: F64, size: tuple[int, int]) -> Mask:
     """Return where one of the 4 x 4 pixels of a cubic mean is in the mask."""
-    wide = scipy.ndimage.maximum_filter(
-        mask.view(np.uint8), size=4, origin=-1
-    )  # from one before to two after
+    # from one before to two after
+    wide = scipy.ndimage.maximum_filter(mask.view(np.uint8), size=4, origin=-1)
     return warp.before(wide.astype(np.float32), back, size) > 0.5
 
 

@@ -14,7 +14,6 @@ together.
 import ctypes
 import mmap
 import os
-import sys
 from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
@@ -103,9 +102,8 @@ def merge_with_quality(
 def _release(rows: Array) -> None:
     """Give the memory of rows that lie together back, in whole pages: Linux fills them with 0 when read."""
     start, stop = -(-rows.ctypes.data // PAGE) * PAGE, (rows.ctypes.data + rows.nbytes) // PAGE * PAGE
-    if sys.platform == "linux" and rows.flags.c_contiguous and stop > start:
-        size = ctypes.c_size_t(stop - start)
-        ctypes.CDLL(None).madvise(ctypes.c_void_p(start), size, mmap.MADV_DONTNEED)
+    if hasattr(mmap, "MADV_DONTNEED") and rows.flags.c_contiguous and stop > start:
+        ctypes.CDLL(None).madvise(ctypes.c_void_p(start), ctypes.c_size_t(stop - start), mmap.MADV_DONTNEED)
 
 
 def _plan(times: F64, g: F64, w: F64, top: int, method: str) -> _Plan:

@@ -120,5 +120,5 @@ def encode_png(picture: Array) -> bytes:
     np.subtract(rows[1:], rows[:-1], out=lines[1:, 1:])
     head = struct.pack(">2I5B", picture.shape[1], len(picture), 8, 2 * (picture.ndim - 2), 0, 0, 0)
     chunks = (b"IHDR", head), (b"IDAT", imagecodecs.deflate_encode(lines, level=1)), (b"IEND", b"")
-    parts = [(len(one), kind + one, crc32(kind + one)) for kind, one in chunks]
+    parts = ((len(one), kind + one, crc32(kind + one)) for kind, one in chunks)
     return b"\x89PNG\r\n\x1a\n" + b"".join(struct.pack(f">I{n + 4}sI", n, one, crc) for n, one, crc in parts)

@@ -25,13 +25,9 @@ from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
-PICTURES: dict[str, dict[str, Any]] = {
-    ".png": {"compress_level": 1},
-    ".jpg": {"quality": 95, "subsampling": 0},
-    ".jpeg": {"quality": 95, "subsampling": 0},
-    ".tif": {"compression": "tiff_deflate"},
-    ".tiff": {"compression": "tiff_deflate"},
-}
+PICTURES: dict[str, dict[str, Any]] = {".png": {"compress_level": 1}}
+PICTURES |= dict.fromkeys((".jpg", ".jpeg"), {"quality": 95, "subsampling": 0})
+PICTURES |= dict.fromkeys((".tif", ".tiff"), {"compression": "tiff_deflate"})
 
 
 def read_photo(path: str | Path) -> Array:

@@ -11,6 +11,9 @@ is kept for the brightest pixels. A guided filter reverses no gradients beside s
 one; its a and b are found on a coarse grid (He and Sun, Fast guided filter, 2015).
 """
 
+from collections.abc import Callable
+from functools import partial
+
 import numpy as np
 
 from hdrlab.core import colour
@@ -24,8 +27,6 @@ from hdrlab.fast._bands import banded
 REACH, NODES = 0.03, 4
 # of the median luminance: what is darker has no more detail
 DARK = 1e-6
-# scaled luminance, at most
-LIMIT = np.float32(1e15)
 # decades: a step of light that stays an edge
 EDGE = 0.35
 # decades of light that a display shows with ease, and the least share that stays of more
@@ -58,8 +59,8 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     every = max(1, min(E.shape[:2]) // ENOUGH)
     E = E[::every, ::every]
     L, share = colour.luminance(E), 1.0
-    lL, step = take_decades(L, find_floor(L)), space_nodes(L.shape)
-    a, b, down = light = filter_light(lL[::step, ::step], step, L.shape)
+    lL = take_decades(L, find_floor(L))
+    a, b, down = light = filter_light(lL)
     low, high = np.quantile(down @ a * lL + down @ b, [0.005, 0.995])
     if high - low > RANGE:
         share = max(LEAST, RANGE / float(high - low))
@@ -85,24 +86,21 @@ def find_floor(L: F32) -> float:
     return max(DARK * positive_median(L), 1e-37)
 
 
-def filter_light(few: F32, step: int, shape: tuple[int, ...]) -> tuple[Array, Array, F32]:
+def filter_light(L: F32, take: Callable[[F32], F32] = np.positive) -> tuple[Array, Array, F32]:
     """Return the light's a and b at nodes, (h, W), and the weights (H, h) of these in each row [He15].
 
-    few : (h, w), lL at each `step`-th pixel of a picture (H, W); a is near 1 at edges of light, 0 in detail
+    `take` returns lL from L (H, W), which is looked at in nodes; a is near 1 at edges of light, 0 in detail.
     """
-    width = 2 * (max(1, round(REACH * max(shape))) // step) + 1
+    reach = max(1, round(REACH * max(L.shape)))
+    step = max(1, reach // NODES)
+    few, width = take(L[::step, ::step]), 2 * (reach // step) + 1
     H, W = (blur_matrix(n, np.full(width, 1 / width)) for n in few.shape)
     mean: Array = H @ few @ W
     variance: Array = np.maximum(H @ (few * few) @ W - mean * mean, 0)
     a = variance / (variance + np.float32(EDGE**2))
-    down, across = (draw_lines(n, m, step) for n, m in zip(shape, few.shape, strict=True))
+    down, across = (draw_lines(n, m, step) for n, m in zip(L.shape, few.shape, strict=True))
     across = W @ across.T
     return H @ a @ across, H @ (mean - a * mean) @ across, down
-
-
-def space_nodes(shape: tuple[int, ...]) -> int:
-    """Return the step from node to node."""
-    return max(1, round(REACH * max(shape)) // NODES)
 
 
 def draw_lines(n: int, m: int, step: int) -> F32:
@@ -133,9 +131,9 @@ def display(Lm: F32, white: float) -> F32:
 
 
 def scale(x: F32, mean: float, key: float) -> F32:
-    """Return Lm = key 10^(CONTRAST (x - mean)), at most LIMIT."""
+    """Return Lm = key 10^(CONTRAST (x - mean)), at most 1e15."""
     exponent = np.log(np.float32(key)) + np.float32(CONTRAST * np.log(10)) * (x - np.float32(mean))
-    return np.exp(np.minimum(exponent, np.log(LIMIT)))
+    return np.exp(np.minimum(exponent, np.log(np.float32(1e15))))
 
 
 def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: float) -> F32:
@@ -151,13 +149,12 @@ def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: f
         got = f"{share=}, {key=}, {white=}, {black=}"
         raise ValueError(f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}")
     L = as_luminance(L)
-    floor, step = find_floor(L), space_nodes(L.shape)
-    a, b, down = filter_light(take_decades(L[::step, ::step], floor), step, L.shape)
-    some = np.s_[:: max(1, len(L) // ENOUGH)]
-    _, mean, _ = find_levels(compress_light(take_decades(L[some], floor), share, a, b, down[some]))
+    take, some = partial(take_decades, floor=find_floor(L)), np.s_[:: max(1, len(L) // ENOUGH)]
+    a, b, down = filter_light(L, take)
+    _, mean, _ = find_levels(compress_light(take(L[some]), share, a, b, down[some]))
 
     def curve(L: F32, down: F32) -> F32:
-        Lm = scale(compress_light(take_decades(L, floor), share, a, b, down), mean, key)
+        Lm = scale(compress_light(take(L), share, a, b, down), mean, key)
         Ld = np.clip((display(Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
         return np.where(L > 0, Ld, 0)
 
