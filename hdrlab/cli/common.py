@@ -2,7 +2,6 @@
 
 import os
 import re
-import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
@@ -98,8 +97,6 @@ def list_files(files: Iterable[Path]) -> None:
 
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
     """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
-    if not sys.stderr.isatty():
-        return items
     from tqdm import tqdm
 
     return tqdm(items, what, total, leave=False, delay=1, disable=None)

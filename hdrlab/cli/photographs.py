@@ -113,8 +113,6 @@ def assemble(
         layers.write_layers(uncertainty, both, comments=comments)
         click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
     if picture or report:
-        if not (report or assembly.fallback):  # the photographs have done their work
-            assembly = assembly._replace(bracket=assembly.bracket._replace(images=np.empty(0, np.uint8)))
         rendered, settings = pipeline.develop_and_describe(assembly.E, tonemap)
         if assembly.fallback:
             from hdrlab.fast import mertens

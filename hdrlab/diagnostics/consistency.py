@@ -14,7 +14,7 @@ import warnings
 import numpy as np
 
 from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, to_256
-from hdrlab.core.types import F32, F64, ArrayLike, Flags, Indices, Mask
+from hdrlab.core.types import F32, F64, ArrayLike, Flags, Mask
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)
@@ -62,26 +62,12 @@ def measure_level_exposures(
         whole &= mask[:, *few].reshape(len(stack), -1)
     medians = np.empty((len(stack), channels, 256))
     for c, light in enumerate(E[few].reshape(-1, channels).T):
-        rising = rank_light(light)  # once for all frames
+        rising = np.argsort(light)[np.count_nonzero(light == 0) :]  # once for all frames
         lE = np.log2(light.take(rising))
         for j, levels in enumerate(Z[c]):
             own = whole[j].take(rising)
             medians[j, c] = _median_per_level(levels.take(rising)[own], lE[own]) + np.log2(times[j])
     return medians
-
-
-def rank_light(E: F32) -> Indices:
-    """Return the indices of E above 0, (n,), from dark to bright, by the halves of its bits, which rise so.
-
-    Examples
-    --------
-    >>> rank_light(np.float32([3, 0, 1e-9, 2])).tolist()
-    [2, 3, 0]
-    """
-    bits = np.abs(E).view(np.uint32)  # of -0, too
-    by_low = np.argsort((bits & 0xFFFF).astype(np.uint16), kind="stable")
-    rising = by_low[np.argsort((bits >> 16).astype(np.uint16).take(by_low), kind="stable")]
-    return rising[np.count_nonzero(bits == 0) :]
 
 
 def choose_grid(shape: tuple[int, ...]) -> tuple[slice, slice]:

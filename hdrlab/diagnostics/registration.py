@@ -246,14 +246,11 @@ def rivals(middle: F32) -> list[Array]:
     down, across = (blur_matrix(n, k / k.sum()) for n in (h, w))
     total, share = (down @ one @ across for one in (np.where(kept, middle, 0), kept))  # `light.local_mean`
     x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
-    c = np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2, (2 * h, 2 * w))
-    c = np.fft.fftshift(c[:, :w], axes=0)  # it is symmetric
-    near = np.pad(c, 2, "edge")
-    for axis in (0, 1):
-        near = sliding_window_view(near, 5, axis).max(axis=-1)
+    # the rest is symmetric
+    c = np.fft.fftshift(np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2)[:, :w], axes=0)
+    near = sliding_window_view(np.pad(c, 2, "edge"), (5, 5)).max(axis=(2, 3))
     y, x = np.nonzero((c == near) & (c > 0))
-    best = np.argsort(-c[y, x], kind="stable")[: RIVALS + 1]
-    found = np.stack([y[best] - h, x[best]], axis=-1)
+    found = np.stack([y - h, x], axis=-1)[np.argsort(-c[y, x], kind="stable")[: RIVALS + 1]]
     return [shift for shift in found if np.abs(shift).max() > NEAR]
 
 

@@ -14,7 +14,6 @@ together.
 import ctypes
 import mmap
 import os
-from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import nullcontext
@@ -27,7 +26,7 @@ from hdrlab.core.arrays import as_mask
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
-from hdrlab.radiance.stuck import find_repairable, repair_stuck
+from hdrlab.radiance.stuck import repair_stuck
 
 # of a block: its planes and sums stay in the processor's cache
 ROWS = 16
@@ -77,7 +76,7 @@ def merge_with_quality(
     """Return the radiance map and the quality flags of its pixels, the lesson's."""
     stack, t, w, g, first = as_tables(images, times, g, w, method, top)
     mask, order = as_mask(valid, stack), short_to_long(stack, t)
-    plan, stuck = _plan(t[order], g, w, first, method), find_repairable(stack, t, mask) if repair else None
+    plan = _plan(t[order], g, w, first, method)
     pixels = stack.reshape(*stack.shape[:3], -1)
     E, quality = np.empty(pixels.shape[1:], np.float32), np.empty(pixels.shape[1:3], np.uint8)
 
@@ -86,16 +85,15 @@ def merge_with_quality(
         shown = None if mask is None else np.stack([mask[j, rows] for j in order])
         _merge_block([pixels[j, rows] for j in order], shown, plan, E[rows], quality[rows])
 
+    starts = range(0, len(quality), ROWS)
     # a thread of its own would have a memory pool of its own, which is slower
     with nullcontext() if THREADS == 1 else ThreadPoolExecutor(THREADS) as pool:
-        for band in range(0, len(quality), BAND):
-            starts = range(band, min(band + BAND, len(quality)), ROWS)
-            deque((pool.map if pool else map)(merge_rows, starts), maxlen=0)
-            if isinstance(images, Expendable):
-                for frame in stack:
-                    _release(frame[: band + BAND])
-    if stuck is not None:
-        quality[repair_stuck(E, stuck)] = Quality.STUCK
+        for start, _ in zip(starts, (pool.map if pool else map)(merge_rows, starts), strict=True):
+            if isinstance(images, Expendable) and start % BAND == 0:
+                for j in order[1:-1]:  # the shortest and the longest tell what is stuck
+                    _release(stack[j, :start])
+    if repair:
+        quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)
 
 

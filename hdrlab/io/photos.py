@@ -20,7 +20,6 @@ from hdrlab.core.optional import imagecodecs
 from hdrlab.core.types import Array, ArrayLike, Mask
 from hdrlab.io import raw
 from hdrlab.io.album import Paths, select, turn_alike
-from hdrlab.io.codecs import encode_png
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.io.times import Times, are_inverse, bracket_times
@@ -154,8 +153,8 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     """
     suffix, picture = require_suffix(path, PICTURES, "a picture file"), as_picture(image)
     with replacing(path) as name:
-        if suffix == ".png" and imagecodecs:
-            name.write_bytes(encode_png(picture))
+        if suffix == ".png" and imagecodecs:  # no search for repetitions, which photographs hardly have
+            name.write_bytes(imagecodecs.png_encode(picture, level=1, strategy=2, filter=128))
         else:
             Image.fromarray(picture).save(name, **PICTURES[suffix])
 

@@ -12,7 +12,6 @@ one; its a and b are found on a coarse grid (He and Sun, Fast guided filter, 201
 """
 
 from collections.abc import Callable
-from functools import partial
 
 import numpy as np
 
@@ -59,7 +58,7 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     every = max(1, min(E.shape[:2]) // ENOUGH)
     E = E[::every, ::every]
     L, share = colour.luminance(E), 1.0
-    lL = take_decades(L, find_floor(L))
+    lL = find_logarithm(L)(L)
     a, b, down = light = filter_light(lL)
     low, high = np.quantile(down @ a * lL + down @ b, [0.005, 0.995])
     if high - low > RANGE:
@@ -76,14 +75,10 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     return {"share": share, "key": key, "white": white, "black": black, "saturation": saturation}
 
 
-def take_decades(L: F32, floor: float) -> F32:
-    """Return lL = log10 L, and for what is darker the level of the floor."""
-    return np.log(np.maximum(L, np.float32(floor))) * np.float32(1 / np.log(10))
-
-
-def find_floor(L: F32) -> float:
-    """Return a millionth of the median luminance: what is darker has no detail."""
-    return max(DARK * positive_median(L), 1e-37)
+def find_logarithm(L: F32) -> Callable[[F32], F32]:
+    """Return the function to lL = log10 L, for which black is a millionth of the median of this L."""
+    floor = np.float32(max(DARK * positive_median(L), 1e-37))
+    return lambda L: np.log(np.maximum(L, floor)) * np.float32(1 / np.log(10))
 
 
 def filter_light(L: F32, take: Callable[[F32], F32] = np.positive) -> tuple[Array, Array, F32]:
@@ -149,7 +144,7 @@ def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: f
         got = f"{share=}, {key=}, {white=}, {black=}"
         raise ValueError(f"expected share in (0, 1], key and white above 0, black in [0, 1), got {got}")
     L = as_luminance(L)
-    take, some = partial(take_decades, floor=find_floor(L)), np.s_[:: max(1, len(L) // ENOUGH)]
+    take, some = find_logarithm(L), np.s_[:: max(1, len(L) // ENOUGH)]
     a, b, down = filter_light(L, take)
     _, mean, _ = find_levels(compress_light(take(L[some]), share, a, b, down[some]))
 

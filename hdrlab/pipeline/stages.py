@@ -143,7 +143,7 @@ def assemble_steps(
     moved = motion.measure_motion(images, seconds, g, w(g), valid=valid)
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
     if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
-        state = state._replace(bracket=state.bracket._replace(images=images[:0]))
+        state = state._replace(bracket=state.bracket._replace(images=images[:0].copy()))
         images = images.view(Expendable)
     E, quality = merge(images, seconds, g, w(g), valid=valid)
     yield (state := state._replace(stage="merge", E=E, quality=quality))

@@ -22,7 +22,7 @@ import numpy as np
 from hdrlab.core.arrays import as_mask, as_response, as_stack, as_table, as_times, levels
 from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.core.weights import hat
-from hdrlab.radiance.stuck import find_repairable, repair_stuck
+from hdrlab.radiance.stuck import repair_stuck
 
 # of the top level: levels above are clipped
 TOP = 0.98
@@ -197,7 +197,7 @@ def merge_with_quality(
         E = np.where(measured, METHODS[method](W, X, t[:, None, None, None]), bounds).astype(np.float32)
     quality = np.bitwise_or.reduce(np.where(measured, np.uint8(0), flags), axis=-1)
     if repair:
-        quality[repair_stuck(E, find_repairable(stack, t, mask))] = Quality.STUCK
+        quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)
 
 

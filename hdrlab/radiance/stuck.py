@@ -61,18 +61,18 @@ def neighbours_median(E: Array, mask: Mask) -> Array:
     return np.median([E[_neighbour(y, x, step, E.shape)] for step in NEIGHBOURS], axis=0)
 
 
-def find_repairable(frames: Array, times: F64, valid: Mask | None) -> Mask:
-    """Return the stuck pixels of photographs; within a stop of exposure a pixel may seem so, and none is."""
+def repair_stuck(E: F32, frames: Array, times: F64, valid: Mask | None) -> Mask:
+    """Replace the stuck pixels of a map E (H, W, C) in place by their neighbours' median; return where.
+
+    Within a stop of exposure a pixel may seem stuck, so then none is.
+    """
     shortest, longest = ends = short_to_long(frames, times)[[0, -1]]
     if times[longest] < 2 * times[shortest]:
-        return np.zeros(frames.shape[1:3], bool)
+        return np.zeros(E.shape[:2], bool)
     planes = frames.reshape(*frames.shape[:3], -1)
     stuck = find_stuck(planes[shortest], planes[longest])
-    return stuck if valid is None else stuck & valid[ends].all(axis=0)
-
-
-def repair_stuck(E: F32, stuck: Mask) -> Mask:
-    """Replace stuck pixels of a map E (H, W, C) in place by their neighbours' median; return where."""
+    if valid is not None:
+        stuck &= valid[ends].all(axis=0)
     if stuck.any():
         E[stuck] = neighbours_median(E, stuck)
     return stuck

@@ -156,9 +156,3 @@ def test_a_frame_with_a_wrong_time_leaves_a_residual_at_all_its_levels(bracket):
 def test_residuals_want_a_response_of_as_many_channels():
     with pytest.raises(ValueError, match="expected a response"):
         consistency.measure_residuals(np.zeros((3, 1, 256)), np.stack([G] * 3, axis=1))
-
-
-def test_light_is_ranked_as_by_a_sort_of_its_values_black_left_out():
-    E = np.random.default_rng(0).lognormal(0, 8, 5000).astype(np.float32)
-    E[::7], E[::11], E[::500] = 0.0, -0.0, 1e-42
-    assert np.array_equal(consistency.rank_light(E), np.argsort(E, kind="stable")[np.sum(E == 0) :])
