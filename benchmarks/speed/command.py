@@ -1,6 +1,10 @@
-"""The whole command: seven JPEGs of 12 megapixels to a map and a picture, beside a script of OpenCV."""
+"""The whole command: seven JPEGs of 12 megapixels to a map and a picture, beside a script of OpenCV.
+
+Larger ones are made of these: beside and below each photograph stand its mirror images.
+"""
 
 import sys
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -8,12 +12,13 @@ from PIL import Image
 
 from benchmarks import data, peers
 from benchmarks.measure import ROOT, process
-from benchmarks.rows import OURS, Case, Row, Run, Usage, close, faster, smaller
+from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, Usage, close, faster, grows, smaller
 from hdrlab.capture.hand_motion import views
 from hdrlab.core.types import Array
 from hdrlab.io.maps import rgbe
 
 RADIUS = 16
+SIZES = {"12 MP": (1, 1), "24 MP": (1, 2), "48 MP": (2, 2)}
 
 
 def case(folder: Path, one: bool) -> Case:
@@ -36,6 +41,34 @@ def case(folder: Path, one: bool) -> Case:
     theirs, missing = peers.present({peers.OPENCV: opencv})
     frames = data.photographs(folder, data.LARGE, radius=RADIUS).images.nbytes  # decoded
     return Case({OURS: lambda: run(ours, OURS)} | theirs, missing, lambda who, _: error(folder, who), frames)
+
+
+def growing(folder: Path, one: bool) -> Case:
+    """Return the work at every size of SIZES, by the command alone."""
+    write_photographs(folder / "jpeg", folder)
+    runs: dict[str, Run] = {}
+    reads: dict[str, int] = {}
+    for size, (down, across) in SIZES.items():
+        photographs = enlarge(folder / "jpeg", folder / f"jpeg-{down}-{across}", down, across)
+        files = ["-o", str(folder / "large.hdr"), "--picture", str(folder / "large.png")]
+        command = ["-m", "hdrlab", "assemble", str(photographs), "--times", str(folder / "times.csv"), *files]
+        runs[size] = partial(process, [sys.executable, *command], one=one)
+        reads[size] = 3 * data.FRAMES * data.LARGE[0] * data.LARGE[1] * down * across
+    return Case(runs, {}, reads=reads)
+
+
+def enlarge(photographs: Path, folder: Path, down: int, across: int) -> Path:
+    """Return a folder with the photographs, each `down` and `across` times, mirrored at the seams."""
+    if (down, across) == (1, 1):
+        return photographs
+    folder.mkdir(exist_ok=True)
+    for path in sorted(photographs.iterdir()):
+        if not (folder / path.name).exists():
+            image = np.asarray(Image.open(path))
+            image = np.concatenate([image, image[:, ::-1]][:across], axis=1)
+            image = np.concatenate([image, image[::-1]][:down])
+            Image.fromarray(image).save(folder / path.name, quality=95)
+    return folder
 
 
 def write_photographs(photographs: Path, folder: Path) -> None:
@@ -73,12 +106,29 @@ def _moved(images: Array, moves: Array, shown: tuple[slice, slice]) -> Array:
     )
 
 
+def memory_growth(results: Results) -> float | None:
+    """Return the peak memory of 48 MP over four times that of 12 MP."""
+    large, small = results["48 MP"].megabytes, results["12 MP"].megabytes
+    return large / (4 * small) if large and small else None
+
+
 ROWS = (
     Row(
         "assemble",
         f"`hdrlab assemble` of {data.FRAMES} JPEGs of 12 megapixels, whole command",
         case,
-        (faster(1.2, 2), smaller(0.5), close(0.05, "RMS of log10 E / truth")),
+        (faster(3, 4), smaller(0.4), close(0.05, "RMS of log10 E / truth")),
         "RMS of log10 E / truth",
+    ),
+    Row(
+        "assemble-48",
+        f"`hdrlab assemble` of {data.FRAMES} JPEGs of 12, 24 and 48 megapixels, whole command",
+        growing,
+        (
+            grows("12 MP", "24 MP", 2, 1.15),
+            grows("12 MP", "48 MP", 4, 1.15),
+            Hold("MB in all, 48 MP", lambda results: results["48 MP"].megabytes, 2500),
+            Hold("of four times the memory of 12 MP", memory_growth, 1),
+        ),
     ),
 )
