@@ -2,7 +2,8 @@
 
 right/<task>/<way>.py  a right way that keeps to what the task's sheet says: another order of a scan, another
                        solver, gauge, fill, rounding, type or shape; none may lose a point
-wrong/<task>/<way>.py  a plausible answer without the method that is asked for; at most a third of the points
+wrong/<task>/<way>.py  a plausible answer without the method that is asked for; at most a third of the points;
+                       one with the method and a known mistake in it is among the mistakes, at half or more
 mistakes               the named ones, of `hdrlab/course/checks/mistakes`: each strictly between, and named;
                        those that do not miss what their task is about cost half of it at most
 
