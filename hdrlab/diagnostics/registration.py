@@ -1,15 +1,13 @@
 """May I trust an alignment? A search always answers, so its answer is compared once more.
 
 H        homography          (3, 3): where pixel (x, y, 1) of the moving photograph lies on the fixed one
-p        pixels              (n, 2): those at which light is compared, spread evenly
+p        pixels              (n, 2): those at which light is compared, spread evenly over an overview, half a
+                             megapixel at most; bitmaps are compared with no offset at full resolution, too
 d        differences         of light (n,): relative to it, NaN where one measures none; of bitmaps (4, 2):
                              in each quarter of the picture the bits that differ, and those compared
 e        error               mean of d^2, see `align.light`; bits that differ / bits compared
 near     differences 2 pixels further than H, in eight directions
 far      differences 8 pixels further
-
-These pixels are those of an overview, at most half a megapixel, so a verdict does not depend on the size of
-photographs. Only whether an offset of bitmaps is better than none is asked at full resolution.
 
 Of Ward's brackets 84 % came out well; the others had turned, moved too far, or were all fine texture. So: is
 H better than the identity, better than what lies around it, do the four quarters of the picture agree (in a
@@ -97,8 +95,7 @@ class Comparison(NamedTuple):
 
     Attributes
     ----------
-    moving, fixed : which two images
-    shape : of the fixed one
+    moving, fixed, shape : which two images, and the size of the fixed one
     scale : pixels that are one of the overview
     differences : function of H that returns d of the overview, or of the size whose pixel is so many wide
     error : function of d that returns e, and `light.NONE` where the two share too little
@@ -149,8 +146,7 @@ def compare_bits(
 ) -> Comparison:
     """Return the Comparison of the bitmaps of two gray photographs; its H shift by whole pixels.
 
-    Y are the levels of the fixed one, t the threshold of the level that is the overview, and
-    count(offset, level) returns d of a level.
+    Y are the fixed one's levels, t the threshold of the overview; count(offset, level) returns d of a level.
     """
     tile, scale = _middle(Y[overview], BITS_TILE), 2**overview
     signs = np.where(exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
@@ -206,10 +202,7 @@ def uninformative(moving: int, fixed: int) -> Validation:
 
 
 def failure_reason(pair: Comparison, H: F64, elsewhere: list[float], clear: bool, away: int) -> str:
-    """Return the reason not to trust H, or an empty string.
-
-    `elsewhere` are the errors far from it; near it all is clearly worse, and `away` quarters are better.
-    """
+    """Return why not to trust H, or "", by errors `elsewhere`, worse ones near it, quarters better `away`."""
     e, n = pair.error(pair.differences(H)), pair.scale
     if not any(elsewhere):
         return f"the picture repeats itself: {FAR * n} pixels away the photographs fit as well"
@@ -240,13 +233,12 @@ def confidence(e: float, elsewhere: Sequence[float]) -> float:
 
 
 def rivals(middle: F32) -> list[Array]:
-    """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation."""
+    """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation, by half."""
     (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.NEIGHBOURHOOD)
     k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.NEIGHBOURHOOD) ** 2)
     down, across = (blur_matrix(n, k / k.sum()) for n in (h, w))
     total, share = (down @ one @ across for one in (np.where(kept, middle, 0), kept))  # `light.local_mean`
     x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
-    # the rest is symmetric
     c = np.fft.fftshift(np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2)[:, :w], axes=0)
     near = sliding_window_view(np.pad(c, 2, "edge"), (5, 5)).max(axis=(2, 3))
     y, x = np.nonzero((c == near) & (c > 0))
