@@ -2,14 +2,17 @@
 
 import numpy as np
 import pytest
+import scipy
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from skimage.data import astronaut
 
 from hdrlab import scenes
+from hdrlab.align import cerman, light
 from hdrlab.capture import camera, hand_motion
 from hdrlab.capture.responses import true_g
 from hdrlab.core.filters import warp
+from hdrlab.diagnostics import registration
 from hdrlab.diagnostics.registration import LOST
 from hdrlab.pipeline.alignment import register
 
@@ -123,3 +126,16 @@ def test_what_cannot_be_aligned_is_refused(images, knobs, said):
     for method in ("cerman", "homography", "auto"):
         with pytest.raises(ValueError, match=said):
             register(images, method, **knobs)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_rival_is_a_peak_of_the_autocorrelation_of_light_less_its_local_mean(seed):
+    rng = np.random.default_rng(seed)
+    texture = np.tile(rng.random((12, 17)), (6, 5))[:64, :80] + 0.1 * rng.random((64, 80))
+    texture[5:9, 7:12] = np.nan  # measures nothing
+    texture = texture.astype(np.float32)
+    x = np.where(np.isfinite(texture), texture - light.local_mean(texture), 0)
+    c = scipy.fft.fftshift(scipy.fft.irfft2(np.abs(scipy.fft.rfft2(x, (128, 160))) ** 2, (128, 160)))
+    found = cerman.peaks(c[:, 80:], registration.RIVALS + 1) + [0, 40]  # c is symmetric
+    expected = [one for one in found.tolist() if max(np.abs(one)) > registration.NEAR]
+    assert np.array_equal(registration.rivals(texture), expected)
