@@ -9,6 +9,7 @@ import os
 import secrets
 import shutil
 import sys
+import tempfile
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -20,7 +21,8 @@ from hdrlab.io.files import replacing
 
 PATIENCE = 600  # seconds for a cell
 STORED = "400"  # pictures of a slider, for a page on which no Python answers
-QUIET = ["--IPKernelApp.log_level=40"]  # errors: a kernel warns of its own connections otherwise
+# of errors alone a kernel tells, not of its own connections; and what was typed is kept in no history
+QUIET = ["--IPKernelApp.log_level=40", "--HistoryManager.enabled=False"]
 
 
 class Done(NamedTuple):
@@ -110,9 +112,13 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     kept.parent.mkdir(parents=True, exist_ok=True)
     client: Any = NotebookClient(notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET)
     client.create_kernel_manager()
-    client.km.connection_file = str(folder / "kernel.json")
+    # of ports two kernels may choose the same; of files, in a folder with a short name, they cannot
+    client.km.connection_file = tempfile.mkdtemp(prefix="hdrlab-") + "/kernel.json"
+    client.km.transport = "ipc" if os.name == "posix" else "tcp"
     try:
-        await client.async_start_new_kernel(cwd=str(folder), env=_environment(folder))
+        # the kernel imports this very hdrlab, and writes nothing at home
+        own = {"PYTHONPATH": import_path(), "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": STORED}
+        await client.async_start_new_kernel(cwd=str(folder), env={**os.environ, **own})
         await client.async_start_new_kernel_client()
         for index, cell in enumerate(notebook.cells):
             try:
@@ -128,12 +134,6 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
         older.unlink()
 
 
-def _environment(folder: Path) -> dict[str, str]:
-    """Return an environment in which the kernel imports this very hdrlab, and writes nothing at home."""
-    own = {"PYTHONPATH": import_path(), "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": STORED}
-    return {**os.environ, **own}
-
-
 async def _end(client: Any, folder: Path) -> None:
     try:
         if client.km.has_kernel:
@@ -141,7 +141,8 @@ async def _end(client: Any, folder: Path) -> None:
     finally:
         if client.kc is not None:
             client.kc.stop_channels()
-        shutil.rmtree(folder, ignore_errors=True)
+        for used in (folder, Path(client.km.connection_file).parent):
+            shutil.rmtree(used, ignore_errors=True)
 
 
 def _named(cell: Any, index: int) -> str:
