@@ -1,6 +1,7 @@
 """A notebook of the site runs beside others, and leaves nothing behind."""
 
 import os
+import tempfile
 
 import nbformat
 import pytest
@@ -14,12 +15,50 @@ print(json.loads(file.read_text())["transport"], file.parent, get_ipython().hist
 """
 
 
-@pytest.mark.skipif(os.name != "posix", reason="a system without sockets in files gives its kernels ports")
-def test_a_kernel_listens_at_no_port_that_another_could_take_and_keeps_no_history(tmp_path):
+@pytest.fixture
+def asking(tmp_path):
+    """A notebook that tells how its kernel is connected."""
     notebook = nbformat.v4.new_notebook(cells=[nbformat.v4.new_code_cell(ASKED)])
     nbformat.write(notebook, tmp_path / "asks.ipynb")
-    (done,) = execute.run_steps([tmp_path / "asks.ipynb"], tmp_path / "cache")
+    return tmp_path / "asks.ipynb"
+
+
+def told(asking):
+    """Run it; return its transport, the folder of its connection, and whether a history is kept."""
+    (done,) = execute.run_steps([asking], asking.parent / "cache")
     (said,) = nbformat.read(done.executed, as_version=4).cells[0].outputs
-    transport, folder, history = said.text.split()
+    return said.text.split()
+
+
+def assert_no_kernel_is_left(asking):
+    assert not list((asking.parent / "cache/kernels").iterdir())
+
+
+@pytest.mark.skipif(os.name != "posix", reason="a system without sockets in files gives its kernels ports")
+def test_a_kernel_listens_at_no_port_that_another_could_take_and_keeps_no_history(asking):
+    transport, folder, history = told(asking)
     assert (transport, history) == ("ipc", "False")
-    assert not os.path.exists(folder) and not list((tmp_path / "cache/kernels").iterdir())
+    assert not os.path.exists(folder)
+    assert_no_kernel_is_left(asking)
+
+
+def test_a_temporary_folder_whose_path_is_too_long_for_a_socket_is_no_hindrance(asking, monkeypatch):
+    long = asking.parent / ("long" * 25)
+    long.mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(long))
+    transport, folder, _ = told(asking)
+    assert transport == "tcp" and folder.startswith(str(long))
+    assert not list(long.iterdir())
+    assert_no_kernel_is_left(asking)
+
+
+def test_a_kernel_that_dies_before_it_answers_is_told_with_its_notebook_and_leaves_nothing(
+    asking, monkeypatch
+):
+    short = tempfile.mkdtemp(prefix="k")
+    monkeypatch.setattr(tempfile, "tempdir", short)
+    monkeypatch.setenv("PYTHONHOME", "/proc/nowhere")
+    with pytest.raises(execute.NotebookError, match=r"^asks\.ipynb, its kernel: Kernel died"):
+        told(asking)
+    os.rmdir(short)  # is empty
+    assert_no_kernel_is_left(asking)

@@ -20,7 +20,6 @@ from hdrlab.course.checks.running import LIBRARY, import_path
 from hdrlab.io.files import replacing
 
 PATIENCE = 600  # seconds for a cell
-STORED = "400"  # pictures of a slider, for a page on which no Python answers
 # of errors alone a kernel tells, not of its own connections; and what was typed is kept in no history
 QUIET = ["--IPKernelApp.log_level=40", "--HistoryManager.enabled=False"]
 
@@ -34,7 +33,7 @@ class Done(NamedTuple):
 
 
 class NotebookError(Exception):
-    """A cell of a notebook failed; says which, and how."""
+    """A cell of a notebook failed, or its kernel; says which, and how."""
 
 
 def library_key(*, course: bool = False) -> str:
@@ -53,7 +52,7 @@ def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Itera
     Raises
     ------
     NotebookError
-        For the first cell that fails. What has been run is kept nevertheless.
+        For the first cell that fails, or kernel that dies. What has been run is kept nevertheless.
     """
     key = library_key()
     waiting = []
@@ -63,8 +62,7 @@ def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Itera
             yield Done(source, kept, False)
         else:
             waiting.append((source, kept))
-    if waiting:
-        yield from _run_all(waiting, cache, jobs)
+    yield from _run_all(waiting, cache, jobs)
 
 
 def _key(source: Path, library: str) -> str:
@@ -103,7 +101,7 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     """Run one notebook from the top, and write it to `kept`."""
     import nbformat
     from nbclient import NotebookClient
-    from nbclient.exceptions import CellExecutionError, CellTimeoutError, DeadKernelError
+    from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
     notebook = nbformat.read(source, as_version=4)
     # where a notebook may leave something
@@ -112,37 +110,40 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     kept.parent.mkdir(parents=True, exist_ok=True)
     client: Any = NotebookClient(notebook, kernel_name="python3", timeout=PATIENCE, extra_arguments=QUIET)
     client.create_kernel_manager()
-    # of ports two kernels may choose the same; of files, in a folder with a short name, they cannot
-    client.km.connection_file = tempfile.mkdtemp(prefix="hdrlab-") + "/kernel.json"
-    client.km.transport = "ipc" if os.name == "posix" else "tcp"
+    sockets = tempfile.mkdtemp(prefix="hdrlab-")
+    client.km.connection_file = f"{sockets}/kernel.json"
+    # of ports two kernels may choose the same, of files not; but a socket's path has room for 100 bytes alone
+    client.km.transport = "ipc" if os.name == "posix" and len(os.fsencode(sockets)) < 80 else "tcp"
+    where = "its kernel"
     try:
-        # the kernel imports this very hdrlab, and writes nothing at home
-        own = {"PYTHONPATH": import_path(), "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": STORED}
+        # the kernel imports this very hdrlab, writes nothing at home, and stores 400 pictures of a slider:
+        # no Python answers on a page
+        own = {"PYTHONPATH": import_path(), "IPYTHONDIR": str(folder / "ipython"), "HDRLAB_STORED": "400"}
         await client.async_start_new_kernel(cwd=str(folder), env={**os.environ, **own})
         await client.async_start_new_kernel_client()
         for index, cell in enumerate(notebook.cells):
-            try:
-                await client.async_execute_cell(cell, index)
-            except (CellExecutionError, CellTimeoutError, DeadKernelError) as error:
-                raise NotebookError(f"{source.name}, {_named(cell, index)}: {_said(error)}") from None
+            where = _named(cell, index)
+            await client.async_execute_cell(cell, index)
         client.set_widgets_metadata()
+    except (CellExecutionError, CellTimeoutError, RuntimeError) as error:  # the last where a kernel dies
+        raise NotebookError(f"{source.name}, {where}: {_said(error)}") from None
     finally:
-        await _end(client, folder)
+        await _end(client, folder, sockets)
     with replacing(kept) as temporary:
         nbformat.write(notebook, temporary)
     for older in set(kept.parent.glob(f"{source.stem}-????????????????.ipynb")) - {kept}:
         older.unlink()
 
 
-async def _end(client: Any, folder: Path) -> None:
+async def _end(client: Any, *folders: Path | str) -> None:
     try:
-        if client.km.has_kernel:
+        if client.km is not None and client.km.has_kernel:  # none is left of one that never answered
             await client.km.shutdown_kernel(now=True)
     finally:
         if client.kc is not None:
             client.kc.stop_channels()
-        for used in (folder, Path(client.km.connection_file).parent):
-            shutil.rmtree(used, ignore_errors=True)
+        for folder in folders:
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def _named(cell: Any, index: int) -> str:
