@@ -4,6 +4,7 @@ import ast
 import json
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -258,13 +259,17 @@ def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
     assert name == "01_one-1" and len(content["state"]["frames"]) == 5
 
 
-def test_what_is_unchanged_is_not_made_again_and_what_is_gone_is_removed(made, found):
-    folder, site, (one, two, gone, plain), _ = made
+def test_what_is_unchanged_is_not_made_again(made):
+    folder, site, notebooks, _ = made
     before = {page: page.stat().st_mtime_ns for page in site.rglob("*.html")}
-    ran = run("site", one, two, gone, plain, folder=folder)
+    ran = run("site", *notebooks, folder=folder)
     assert "run now: 0" in ran.stdout
     assert {page: page.stat().st_mtime_ns for page in site.rglob("*.html")} == before
 
+
+def test_the_pages_of_a_notebook_that_is_gone_are_removed(made, tmp_path):
+    folder = shutil.copytree(made[0], tmp_path / "copy")  # others read the first one, before this and after
+    site, (one, two, _, plain) = folder / "site", made[2]
     assert (site / "notebooks" / "03_gone.html").exists() and list((site / "_widgets").glob("03_gone*"))
     ran = run("site", one, two, plain, folder=folder)
     assert ran.returncode == 0 and "run now: 0" in ran.stdout and ran.stderr == ""
