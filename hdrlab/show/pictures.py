@@ -151,7 +151,7 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
         changed = (over != web.as_rgb(first)).any(axis=-1)
         over, lossless = np.dstack([over, np.uint8(255) * changed]), lossless or changed.mean() < FEW_CHANGED
     if not lossless:
-        return web.encode_webp(image)
+        return web.encode_webp(image, quality=75)
     return min((web.encode_webp(each, lossless=True) for each in (image, over)), key=len)
 
 
