@@ -289,8 +289,17 @@ def test_a_notebook_that_fails_is_named_with_its_cell(tmp_path):
 
 def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(made, found):
     front = found[made[1] / "index.html"]
-    assert "notebooks/plain.html" in front.links and "_widgets/plain.webp" not in front.asked
+    assert "notebooks/plain.html" in front.links
     assert "Plain &amp; simple" in (made[1] / "notebooks" / "plain.html").read_text("utf-8")
+
+
+def test_the_pictures_of_a_page_are_files_that_are_fetched_as_they_come_into_view(made):
+    page = made[1] / "notebooks" / "02_two.html"
+    (shown,) = [tag for tag in re.findall(r"<img [^>]+>", page.read_text("utf-8")) if 'loading="lazy"' in tag]
+    asked = dict(re.findall(r'(\w+)="([^"]*)"', shown))
+    height, width = decode_picture((page.parent / asked["src"]).read_bytes()).shape[:2]
+    assert (asked["width"], asked["height"]) == (str(width), str(height)) and asked["alt"]
+    assert "data:image" not in page.read_text("utf-8")
 
 
 def test_notebooks_of_one_name_are_refused(tmp_path):

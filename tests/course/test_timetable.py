@@ -42,6 +42,24 @@ def test_every_notebook_stands_in_the_table_under_its_title(page):
     assert listed == {name: title for name, (title, _) in timetable.notebooks().items()}
 
 
+def test_a_notebook_begins_with_its_minutes_what_comes_before_it_and_what_one_can_do_afterwards(page):
+    for _, name, needs, minutes in rows(timetable.NOTEBOOK, page):
+        notebook = json.loads((timetable.ROOT / "notebooks" / f"{name}.ipynb").read_text(encoding="utf8"))
+        said = "".join(notebook["cells"][0]["source"]).split("\n\n")[1].replace("\n", " ")
+        begin, what = said.split(". Afterwards you can ")
+        time, _, after = begin.partition(" minutes")
+        assert time == f"*{minutes}" and numbers(after) == numbers(needs), name
+        assert len(what) > 20 and what.endswith(".*"), name
+
+
+def test_the_first_page_has_every_notebook_in_one_chapter_with_a_picture(page):
+    first = timetable.PAGE.with_name("index.md").read_text(encoding="utf8")
+    listed = re.findall(r'"(\d\d_\w+)"', first)
+    assert sorted(listed) == sorted(timetable.notebooks())
+    cards = timetable.PAGE.parents[1] / "theme" / "static" / "cards"
+    assert sorted(listed) == sorted(card.stem for card in cards.iterdir())
+
+
 def test_every_task_of_the_plan_stands_in_the_table_with_its_points(page):
     listed = [(sheet, name, int(points)) for sheet, name, _, points, _ in rows(timetable.TASK, page)]
     assert listed == [(sheet, name, points) for name, (sheet, points, _) in timetable.tasks().items()]

@@ -9,10 +9,9 @@ import json
 import re
 from collections.abc import Iterator
 from html import escape
+from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
-
-import numpy as np
 
 from hdrlab.io import files, web
 
@@ -20,7 +19,7 @@ VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
 NOT_OWN = ("layout", "tabbable", "tooltip")  # traits of every widget
 PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
-EMBEDDED = re.compile(r'src="data:image/[a-z+]+;base64,([^"]+)"')
+EMBEDDED = re.compile(r'src="data:image/webp;base64,([^"]+)"')
 
 
 class Live(NamedTuple):
@@ -75,26 +74,21 @@ def live(model: Any, name: str) -> Live:
     return Live(name, state["_esm"], state.get("_css", ""), own, base64.b64decode(shown["base64"]), alt)
 
 
-def pictures(notebook: Any) -> Iterator[bytes]:
-    """Yield the pictures of an executed notebook that stand in its pages as HTML."""
-    for output in _outputs(notebook):
-        for found in EMBEDDED.findall("".join(output.get("data", {}).get("text/html", ""))):
-            yield base64.b64decode(found)
+def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
+    """Put the pictures that stand in an executed notebook's HTML into files, fetched as they come into view.
 
+    `address` is that of the folder, from the page.
+    """
+    number = count(1)
 
-def liveliest(found: list[bytes]) -> bytes | None:
-    """Return the picture that looks most like a photograph: many levels, colours, little white paper."""
+    def moved(embedded: re.Match[str]) -> str:
+        picture, file = base64.b64decode(embedded[1]), f"{name}-p{next(number)}.webp"
+        write_changed(folder / file, picture)
+        height, width = web.decode_picture(picture).shape[:2]
+        return f'src="{address}/{file}" width="{width}" height="{height}" loading="lazy"'
 
-    def score(picture: bytes) -> float:
-        Z = web.decode_picture(picture).astype(np.int16)
-        shares = np.bincount(Z[..., 1].ravel(), minlength=256) / Z[..., 1].size
-        entropy = -np.sum(shares[shares > 0] * np.log2(shares[shares > 0]))
-        colour = np.mean(np.ptp(Z, axis=-1)) / 64
-        paper = np.mean((Z > 250).all(axis=-1))
-        odd = Z.shape[1] < 300 or not 1 < Z.shape[1] / Z.shape[0] < 1.9  # small, or no shape for a card
-        return float(entropy + colour - 8 * paper - 2 * odd)
-
-    return max(found, key=score, default=None)
+    for data in [output["data"] for output in _outputs(notebook) if "text/html" in output.get("data", {})]:
+        data["text/html"] = EMBEDDED.sub(moved, "".join(data["text/html"]))
 
 
 def write(one: Live, folder: Path) -> None:

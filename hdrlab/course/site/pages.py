@@ -20,7 +20,6 @@ from hdrlab.course.site import live, reference
 from hdrlab.course.site.execute import Done, library_key
 from hdrlab.io import web
 from hdrlab.show.pages.templates import render_page
-from hdrlab.show.plots.figures import fit
 
 PAGES = Path(__file__).parent / "pages"
 FRONT = PAGES / "front.ipynb"  # the picture of the first page
@@ -35,7 +34,6 @@ OF_RUNNING = re.compile(
 )
 COLOUR_CODES = re.compile(r"\x1b\[[0-9;]*m")
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3"}
-THUMBNAIL = 480  # pixels wide
 
 
 class Site(NamedTuple):
@@ -116,7 +114,7 @@ def _build(
     hero = next(one for _, one in live.widgets(_read(front), "front"))
     live.write(hero, html / WIDGETS)
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
-    texts["index.md"] = _front(hero, titles, headings, html)
+    texts["index.md"] = _front(hero, titles, headings)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
     texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides}
     texts |= more
@@ -154,14 +152,10 @@ def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[
     import nbformat
 
     found = list(live.widgets(notebook, name))
-    shown = [one.picture for _, one in found if one.picture] + list(live.pictures(notebook))
+    live.set_apart(notebook, name, folder, f"../{WIDGETS}")
     for output, one in found:
         live.write(one, folder)
         output["data"] = {"text/html": one.as_html(f"../{WIDGETS}")}
-    if picture := live.liveliest(shown):
-        live.write_changed(
-            folder / f"{name}.webp", web.encode_webp(fit(web.decode_picture(picture), THUMBNAIL))
-        )
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
     if not _title(notebook):
@@ -183,11 +177,11 @@ def _linked(text: str, known: set[str]) -> str:
     return re.sub(r"\[([^\]]+)\]\((?:\.\./)?(?:notebooks/|assignments/)?(\w+)\.ipynb\)", link, text)
 
 
-def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str], html: Path) -> str:
+def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str]) -> str:
     """Return the first page: a widget, a card for each notebook, and the handouts' titles."""
-    pictured = {name for name in titles if (html / WIDGETS / f"{name}.webp").exists()}
-    shown = {"hero": Markup(hero.as_html(WIDGETS)), "pictured": pictured, "pictures": WIDGETS}
-    return render_page(PAGES, "index.md", **shown, titles=titles, handouts=handouts)
+    return render_page(
+        PAGES, "index.md", hero=Markup(hero.as_html(WIDGETS)), titles=titles, handouts=handouts
+    )
 
 
 def _preview(hero: live.Live) -> bytes:
@@ -220,7 +214,7 @@ def _keep(folder: Path, names: set[str], part: str = "") -> None:
 def _forget_widgets(folder: Path, notebooks: set[str]) -> None:
     """Remove widgets that belong to no notebook any more."""
     for file in folder.iterdir():
-        if re.sub(r"-\d+$", "", file.stem) not in notebooks:
+        if re.sub(r"-p?\d+$", "", file.stem) not in notebooks:
             file.unlink()
 
 
