@@ -524,7 +524,8 @@ def test_a_slider_computes_on_one_thread():
         return np.full((4, 4), k, np.uint8)
 
     with threadpoolctl.threadpool_limits(2):
-        assert {pool["num_threads"] for pool in widgets.THREADS.info()} == {2}
+        # a library that was built without threads keeps to one
+        assert 2 in {pool["num_threads"] for pool in widgets.THREADS.info()}
         widgets.tune(f, lambda picture: picture, alt="A gray square", k=(0, 3))
     assert seen and set(seen) == {1}
 
