@@ -4,7 +4,7 @@ For "auto" held-out pixels choose, and of two that explain them alike, the simpl
 has one level in all channels, and so should have one radiance. Three curves, each recovered by itself,
 disagree where few frames leave them open, and a gray wall gets coloured patches. One curve for all channels
 cannot. Cameras have one, as a rule; scanned film has three. So one curve is taken where it explains pixels
-that it was not recovered from nearly as well as three do, by `consistency.measure_spread`.
+that it was not recovered from nearly as well as three do, by `consistency.measure_spread` of each channel.
 
 A map needs some response. So where a method finds none, or one that no camera has, one that a prior settles
 takes its place, with a doubt: that of `response.space`.
@@ -126,15 +126,18 @@ def find_widest_gap(Z: ArrayLike) -> int:
 
 
 def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
-    """Return the spread in stops that a method's response leaves in held-out pixels; inf if there is none."""
-    images, times, _, shown, _ = fit
+    """Return the spread in stops that a method's response leaves in held-out pixels; inf if there is none.
+
+    It is the mean of the channels' spreads: the median over all levels hides a curve that one channel denies.
+    """
     try:
-        g = method(images, times, valid=shown)
+        g = method(fit.images, fit.times, valid=fit.valid)
     except ValueError:
         return np.inf
-    E = merge_with_quality(held.images, times, g, weights.gaussian(len(g)), valid=held.valid).E
-    medians = consistency.measure_level_exposures(held.images, times, E, valid=held.valid)
-    return float(np.nan_to_num(consistency.measure_spread(medians), nan=np.inf))
+    E = merge_with_quality(held.images, held.times, g, weights.gaussian(len(g)), valid=held.valid).E
+    medians = consistency.measure_level_exposures(held.images, held.times, E, valid=held.valid)
+    spreads = [consistency.measure_spread(one[:, None]) for one in medians.swapaxes(0, 1)]
+    return float(np.nan_to_num(np.mean(spreads), nan=np.inf))
 
 
 def choose_response(response: Method, bracket: Bracket) -> Choice:

@@ -29,7 +29,8 @@ SOUND = [
     ("window", {}, 0.026),
     ("stlouis_arch", {}, 0.02),
     ("frobisher", {}, 0.002),
-    ("memorial", {"mask": "0000FF"}, 0.1),
+    ("memorial", {"mask": "0000FF"}, 0.09),
+    ("memorial", {}, 0.09),  # with its border
     ("mertens_house", {"stops": 3}, 0.02),
     ("mertens_house", {"times": "estimate"}, 0.02),
 ]
