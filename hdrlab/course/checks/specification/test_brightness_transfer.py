@@ -43,14 +43,8 @@ def test_a_photograph_and_itself_have_the_same_levels(subject, rng):
     T(m) = m, and not m + 1/2.
     """
     h, _ = drawn(rng)
-    n = len(h)
-    same(
-        subject.brightness_transfer(h, h)[1:-1],
-        np.arange(1.0, n - 1),
-        0.02,
-        what="T of one photograph",
-        kind="curve",
-    )
+    came, levels = subject.brightness_transfer(h, h), np.arange(1.0, len(h) - 1)
+    same(came[1:-1], levels, 0.02, what="T of one photograph", kind="curve")
 
 
 @pytest.mark.points(2, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")

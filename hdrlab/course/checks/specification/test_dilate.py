@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import distance_transform_edt
 
 from hdrlab.course.checks.compare import same
 from hdrlab.radiance.deghosting import regions
@@ -23,7 +24,9 @@ def test_all_within_the_margin_belongs_to_the_mask(subject, rng):
     Take what is at most `margin` from a pixel of the mask.
     """
     mask, margin = drawn(rng)
-    same(subject.dilate(mask, margin), regions.dilate(mask, margin), 0, what="the mask", picture=True)
+    near, widened = distance_transform_edt(~mask) <= margin, regions.dilate(mask, margin)
+    # its holes are another promise's
+    same(subject.dilate(mask, margin), near, 0, what="the mask", picture=True, where=near == widened)
 
 
 @pytest.mark.points(3)

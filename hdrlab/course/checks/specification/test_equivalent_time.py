@@ -7,9 +7,9 @@ from hdrlab.course.checks.compare import same
 
 
 def drawn(rng):
-    """Return T, F, F_new, S, S_new."""
+    """Return T, F, F_new, S, S_new: neither speed is the other, nor twice it."""
     F, F_new = rng.uniform(1.4, 22, 2)
-    S, S_new = 100 * 2.0 ** rng.integers(0, 6, 2)
+    S, S_new = np.array([100, 160]) * 2.0 ** rng.integers(0, 6, 2)
     return float(2.0 ** rng.uniform(-10, 2)), float(F), float(F_new), float(S), float(S_new)
 
 

@@ -52,7 +52,7 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
     Plot g: it should rise smoothly. Steps or spikes mean that a column index is off by one.
     """
     response = laws.drawn_response(rng)
-    Z, B = samples(rng, N=200, response=response, noise=0, light=(-2.4, -0.5))  # none of them clipped
+    Z, B = samples(rng, N=200, response=response, noise=0, light=(-2.4, 0.3))  # some of them clipped
     g, _ = asked(subject, Z, B, 10.0, HAT)
     middle = np.abs(np.arange(256) - 128) < 90
     same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
@@ -87,7 +87,7 @@ def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subjec
         g, lE = asked(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
         misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
-    if not (np.all(np.diff(bends) < 0) and bends[-1] < 1e-2 * bends[0]):
+    if not (np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0]):
         raise Different(f"sum (w g'')^2: expected less and less as lambda grows, got {_few(bends)}")
     if not np.all(np.diff(misses) > 0):
         raise Different(f"sum (w (g - lE - B))^2: expected more and more as lambda grows, got {_few(misses)}")

@@ -48,12 +48,12 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
 
     Let them go on until f^-1 hardly changes; about thirty are enough.
     """
-    for response in (laws.drawn_response(rng), laws.drawn_response(rng)):
-        Z, t = samples(rng, response)
+    for response in (laws.drawn_response(rng), responses.RESPONSES["gamma"]):  # the line is far from it
+        Z, t = samples(rng, response, N=2000)
         f = asked(subject, Z, t, max_iterations=25)[-1]
         truth = np.exp(responses.true_g(response))
         scale = np.sum(f[SHOWN] * truth[SHOWN]) / np.sum(f[SHOWN] ** 2)
-        same_curve(scale * f, truth, 0.03)
+        same_curve(scale * f, truth, 0.02)
 
 
 @pytest.mark.points(3)
@@ -100,7 +100,7 @@ def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng)
     """
     Z, t = samples(rng, laws.drawn_response(rng))
     whole, even = (asked(subject, z, t, max_iterations=12)[-1] for z in (Z, Z // 2 * 2))
-    same_curve(even, whole, 0.03)
+    same_curve(even, whole, 0.05)
 
 
 @pytest.mark.points(2)

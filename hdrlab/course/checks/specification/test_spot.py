@@ -21,7 +21,7 @@ def test_the_pixels_that_are_nearest_count(subject, rng):
 
     A pixel's middle is at (y + 1/2, x + 1/2), and the place at (at[0] H, at[1] W).
     """
-    for shape, knobs in (drawn(rng) for _ in range(4)):
+    for shape, knobs in (drawn(rng) for _ in range(12)):
         w = finite(subject.spot(shape, **knobs), shape, what="w")
         same(w > 0, metering.spot(shape, **knobs) > 0, 0, what="the pixels of weight above 0", picture=True)
 

@@ -8,7 +8,10 @@ from hdrlab.io.maps import rgbe
 
 
 def drawn(rng):
-    return (10.0 ** rng.uniform(-6, 6, (9, 11, 1)) * rng.uniform(0.02, 1, (9, 11, 3))).astype(np.float32)
+    """Return E (9, 11, 3), of which no brightest channel is so near a power of 2 that rounding reaches it."""
+    channels = rng.permuted(np.insert(rng.uniform(0.02, 1, (9, 11, 2)), 0, 1, axis=-1), axis=-1)
+    brightest = 2.0 ** rng.integers(-20, 21, (9, 11, 1)) * rng.uniform(0.5, 0.99, (9, 11, 1))
+    return (brightest * channels).astype(np.float32)
 
 
 def asked(subject, E):
