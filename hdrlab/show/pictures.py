@@ -125,8 +125,9 @@ def strip(
 
 
 def encode(drawn: object, density: int = 1) -> bytes:
-    """Return what a draw function returned as WebP: a plot without loss, a photograph in small."""
-    return web.encode_webp(render(drawn, density), lossless=not isinstance(drawn, np.ndarray))
+    """Return what a draw function returned as WebP: a plot without loss, in small what is like a photo."""
+    image = render(drawn, density)
+    return web.encode_webp(image, lossless=not isinstance(drawn, np.ndarray) and _is_drawing(image))
 
 
 def _density(drawn: object) -> int:
@@ -146,13 +147,18 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     True
     """
     over = web.as_rgb(image)
-    lossless = len(web.encode_runs(image)) <= web.MAX_RUN_BYTES * over[..., 0].size
+    lossless = _is_drawing(image)
     if first is not None and first.shape == image.shape:
         changed = (over != web.as_rgb(first)).any(axis=-1)
         over, lossless = np.dstack([over, np.uint8(255) * changed]), lossless or changed.mean() < FEW_CHANGED
     if not lossless:
         return web.encode_webp(image, quality=75)
     return min((web.encode_webp(each, lossless=True) for each in (image, over)), key=len)
+
+
+def _is_drawing(image: web.Image) -> bool:
+    """Tell a plot, whose rows are a few runs of one colour each, from a photograph or a map like one."""
+    return len(web.encode_runs(image)) <= web.MAX_RUN_BYTES * image.shape[0] * image.shape[1]
 
 
 def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:

@@ -17,7 +17,7 @@ from hdrlab.io import files, web
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
-NOT_OWN = ("layout", "tabbable", "tooltip")  # traits of every widget
+NOT_OWN = ("layout", "tabbable", "tooltip", "frame")  # traits of every widget, and what a slider stores again
 PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
 EMBEDDED = re.compile(r'src="data:image/webp;base64,([^"]+)"')
 

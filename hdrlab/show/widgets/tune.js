@@ -135,7 +135,8 @@ function render({ model, el }) {
   model.on("change:at", showBars);
   model.on("change:answers", answer);
   showBars();
-  showFrame();
+  if (model.get("frame")) showFrame();
+  else showStored(); // a page of the site holds the first picture once
   return () => {
     clearTimeout(timer);
     model.off("change:at", showBars);
