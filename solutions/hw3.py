@@ -164,8 +164,8 @@ for word in (0x3C00, 0xC100, 0x7BFF, 0x0001, 0x7C00):
 # $$v = \frac{\sum_j w_j\,(x_j - \bar x)^2}{\sum_j w_j}, \qquad
 #   \bar x = \frac{\sum_j w_j\, x_j}{\sum_j w_j}.$$
 #
-# `x` and `w` are `(P, H, W)`, and no weight is negative; return $v$ `(H, W)`. Where all weights are 0, nobody
-# contradicts: $v = 0$.
+# `x` and `w` are `(P, H, W)`; all $x$ are finite, also where $w = 0$, and no weight is negative. Return $v$
+# `(H, W)`. Where all weights are 0, nobody contradicts: $v = 0$.
 
 # %% task="weighted_variance"
 # Return v (H, W), the weighted variance of x (P, H, W) over the photographs; 0 where no w is above 0.

@@ -7,30 +7,43 @@ wrong/<task>/<way>.py  a plausible answer without the method that is asked for; 
 mistakes               the named ones, of `hdrlab/course/checks/mistakes`: each strictly between, and named;
                        those that do not miss what their task is about cost half of it at most
 
-Every file is graded on SEEDS students' inputs in the practice tier, as `check` in a notebook does it. The
-k-th files of a homework's tasks are one submission. `SEEDS=3 python -m benchmarks fairness` is a shorter run.
+What is wrong is to earn the same on all inputs: its score varies by a twentieth of the task's points at most.
+
+Every file is graded on SEEDS students' inputs in the practice tier. The k-th files of a homework's tasks are
+one submission, whose functions answer all students' checks from one sandbox. A process of its own for each
+check, the specification, the points and the names of mistakes are those of `check` in a notebook.
+`SEEDS=3 python -m benchmarks fairness` is a shorter run.
 """
 
+import inspect
 import os
 from collections.abc import Iterator
+from fractions import Fraction
+from importlib import import_module
 from itertools import zip_longest
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
-from hdrlab.course import grading, plan
-from hdrlab.course.checks import misconceptions
+from hdrlab.course import plan
+from hdrlab.course.checks import compare, misconceptions, plugin
+from hdrlab.course.checks.subject import TIMEOUT, NoAnswer, Subject
 from hdrlab.course.classroom import imitation
 from hdrlab.course.code.names import imported
-from hdrlab.course.plan import Conditions, Homework
-from hdrlab.course.reports import results
-from hdrlab.course.submission import Submission
+from hdrlab.course.plan import Homework
+from hdrlab.course.reports import causes
+from hdrlab.course.reports.results import Check, Outcome
+from hdrlab.course.sandbox import tiers
 
 HERE = Path(__file__).parent
 # students, each with inputs of their own
 SEEDS = int(os.environ.get("SEEDS", "25"))
 # of a task's points, for what is plausible and wrong
 THIRD = 1 / 3
+# the same, by which the score of what is wrong may vary from student to student
+TWENTIETH = 1 / 20
 
 
 class Score(NamedTuple):
@@ -73,25 +86,67 @@ def submissions(answers: dict[str, dict[str, str]]) -> Iterator[tuple[Homework, 
             yield homework._replace(tasks=tasks), chosen
 
 
-def graded(item: tuple[Homework, dict[str, tuple[str, str]], str]) -> list[Score]:
-    """Return what each answer of a submission gets on one student's inputs."""
-    homework, chosen, student = item
+def graded(item: tuple[Homework, dict[str, tuple[str, str]], int]) -> list[Score]:
+    """Return what each answer of a submission gets on so many students' inputs."""
+    homework, chosen, seeds = item
     sources = {task: source for task, (_, source) in chosen.items()}
-    read = Submission(sources, (), "", tuple(imported(sources.values())))
-    conditions = Conditions("practice", student, "fairness", draw=False)
-    *_, result = grading.check_steps(read, homework, conditions)
-    found = []
-    for task, (way, _) in chosen.items():
-        earned, whole = results.points(result.of(task))
-        broken = tuple(one.promise for one in result.of(task) if one.points < one.max_points)
-        found.append(Score(task, way, earned / whole, broken, result.misconceptions.get(task, "")))
-    return found
+    modules = tuple(imported(sources.values()))
+    with Subject(sources, tiers.choose("practice"), TIMEOUT * seeds, modules) as subject:
+        return [
+            score(subject, task, chosen[task.id][0], f"student {k}")
+            for k in range(seeds)
+            for task in homework.tasks
+        ]
+
+
+def score(subject: Subject, task: plan.Task, way: str, student: str) -> Score:
+    """Return what an answer gets on a student's inputs."""
+    module = import_module(f"hdrlab.course.checks.specification.test_{task.id}")
+    tests = {name: test for name, test in vars(module).items() if name.startswith("test_")}
+    marks = {
+        name: next(one for one in test.pytestmark if one.name == "points") for name, test in tests.items()
+    }
+    worth = causes.in_halves(
+        Fraction(str(task.points)), [Fraction(str(one.args[0])) for one in marks.values()]
+    )
+    checks, calls = [], []
+    for (name, test), points in zip(tests.items(), worth, strict=True):
+        subject.fresh()
+        compare.notes.clear()
+        given = {"subject": subject, "rng": np.random.default_rng(plan.seed("fairness", student, task.id))}
+        ended = Check(task.id, name, name, Fraction(), points, "holds")
+        try:
+            test(**{one: given[one] for one in inspect.signature(test).parameters})
+        except Exception as error:  # whatever an answer leads to costs that promise, and no other
+            kind = error.kind if isinstance(error, NoAnswer) else ""
+            outcome: Outcome = "no answer" if kind else "fails"
+            ended = ended._replace(outcome=outcome, kind=kind, message=str(error))
+        checks.append(ended)
+        calls += [(one.args, one.kwargs, one.answer) for one in subject.calls]
+    broken = tuple(one.name for one in checks if one.outcome != "holds")
+    found = misconceptions.closest(task, calls[: plugin.CALLS]) if broken else None
+    needs = {name: one.kwargs.get("needs", "") for name, one in marks.items()}
+    traced = causes.traced(checks, needs, named=found is not None, once=found is not None and found.once)
+    share = float(sum(one.points for one in traced) / sum(worth))
+    return Score(task.id, way, share, broken, found.name if found else "")
 
 
 def scores(answers: dict[str, dict[str, str]], seeds: int) -> list[Score]:
     """Return the scores of all answers on so many students' inputs."""
-    items = [(*one, f"student {k}") for one in submissions(answers) for k in range(seeds)]
-    return [score for each in along(graded, items, "answers") for score in each]
+    items = [(*one, seeds) for one in submissions(answers)]
+    return [score for each in along(graded, items, "submissions") for score in each]
+
+
+def spread(found: list[Score]) -> float:
+    """Return by how much the score of one answer varies at most, and print of which it varies too much."""
+    shares: dict[tuple[str, str], list[float]] = {}
+    for one in found:
+        shares.setdefault((one.task, one.way), []).append(one.share)
+    apart = {key: max(each) - min(each) for key, each in shares.items()}
+    for (task, way), most in apart.items():
+        if most > TWENTIETH:
+            print(f"  {task} {way}: from {min(shares[task, way]):.0%} to {max(shares[task, way]):.0%}")
+    return max(apart.values())
 
 
 def table(found: list[Score]) -> str:
@@ -131,14 +186,17 @@ def wrong(_: Path) -> dict[str, Any]:
     """Return what plausible answers without the method get."""
     found = scores(texts("wrong"), SEEDS)
     print(table(found))
-    return {"wrong answers": len(found), "largest share of a wrong answer": max(one.share for one in found)}
+    return {
+        "wrong answers": len(found),
+        "largest share of a wrong answer": max(one.share for one in found),
+        "by which a score varies": spread(found),
+    }
 
 
 def named(_: Path) -> dict[str, Any]:
     """Return what the named mistakes get, and how many are named."""
-    found = scores(mistakes(), max(SEEDS // 5, 1))
+    found = scores(mistakes(), SEEDS)
     print(table(found))
-    sentences = {one.name: one.sentence for one in misconceptions.known()}
     method = [one.name for one in misconceptions.known() if not one.once]
     print(f"  of these miss what their task is about: {', '.join(method)}")
     return {
@@ -147,7 +205,8 @@ def named(_: Path) -> dict[str, Any]:
         "of the others, that cost more than half": sum(
             one.share < 1 / 2 and one.way not in method for one in found
         ),
-        "named, %": 100 * sum(one.named == sentences[one.way] for one in found) / len(found),
+        "named, %": 100 * sum(one.named == one.way for one in found) / len(found),
+        "by which a score varies": spread(found),
     }
 
 
@@ -156,6 +215,7 @@ def _tasks() -> list[plan.Task]:
 
 
 NONE_REFUSED: Hold = at_most("right answers refused", 0)
+ALIKE: Hold = at_most("by which a score varies", TWENTIETH)
 ROWS = (
     Experiment(
         "right", "right answers from the sheets", right, (NONE_REFUSED, at_least("fewest ways of a task", 6))
@@ -164,7 +224,7 @@ ROWS = (
         "wrong",
         "plausible answers without the method",
         wrong,
-        (at_most("largest share of a wrong answer", THIRD),),
+        (at_most("largest share of a wrong answer", THIRD), ALIKE),
     ),
     Experiment(
         "mistakes",
@@ -174,6 +234,7 @@ ROWS = (
             at_most("of which with no point or all", 0),
             at_most("of the others, that cost more than half", 0),
             at_least("named, %", 95),
+            ALIKE,
         ),
     ),
 )

@@ -83,7 +83,8 @@ def flat(A: ArrayLike, *, size: int = 5, psi: float = 0.05, sigma: float = 0.01)
     Raises
     ------
     ValueError
-        For frames that are not (t, H, W), or knobs out of their range.
+        For frames that are not (t, H, W), a size below 2, a psi not between 0 and 1, or a sigma that is
+        not above 0.
 
     Examples
     --------

@@ -7,8 +7,10 @@ import numpy as np
 import pytest
 import scoring
 
-from hdrlab.course import plan
+from hdrlab.course import grading, plan, submission
 from hdrlab.course.checks import compare, inprocess
+from hdrlab.course.classroom import imitation
+from hdrlab.course.reports import results
 
 FAIRNESS = Path(__file__).parents[2] / "benchmarks" / "fairness"
 pytestmark = pytest.mark.skipif(
@@ -51,3 +53,18 @@ def test_numbers_in_another_form_are_accepted_and_noted(came, noted):
 def test_what_is_no_such_list_is_not(came):
     with pytest.raises(compare.Different):
         compare.same(came, [1, 2], 0)
+
+
+def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
+    """Both have a sandbox, and one of them pytest."""
+    fairness = pytest.importorskip("benchmarks.fairness")
+    way, whole_sheet, task = "hat_zero_in_the_middle", plan.read().homeworks["hw2"], plan.read().task("hat")
+    homework = whole_sheet._replace(tasks=(task,))
+    source = imitation.texts(homework, [way])["hat"]
+    conditions = plan.Conditions("practice", "student 1", "fairness", draw=False)
+    read = submission.Submission({"hat": source}, (), "", ())
+    *_, result = grading.check_steps(read, homework, conditions)
+    _, second = fairness.graded((homework, {"hat": (way, source)}, 2))
+    earned, whole = results.points(result.of("hat"))
+    assert second.share == earned / whole < 1 and second.named == way and "hat" in result.misconceptions
+    assert list(second.broken) == [one.name for one in result.of("hat") if one.outcome != "holds"]
