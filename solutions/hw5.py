@@ -335,7 +335,8 @@ pictures.picture(
 # `at`, how far down and how far right in parts of the picture (H, W): at row `at[0]` $H$ and column
 # `at[1]` $W$, where the pixel $(y, x)$ has its middle at $(y + \frac{1}{2}, x + \frac{1}{2})$. The disc
 # is made of the `share` $\cdot H W$ pixels, rounded (a half either way), and at least one, whose middles
-# are nearest to it, measured in pixels.
+# are nearest to it, measured in pixels. A share of 0.12 makes a partial meter of it, and 1 an average
+# one, which asks all alike.
 #
 # (`shape` is (H, W), and the answer $w$ (H, W). The checks ask for no two pixels that are equally near.)
 

@@ -35,5 +35,7 @@ def test_they_count_alike_and_together_one(subject, rng):
     w = 1 / k in the disc, and 0 elsewhere.
     """
     shape, knobs = drawn(rng)
-    w = metering.spot(shape, **knobs)
-    same(subject.spot(shape, **knobs), w, 1e-3 * float(w.max()), what="w", picture=True)
+    for share in (knobs["share"], 0.12, 1.0):  # of a spot, a partial and an average meter
+        w = metering.spot(shape, at=knobs["at"], share=share)
+        came = subject.spot(shape, at=knobs["at"], share=share)
+        same(came, w, 1e-3 * float(w.max()), what=f"w of a share of {share:.3g}", picture=True)
