@@ -2,7 +2,9 @@
 
 warned   a doubt is said, or that something moved, or the bracket is refused
 cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it),
-         once one is laid on the other, since a map is as good where the camera turned
+         each the mean of 4 x 4 pixels, once one is laid on the other, since a map is as good where the camera
+         turned. Pixel by pixel, turning all frames alike, which is no ill, would cost 0.11 to 0.15 stops by
+         resampling, noise and JPEG alone, and 0.04 to 0.06 in these means
 costly   a cost above 0.1 stops; `missed` is the share of these without a warning, %
 
 An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs no word.
@@ -29,8 +31,8 @@ from hdrlab.core.types import Array
 COUNT, SOUND = 12, 14
 # stops
 COSTLY = 0.1
-# pixels at the border that do not count, where frames were moved
-BORDER = 16
+# pixels at the border that do not count, where frames were moved, and of the side of those that are compared
+BORDER, SIDE = 16, 4
 
 
 class Verdict(NamedTuple):
@@ -56,10 +58,17 @@ def measure_cost(found: Array, sound: Array) -> float:
     cv2, moved = opencv(one=True), np.eye(2, 3, dtype=np.float32)
     with suppress(cv2.error):  # where the two have nothing in common
         _, moved = cv2.findTransformECC(a, b, moved, cv2.MOTION_EUCLIDEAN)
-    laid = cv2.warpAffine(b, moved, (w, h), flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP, borderValue=np.nan)
-    both = (_middle(sound, h, w) > 0) & (laid > np.log2(1e-8))
-    off = (laid - a)[BORDER:-BORDER, BORDER:-BORDER][both[BORDER:-BORDER, BORDER:-BORDER]]
+    way = cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP
+    laid = cv2.warpAffine(_middle(found, h, w), moved, (w, h), flags=way, borderValue=np.nan)
+    one, other = (_means(E[BORDER:-BORDER, BORDER:-BORDER]) for E in (_middle(sound, h, w), laid))
+    both = (one > 0) & (other > 1e-8)
+    off = np.log2(other[both] / one[both])
     return float(np.mean(np.abs(off - np.median(off))))
+
+
+def _means(E: Array) -> Array:
+    h, w = (n // SIDE for n in E.shape)
+    return E[: h * SIDE, : w * SIDE].reshape(h, SIDE, w, SIDE).mean(axis=(1, 3))
 
 
 def _middle(E: Array, h: int, w: int) -> Array:

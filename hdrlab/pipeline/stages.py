@@ -156,16 +156,20 @@ def assemble_steps(
 
 
 def leave_out_contrary(state: Assembly) -> Assembly:
-    """Return the Assembly without the frames that contradict all others, and a note on them."""
+    """Return the Assembly without the frames that contradict all others, and a note on them, or a doubt."""
     images, times, names, valid, _ = state.bracket
-    found = find_outlying_frames(images, times, valid=valid)
+    found, rivals = find_outlying_frames(images, times, valid=valid)
     if not found:
         return state
     said = (
         f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
         "whether its time is right, and whether it shows this scene, in this light"
     )
-    state = state._replace(notes=(*state.notes, said))
+    if rivals:
+        said += f"; it may also be {' or '.join(names[j] for j in rivals)} that is wrong, and with it the map"
+        state = state._replace(doubts=(*state.doubts, said))
+    else:
+        state = state._replace(notes=(*state.notes, said))
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
 

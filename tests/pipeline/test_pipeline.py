@@ -327,3 +327,11 @@ def test_a_photograph_that_contradicts_all_others_is_left_out_with_a_note(room):
     assert found.bracket.names == tuple("abdef") and found.offsets.shape == (5, 2)
     assert any("left out" in note and " c;" in note for note in found.notes)
     assert found.spread < 0.02 and assemble(taken).bracket.images.shape[0] == 6
+
+
+def test_of_two_photographs_that_may_both_be_the_wrong_one_neither_is_left_out_without_a_warning():
+    chapel = scenes.chapel((280, 420))
+    taken = camera.shoot(chapel, camera.times_around(chapel, 4, stops=1.5), rng=1)
+    wrong = taken._replace(times=taken.times * [1, 1, 1, 2])
+    (doubt,) = assemble(wrong, align="none", times="stated").doubts
+    assert doubt.startswith("left out") and "frame 2" in doubt and "frame 4" in doubt
