@@ -18,7 +18,7 @@ from hdrlab.core.arrays import as_response, as_stack
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import flat_patches, response_steps
 
-# stops: a time that was this far off is more than rough; so is one by FAR where held-out pixels deny it by DENIED
+# stops: a time that was this far off is more than rough, or by FAR where held-out pixels deny it by DENIED
 FARTHEST, FAR, DENIED = 0.5, 0.3, 0.1
 # stops, of a correction of three times: more is no rounding of a camera's
 ROUNDED = 0.08
