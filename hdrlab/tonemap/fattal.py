@@ -26,7 +26,7 @@ from hdrlab.core.filters import poisson, pyramid
 from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
-SATURATION = 0.6  # gradients of luminance were compressed, those of colour were not [Fattal02]
+SATURATION = 0.8  # gradients of luminance were compressed, those of colour were not; 0.6 of the paper is pale
 # pixels: the shorter side of the coarsest level is at least this
 SMALLEST = 32
 # a pixel without light is taken to be this much darker than white, or as dark as the darkest
@@ -155,7 +155,7 @@ def tonemap(
 
     Returns
     -------
-    (H, W) float32 in [0, 1], 1 = white. The paper adds colour with an exponent of 0.4 to 0.6: SATURATION.
+    (H, W) float32 in [0, 1], 1 = white. The paper adds colour to a power of 0.4 to 0.6: see SATURATION.
 
     Raises
     ------
