@@ -165,11 +165,9 @@ def leave_out_contrary(state: Assembly) -> Assembly:
         f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
         "whether its time is right, and whether it shows this scene, in this light"
     )
-    if rivals:
-        said += f"; it may also be {' or '.join(names[j] for j in rivals)} that is wrong, and with it the map"
-        state = state._replace(doubts=(*state.doubts, said))
-    else:
-        state = state._replace(notes=(*state.notes, said))
+    either = f"; it may also be {' or '.join(names[j] for j in rivals)} that is wrong, and with it the map"
+    doubts, notes = ((said + either,), ()) if rivals else ((), (said,))
+    state = state._replace(notes=(*state.notes, *notes), doubts=(*state.doubts, *doubts))
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
 
