@@ -18,8 +18,8 @@ from hdrlab.core.arrays import as_response, as_stack
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import flat_patches, response_steps
 
-# stops: a time that was this far off is more than rough, or by FAR where held-out pixels deny it by DENIED
-FARTHEST, FAR, DENIED = 0.5, 0.3, 0.1
+# stops: a time that was this far off is more than rough
+FAR = 0.5
 # stops, of a correction of three times: more is no rounding of a camera's
 ROUNDED = 0.08
 # stops of bias: times that agree so well are left alone
@@ -177,10 +177,9 @@ def note(found: Estimate, names: Sequence[str]) -> str:
 def doubts(found: Estimate) -> tuple[str, ...]:
     """Return why not to trust estimated times: a sentence, or none."""
     far = float(np.abs(found.stops).max())
-    most = FAR if found.bias_before > DENIED else FARTHEST
-    if not found.accepted or far <= (ROUNDED if len(found.stops) == 3 else most):
+    if not found.accepted or far <= (ROUNDED if len(found.stops) == 3 else FAR):
         return ()
-    if far <= most:
+    if far <= FAR:
         return (
             f"of three photographs, one time is wrong: the middle one's by {1.5 * far:.2f} stops, or that of "
             f"the first or last by {3 * far:.2f}, and with it the contrast of the map; a fourth would tell",
