@@ -111,6 +111,21 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
         same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
+@pytest.mark.points(2)
+def test_noise_that_stays_on_the_sensor_does_not_count(subject, rng):
+    """More than half of the picture is a wall as bright as the median. What does its bitmap show?
+
+    Noise alone; and where a sensor's noise is the same in each photograph, it says that nothing has moved.
+
+    AND the differences with both exclusion bitmaps before you count.
+    """
+    dy, dx = drawn(rng, 3, 12)
+    images = photographs(rng, scene(rng), [(0, 0), (dy, dx)], (1, 1))
+    images[:, :, :128] = np.median(images[:, :, 128:]) + rng.integers(-2, 3, (H, 128))
+    came = finite(subject.align(images, bits=BITS), (2, 2), what="the offsets")
+    same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
+
+
 @pytest.mark.points(4)
 def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     """How far can an offset of n levels reach? 1 + 2 + 4 + ...
