@@ -510,6 +510,31 @@ def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, end
     assert works or finding[3:] == ("the practice sandbox did not start: it was ended by signal 9", "")
 
 
+def test_what_was_launched_for_a_sandbox_that_does_not_start_is_cleared_away():
+    cleared = []
+
+    def launch(control):
+        process = running.start([sys.executable, "-c", "raise SystemExit('no')"], {})
+        return running.Launched(process, lambda: cleared.append(process.returncode))
+
+    started = running.Running(practice.sandbox()._replace(launch=launch))
+    with pytest.raises(tiers.Unavailable, match="did not start: no"):
+        started.wait()
+    assert cleared == [1]
+
+
+def test_a_check_is_cleared_away_once(monkeypatch):
+    with opened("practice") as subject:
+        assert subject.scaled(1.0) == 2.0
+        inside = subject._running
+        ended, seconds = inside.clear()
+        assert seconds > 0
+        left = inside.left
+        with monkeypatch.context() as changed:
+            changed.setattr(running.channel, "send", None)  # nothing more is asked of it
+            assert inside.clear() == (0, 0.0) and inside.left == left
+
+
 def test_where_nothing_can_be_mounted_the_strict_tier_is_an_error_and_the_container_tier_serves():
     """As in most containers: root, without the right to have namespaces."""
     opened("container")

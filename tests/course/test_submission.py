@@ -9,7 +9,7 @@ import pytest
 
 from hdrlab.course import submission
 from hdrlab.course.code import names
-from hdrlab.course.code.closure import Cell
+from hdrlab.course.code.closure import Cell, closed
 
 TASKS = ["gsolve", "merge"]
 
@@ -235,3 +235,15 @@ def test_a_million_characters_of_code_are_read_and_one_more_is_refused():
         [],
         ["hw2.py holds more than 1,000,000 characters of code"],
     )
+
+
+def test_a_function_that_reads_what_is_made_by_calling_it_stands_before_the_call_wherever_its_cell_is():
+    cells = [
+        Cell("x, y = g(), 2"),
+        Cell("ready = False\ndef g():\n    return y if ready else 5"),
+        Cell("def f():\n    return x", task="f"),
+    ]
+    texts, problems = closed(cells, ["f"])
+    own = {}
+    exec(texts["f"], own)
+    assert own["f"]() == 5 and problems == []
