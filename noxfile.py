@@ -18,7 +18,7 @@ nox.options.sessions = [QUICK]
 EXTRAS = {"scenes": "test,scenes", "papers": "test,bench", "coverage": "test,cover"}
 # in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
 # (in a browser they need not: what is dear there, the site, is one for all workers)
-TOGETHER = ("jupyterlab", "grading", "papers", "scenes", "wheel")
+TOGETHER = ("notebooks", "jupyterlab", "grading", "papers", "scenes", "wheel")
 
 
 def test(session: nox.Session, tier: str, *options: str) -> None:

@@ -16,6 +16,7 @@ from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
 from PIL import Image
 from tiers import ALL, QUICK, TIERS, may_hold, tier_of, turn
+from xdist.scheduler import LoadScopeScheduling
 
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
@@ -66,6 +67,19 @@ def pytest_collection_modifyitems(config, items):
         config.hook.pytest_deselected(items=others)
         items[:] = [item for item in items if tier_of(item.nodeid) == config.option.tier]
     items.sort(key=lambda item: turn(item.nodeid))
+
+
+class ByNotebook(LoadScopeScheduling):
+    """Where the tests of a module stay together, those of one notebook do: a module of them takes long."""
+
+    def _split_scope(self, nodeid):
+        own = nodeid.startswith("tests/test_notebooks_run.py")
+        return nodeid.partition("[")[2] if own else super()._split_scope(nodeid)
+
+
+def pytest_xdist_make_scheduler(config, log):
+    """Keep together what --dist=loadscope does, but for notebooks."""
+    return ByNotebook(config, log) if config.option.dist == "loadscope" else None
 
 
 def pytest_unconfigure():

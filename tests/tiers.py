@@ -151,6 +151,7 @@ QUICK, ALL = "quick", "all"
 # begun first, in this order: what is long, or what the others of its tier wait for; begun last, one worker
 # would be busy with it alone
 FIRST = (
+    "tests/course/test_site.py",
     "tests/browser/test_site_in_a_browser.py",
     "tests/course/test_killed.py",
     "tests/course/test_toy.py",
