@@ -128,7 +128,7 @@ def assemble_steps(
             state = state if same and (said or times == "correct") else found
         yield (state := state._replace(stage="times"))
     if not explained:
-        state = leave_out_contrary(state)
+        state = leave_out_contrary(state, relative=bool(said))
         choice = recovery.choose_response(response, state.bracket)
     g, doubts, fallback = recovery.find_response(response, choice, state.bracket)
     notes, doubts = (*state.notes, *choice.notes), (*state.doubts, *doubts)
@@ -155,8 +155,11 @@ def assemble_steps(
     yield assess(state, medians, contrary, left)
 
 
-def leave_out_contrary(state: Assembly) -> Assembly:
-    """Return the Assembly without the frames that contradict all others, and a note on them, or a doubt."""
+def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
+    """Return the Assembly without the frames that contradict all others, and a note on them, or a doubt.
+
+    Of two frames either of which may be wrong, relative times make none: they are as rough as all others.
+    """
     images, times, names, valid, _ = state.bracket
     found, rivals = find_outlying_frames(images, times, valid=valid)
     if not found:
@@ -166,7 +169,7 @@ def leave_out_contrary(state: Assembly) -> Assembly:
         "whether its time is right, and whether it shows this scene, in this light"
     )
     either = f"; it may also be {' or '.join(names[j] for j in rivals)} that is wrong, and with it the map"
-    doubts, notes = ((said + either,), ()) if rivals else ((), (said,))
+    doubts, notes = ((said + either,), ()) if rivals and not relative else ((), (said,))
     state = state._replace(notes=(*state.notes, *notes), doubts=(*state.doubts, *doubts))
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
