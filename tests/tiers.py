@@ -118,6 +118,7 @@ TIERS = {
         "tests/io/test_sequence.py::test_a_bar_shows",
         "tests/io/test_sequence.py::test_a_film_comes",
         "tests/io/test_sequence.py::test_gray_frames",
+        "tests/pipeline/test_certainty.py::test_half_of_a_real_map",
         "tests/pipeline/test_pipeline.py::test_a_walk_around_the_crusader",
         "tests/pipeline/test_pipeline.py::test_alignment_can_be_left_out_and_named",
         "tests/pipeline/test_pipeline.py::test_photographs_of_two_scenes",
