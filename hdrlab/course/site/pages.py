@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import nbformat
 import numpy as np
 from markupsafe import Markup
 
@@ -95,11 +96,9 @@ def build(
 def _build(
     out: Path, done: Sequence[Done], sheets: dict[str, str], more: Mapping[str, str], address: str
 ) -> Site:
-    import nbformat
-
     source, html = cache_of(out) / "source", cache_of(out) / "html"
     front = next(one for one in done if one.source == FRONT)
-    notebooks = {one.source.stem: _read(one) for one in done if one.source != FRONT}
+    notebooks = {one.source.stem: nbformat.read(one.executed, 4) for one in done if one.source != FRONT}
     titles = {name: _title(notebook) or name for name, notebook in notebooks.items()}
     modules, known = reference.modules(), {*notebooks, *sheets}
     uses = {name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()}
@@ -111,10 +110,11 @@ def _build(
         for name, notebook in group.items():
             texts[f"{folder}/{name}.ipynb"], count = _prepared(notebook, name, known, html / WIDGETS)
             widgets += count
-    hero = next(one for _, one in live.widgets(_read(front), "front"))
+    hero = next(one for _, one in live.widgets(nbformat.read(front.executed, 4), "front"))
     live.write(hero, html / WIDGETS)
     live.write_changed(html / "_static" / "preview.jpg", _preview(hero))
-    texts["index.md"] = _front(hero, titles, headings)
+    first = {"hero": Markup(hero.as_html(WIDGETS)), "titles": titles, "handouts": headings}
+    texts["index.md"] = render_page(PAGES, "index.md", **first)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
     texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides}
     texts |= more
@@ -131,12 +131,6 @@ def _build(
     return Site(out / "index.html", len(texts), widgets + 1, complaints)
 
 
-def _read(one: Done) -> Any:
-    import nbformat
-
-    return nbformat.read(one.executed, as_version=4)
-
-
 def _code(notebook: Any) -> list[str]:
     return [cell.source for cell in notebook.cells if cell.cell_type == "code"]
 
@@ -149,8 +143,6 @@ def _title(notebook: Any) -> str:
 
 def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
     """Return a notebook without its widgets, which go to `folder`, and how many there are."""
-    import nbformat
-
     found = list(live.widgets(notebook, name))
     live.set_apart(notebook, name, folder, f"../{WIDGETS}")
     for output, one in found:
@@ -175,13 +167,6 @@ def _linked(text: str, known: set[str]) -> str:
         return found[0] if found[2] in known else found[1]
 
     return re.sub(r"\[([^\]]+)\]\((?:\.\./)?(?:notebooks/|assignments/)?(\w+)\.ipynb\)", link, text)
-
-
-def _front(hero: live.Live, titles: dict[str, str], handouts: dict[str, str]) -> str:
-    """Return the first page: a widget, a card for each notebook, and the handouts' titles."""
-    return render_page(
-        PAGES, "index.md", hero=Markup(hero.as_html(WIDGETS)), titles=titles, handouts=handouts
-    )
 
 
 def _preview(hero: live.Live) -> bytes:
