@@ -3,8 +3,8 @@
 warned   a doubt is said, or that something moved, or the bracket is refused
 cost     what the ill changes in the map: mean size of log2 (map / map of the same photographs without it),
          each the mean of 4 x 4 pixels, once one is laid on the other, since a map is as good where the camera
-         turned. Pixel by pixel, turning all frames alike, which is no ill, would cost 0.11 to 0.15 stops by
-         resampling, noise and JPEG alone, and 0.04 to 0.06 in these means
+         turned. Pixel by pixel, turning all frames alike, which is no ill, would cost 0.11 to 0.19 stops by
+         resampling, noise and JPEG alone, and 0.04 to 0.10 in these means
 costly   a cost above 0.1 stops; `missed` is the share of these without a warning, %
 
 An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs no word.
