@@ -110,6 +110,12 @@ def real(folder: Path, name: str) -> Path:
     raise Skipped(f"no {name} in --data or ../shared/data")
 
 
+def measured_curves(folder: Path) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Return exposure and brightness of the 201 measured responses of DoRF, (201, n) each."""
+    with np.load(real(folder, "crf_curves") / "dorf_201.npz") as file:
+        return file["irradiance"].astype(np.float64), file["brightness"].astype(np.float64)
+
+
 def along(work: Callable[[Item], Result], items: Iterable[Item], what: str) -> list[Result]:
     """Return work(item) of every item, in order, with a bar on a terminal."""
     items = list(items)

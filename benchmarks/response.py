@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PIL import Image
 
-from benchmarks.experiments import Experiment, along, at_most, real, spread
+from benchmarks.experiments import Experiment, along, at_most, measured_curves, spread
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.core import weights
@@ -25,7 +25,6 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import RELIABLE_LEVELS
 from hdrlab.diagnostics import consistency
 from hdrlab.fast.merge import merge_with_quality
-from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import recovery
 from hdrlab.response import families
 
@@ -69,7 +68,7 @@ def figures(case: tuple[int, int, Float, Float]) -> dict[str, tuple[float, float
 
 def compared(folder: Path) -> Mapping[str, ArrayLike]:
     """Return the figures of each method by the number of frames."""
-    exposure, brightness = read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+    exposure, brightness = measured_curves(folder)
     cases = [(frames, k, exposure[k], brightness[k]) for frames in STOPS for k in CAMERAS]
     each = along(figures, cases, "brackets")
     found: dict[str, ArrayLike] = {}

@@ -35,7 +35,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmarks.experiments import Experiment, Hold, along, at_least, at_most, real
+from benchmarks.experiments import Experiment, Hold, along, at_least, at_most, measured_curves, real
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera, responses
 from hdrlab.capture.responses import Curve
@@ -45,7 +45,6 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.types import Array, Mask
 from hdrlab.diagnostics.noise import FLAT, GROUPS, Noise, estimate_noise, slope
 from hdrlab.fast.merge import merge_with_quality
-from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import recovery
 from hdrlab.radiance.uncertainty import merge_with_deviation, variance
 from hdrlab.response import families
@@ -158,7 +157,7 @@ def raw_errors(taken: Bracket, E: Float, own: NDArray[np.intp], well: float, rea
 
 def compared(folder: Path) -> Mapping[str, ArrayLike]:
     """Return inside and width of each way by decade, the noise found, and the errors."""
-    exposure, brightness = read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+    exposure, brightness = measured_curves(folder)
     cases = [(i, exposure[i % 201], brightness[i % 201]) for i in range(402)]
     counts, widths, noise, errors, unsure, levels = (
         np.array(one) for one in zip(*along(figures, cases, "brackets"), strict=True)

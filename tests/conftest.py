@@ -103,6 +103,13 @@ def shared():
 
 
 @pytest.fixture(scope="session")
+def measured_curves(shared):
+    """Exposure and brightness of the 201 measured responses of DoRF, (201, n) each."""
+    with np.load(shared("crf_curves") / "dorf_201.npz") as file:
+        return file["irradiance"].astype(np.float64), file["brightness"].astype(np.float64)
+
+
+@pytest.fixture(scope="session")
 def photographs(shared):
     """photographs(name) -> the Bracket of a real data set, with the times of its exposures.csv."""
 

@@ -17,7 +17,7 @@ from hdrlab.course.classroom import handins, marks, roster
 from hdrlab.course.gallery import collect, pictures, tokens
 from hdrlab.course.projects import exif, privacy, project, words
 from hdrlab.course.reports import results
-from hdrlab.io import emor, photos, radiance, response_files, sequence, times, web
+from hdrlab.io import photos, radiance, response_files, sequence, times, web
 from hdrlab.io.maps import exr, layers
 
 # damaged files that are there already
@@ -28,9 +28,8 @@ LARGEST = 40_000
 
 # LibRaw names the file; to turn stderr off meanwhile, in all threads, would stop the progress bar
 LIBRAW = r"(\S+\.dng: (Unexpected end of file|data corrupted at \d+)\n)*"
-# of Pillow and NumPy, whose own words stand
+# of Pillow, whose own words stand
 REFUSED = (ValueError, OSError, SyntaxError, DecompressionBombError)
-OLD = r"(.*UserWarning: Reading `.npy` or `.npz` file required additional header parsing.*\n.*\n)*"
 LARGE = r"(.*: DecompressionBombWarning: .*\n.*\n)*"
 
 
@@ -192,7 +191,6 @@ ALL: Sequence[Reader] = (
     Reader("times", ".txt", seeds.times, times.read_times),
     Reader("curve-csv", ".csv", seeds.curves, response_files.read_curve),
     Reader("curve-pfs", ".m", seeds.curves, response_files.read_curve),
-    Reader("emor", ".npz", seeds.emor, emor.read_curves, printed=OLD),
     Reader("plan", ".toml", course_seeds.plan, plan.read, damaged="plan"),
     Reader("roster", ".csv", course_seeds.roster, roster.read),
     Reader("received", ".csv", course_seeds.received, handins.read_times),

@@ -144,10 +144,3 @@ def curves(folder: Path) -> None:
     for suffix in response_files.FORMS:
         response_files.write_curve(folder / f"gray{suffix}", G)
         response_files.write_curve(folder / f"colour{suffix}", np.stack([G, G + 0.1, 0.9 * G], axis=-1))
-
-
-def emor(folder: Path) -> None:
-    """Write measured curves."""
-    x = np.linspace(0, 1, 32)
-    np.savez(folder / "a.npz", irradiance=[x, x], brightness=[x**0.5, x**0.4])
-    np.savez_compressed(folder / "b.npz", irradiance=[x, x], brightness=[x, x**2])

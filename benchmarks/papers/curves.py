@@ -15,14 +15,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmarks.experiments import Experiment, along, at_most, real, spread
+from benchmarks.experiments import Experiment, along, at_most, measured_curves, spread
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import response_rmse
 from hdrlab.diagnostics import exposure_times as timing
 from hdrlab.fast import debevec
-from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import catalogue, recovery
 from hdrlab.response import families, self_calibration
 
@@ -98,7 +97,7 @@ def compared(
     folder: Path, used: dict[str, Method], *, off: float = 0.0, which: Iterable[int] = range(201)
 ) -> Mapping[str, ArrayLike]:
     """Return median, 95 % and worst error of each method, and what it refused."""
-    exposure, brightness = read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+    exposure, brightness = measured_curves(folder)
     items = [(k, exposure[k], brightness[k]) for k in which]
     each = along(partial(errors, used=used, off=off), items, "curves")
     found: dict[str, ArrayLike] = {}

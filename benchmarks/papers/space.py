@@ -14,9 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmarks.experiments import Experiment, at_most, real, spread
+from benchmarks.experiments import Experiment, at_most, measured_curves, real, spread
 from hdrlab.calibration.chart import NEUTRAL
-from hdrlab.io.emor import read_curves
 from hdrlab.response import space
 
 Float = NDArray[np.float64]
@@ -72,7 +71,7 @@ def five_samples(
 
 def measured(folder: Path) -> Float:
     """Return the 201 curves (C, 1024) at even exposures."""
-    exposure, brightness = read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+    exposure, brightness = measured_curves(folder)
     return np.stack(
         [np.interp(np.linspace(0, 1, 1024), x, m) for x, m in zip(exposure, brightness, strict=True)]
     )

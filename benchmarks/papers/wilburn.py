@@ -11,10 +11,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from benchmarks.experiments import Experiment, along, at_least, at_most, listed, real, spread
+from benchmarks.experiments import Experiment, along, at_least, at_most, listed, measured_curves, spread
 from benchmarks.papers import mixtures as setup
 from hdrlab.calibration import motion_blur
-from hdrlab.io.emor import read_curves
 
 Float = NDArray[np.float64]
 WAYS = {"display": setup.by_display, "blur": setup.by_motion_blur}
@@ -47,7 +46,7 @@ def one_curve(one: tuple[int, Float, Float], way: str) -> tuple[float, float]:
 
 def measured(folder: Path, way: str, *, every: int = 1) -> Mapping[str, ArrayLike]:
     """Return the errors of our spline over every so many of the measured curves."""
-    exposure, brightness = read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+    exposure, brightness = measured_curves(folder)
     items = [(k, exposure[k], brightness[k]) for k in range(0, len(exposure), every)]
     rmse, disparity = np.transpose(along(partial(one_curve, way=way), items, way))
     return {

@@ -19,12 +19,11 @@ from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
-from benchmarks.experiments import Skipped, real
+from benchmarks.experiments import Skipped, measured_curves
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.types import Array
-from hdrlab.io.emor import read_curves
 
 SHAPE = (344, 516)
 SCENES = (*scenes.PLACES, "room")
@@ -84,7 +83,7 @@ def radiance(name: str) -> NDArray[np.float32]:
 def curves(folder: Path) -> tuple[Float, Float] | None:
     """Return the exposures and brightnesses of the measured responses, (201, n) each, or None."""
     try:
-        return read_curves(real(folder, "crf_curves") / "dorf_201.npz")
+        return measured_curves(folder)
     except Skipped:
         return None
 

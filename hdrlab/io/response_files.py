@@ -16,9 +16,10 @@ import numpy as np
 from hdrlab.core.arrays import LARGEST_LN_EXPOSURE, describe
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.io import pfscurves
-from hdrlab.io.emor import MAX_FILE_BYTES
 from hdrlab.io.files import replacing, require_suffix
 
+# three channels of 65536 levels take 10 million
+MAX_FILE_BYTES = 32 << 20
 CHANNELS = {1: ("gray",), 3: ("red", "green", "blue")}
 UNIT = " (ln exposure)"
 

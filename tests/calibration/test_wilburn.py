@@ -18,7 +18,6 @@ from hdrlab.calibration.blends import (
 )
 from hdrlab.calibration.display import Schedule
 from hdrlab.capture.responses import RESPONSES, as_response, true_g
-from hdrlab.io.emor import read_curves
 
 ALPHA = np.arange(1, 16) / 15
 SOLVERS = {"simplex": wilburn.join, "spline": joining.join}
@@ -30,10 +29,9 @@ def papers():
 
 
 @pytest.fixture(scope="module")
-def cameras(shared, papers):
+def cameras(measured_curves, papers):
     """All measured curves, as functions."""
-    curves = read_curves(shared("crf_curves") / "dorf_201.npz")
-    return [papers.measured(x, m) for x, m in zip(*curves, strict=True)]
+    return [papers.measured(x, m) for x, m in zip(*measured_curves, strict=True)]
 
 
 def two_blends(f, dim=0.2, start=0.0):

@@ -10,7 +10,6 @@ from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core.metrics import response_rmse
 from hdrlab.core.steps import last
-from hdrlab.io.emor import read_curves
 from hdrlab.pipeline import recovery
 from hdrlab.response import mitsunaga, polynomial, self_calibration
 from hdrlab.response.families import invert_curves
@@ -175,9 +174,9 @@ def test_real_photographs_ask_for_no_more_than_they_can_tell(name, low, high, ph
         assert low <= order <= high
 
 
-def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(shared):
+def test_of_201_measured_curves_the_chosen_order_is_nearer_than_any_fixed_one(measured_curves):
     """51 of them: 95 in 100 are within 3.8 % with order 5, 7 % with order 10, 3.1 % with the one chosen."""
-    exposure, brightness = read_curves(shared("crf_curves") / "dorf_201.npz")
+    exposure, brightness = measured_curves
     true, errors = invert_curves(exposure, brightness)[::4], {None: [], 5: [], 10: []}
     for g, x, m in zip(true, exposure[::4], brightness[::4], strict=True):
         taken = shots(lambda X, x=x, m=m: np.interp(X, x, m), frames=5)

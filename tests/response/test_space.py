@@ -9,7 +9,6 @@ from hdrlab.capture import camera, responses
 from hdrlab.core import sampling
 from hdrlab.core.metrics import response_rmse
 from hdrlab.fast import debevec
-from hdrlab.io.emor import read_curves
 from hdrlab.response import families, space
 
 X = np.linspace(0, 1, 256)
@@ -22,8 +21,8 @@ def papers():
 
 
 @pytest.fixture(scope="module")
-def measured(shared):
-    return read_curves(shared("crf_curves") / "dorf_201.npz")
+def measured(measured_curves):
+    return measured_curves
 
 
 @pytest.fixture(scope="module")
@@ -116,16 +115,6 @@ def test_what_is_no_space_is_refused():
     ):
         with pytest.raises(ValueError, match="expected"):
             call()
-
-
-def test_a_damaged_file_of_curves_is_refused_by_name(tmp_path):
-    path = tmp_path / "curves.npz"
-    path.write_bytes(b"PK no zip")
-    with pytest.raises(ValueError, match=r"curves\.npz: expected"):
-        read_curves(path)
-    np.savez(path, irradiance=np.ones((2, 3)), brightness=np.ones((2, 4)))
-    with pytest.raises(ValueError, match="shapes"):
-        read_curves(path)
 
 
 # Measured curves
