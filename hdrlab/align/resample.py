@@ -12,6 +12,8 @@ provisional response is enough, as the histograms of photographs that are not al
 Clipped pixels are not light. Where one takes part in a mean, the nearest pixel is taken as it is.
 """
 
+from collections.abc import Sequence
+
 import numpy as np
 import scipy
 
@@ -20,6 +22,9 @@ from hdrlab.core.arrays import as_mask, as_stack, as_table, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
 from hdrlab.core.types import F64, Array, ArrayLike, Mask
+
+# rows of the common picture that are resampled at a time, for the memory
+BAND = 256
 
 
 def photographs(
@@ -57,7 +62,7 @@ def photographs(
     images = as_stack(images)
     H, mask = warp.as_homographies(homographies, len(images)), as_mask(valid, images)
     shown = warp.common_rectangle(H, images.shape[1:3])
-    table = _table(g, levels(images), images.ndim - 2)
+    table = _table(g, levels(images), images[0, 0, 0].size)
     moved = np.stack([one_moved(image, one, shown, table) for image, one in zip(images, H, strict=True)])
     if mask is None:
         return moved, None
@@ -66,19 +71,27 @@ def photographs(
 
 def one_moved(image: Array, H: F64, shown: tuple[slice, slice], table: F64) -> Array:
     """Return an image moved by H, of the rectangle `shown`, by a table (n, C) of light."""
-    if (whole := _whole(H)) is not None:
-        return image[tuple(slice(s.start - d, s.stop - d) for s, d in zip(shown, whole, strict=True))]
-    back, size = _back(H, shown), (shown[0].stop - shown[0].start, shown[1].stop - shown[1].start)
-    planes = image[..., None] if image.ndim == 2 else image
-    clipped = planes >= round(BRIGHT * (len(table) - 1))
-    moved = np.empty((*size, planes.shape[2]), image.dtype)
-    for c in range(planes.shape[2]):
-        Z = planes[..., c]
-        light = warp.sample(table[:, c].astype(np.float32)[Z], back, size)
-        mean = np.interp(light, table[:, c], np.arange(len(table)))
-        near = warp.nearest(Z.astype(np.float32), back, size)
-        moved[..., c] = np.where(_touched(clipped[..., c], back, size), near, mean) + 0.5
+    if (by := _whole(H)) is not None:
+        return cut(image, by, shown)
+    (back, size), planes = _back(H, shown), image.reshape(*image.shape[:2], -1)
+    moved, n = np.empty((*size, planes.shape[2]), image.dtype), len(table)
+    for top in range(0, len(moved), BAND):
+        one = moved[top : top + BAND]
+        part, to = _part(planes, back @ warp.as_homographies([[top, 0]])[0], one.shape)
+        mean = warp.sample(table.astype(np.float32)[part, np.arange(part.shape[2])], to, one.shape)
+        for c, light in enumerate(table.T):
+            one[..., c] = np.interp(mean[..., c], light, np.arange(n)) + 0.5
+        touched = _touched(part >= round(BRIGHT * (n - 1)), to, one.shape)
+        np.copyto(one, warp.nearest(part, to, one.shape), where=touched)
     return moved.reshape(*size, *image.shape[2:])
+
+
+def _part(image: Array, back: F64, size: tuple[int, ...]) -> tuple[Array, F64]:
+    """Return the part of an image that cubic means at `back` p, p of (h, w), ask for, and `back` in it."""
+    q, last = warp.apply(back, warp.corners(size)), np.array(image.shape[1::-1]) - 1
+    left, top = np.clip(q.min(axis=0) - 2, 0, last).astype(int)
+    right, low = np.clip(q.max(axis=0) + 3, 0, last).astype(int)
+    return image[top : low + 1, left : right + 1], warp.as_homographies([[-top, -left]])[0] @ back
 
 
 def _table(g: ArrayLike | None, n: int, colours: int) -> F64:
@@ -86,32 +99,34 @@ def _table(g: ArrayLike | None, n: int, colours: int) -> F64:
     light = decode_srgb(np.arange(n) / (n - 1)) if g is None else np.exp(as_table(g, n))
     table = np.maximum.accumulate(light.reshape(n, -1), axis=0)
     table = table + np.arange(n)[:, None] * 1e-9 * table[-1]  # levels of one light would not come back
-    return np.asarray(
-        table[:, [1]] if colours == 1 and table.shape[1] == 3 else table.repeat(4 - table.shape[1], 1)
-    )
+    return np.broadcast_to(table[:, 1:2] if colours < table.shape[1] else table, (n, colours))
 
 
-def _whole(H: F64) -> tuple[int, int] | None:
+def _whole(H: F64) -> list[int] | None:
     """Return (dy, dx) where H shifts by whole pixels, or None."""
-    dx, dy = np.round(H[:2, 2])
-    shift = warp.as_homographies([[dy, dx]])[0]
-    return (int(dy), int(dx)) if np.allclose(H, shift, rtol=0, atol=1e-9) else None
+    offset = np.rint(H[1::-1, 2]).astype(int)
+    shifts = np.allclose(H, warp.as_homographies([offset])[0], rtol=0, atol=1e-9)
+    return offset.tolist() if shifts else None
 
 
-def _back(H: F64, shown: tuple[slice, slice]) -> F64:
-    """Return where the pixels of the rectangle `shown` lie in an image that H moves."""
-    return np.asarray(np.linalg.inv(H) @ warp.as_homographies([[shown[0].start, shown[1].start]])[0])
+def cut(image: Array, offset: Sequence[int], shown: tuple[slice, slice]) -> Array:
+    """Return the rectangle `shown` of an image moved by an offset (dy, dx) of whole pixels."""
+    return image[tuple(slice(s.start - by, s.stop - by) for s, by in zip(shown, offset, strict=True))]
 
 
-def _touched(mask: Mask, back: F64, size: tuple[int, int]) -> Mask:
-    """Return where one of the 4 x 4 pixels of a cubic mean is in the mask."""
+def _back(H: F64, shown: tuple[slice, slice]) -> tuple[F64, tuple[int, int]]:
+    """Return where the pixels of the rectangle `shown` lie in an image that H moves, and its size."""
+    (top, bottom), (left, right) = ((s.start, s.stop) for s in shown)
+    return np.linalg.inv(H) @ warp.as_homographies([[top, left]])[0], (bottom - top, right - left)
+
+
+def _touched(mask: Mask, back: F64, size: tuple[int, ...]) -> Mask:
+    """Return where one of the 4 x 4 pixels of a cubic mean is in the mask (H, W[, C])."""
     # from one before to two after
-    wide = scipy.ndimage.maximum_filter(mask.view(np.uint8), size=4, origin=-1)
-    return warp.before(wide.astype(np.float32), back, size) > 0.5
+    wide = scipy.ndimage.maximum_filter(mask.view(np.uint8), size=4, axes=(0, 1), origin=-1)
+    return warp.before(wide.view(bool), back, size)
 
 
 def _mask_moved(mask: Mask, H: F64, shown: tuple[slice, slice]) -> Mask:
-    if (whole := _whole(H)) is not None:
-        return mask[tuple(slice(s.start - d, s.stop - d) for s, d in zip(shown, whole, strict=True))]
-    size = (shown[0].stop - shown[0].start, shown[1].stop - shown[1].start)
-    return ~_touched(~mask, _back(H, shown), size)
+    by = _whole(H)
+    return ~_touched(~mask, *_back(H, shown)) if by is None else cut(mask, by, shown)

@@ -5,7 +5,7 @@ from functools import cache, partial
 
 import numpy as np
 
-from hdrlab.align.resample import photographs
+from hdrlab.align.resample import cut, photographs
 from hdrlab.align.shift import as_offsets, crop, shift
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.filters import warp
@@ -101,9 +101,9 @@ def moved(bracket: Bracket, H: Array, g: F64 | None = None, *, in_place: bool = 
 
 def shift_in_place(images: Array, offsets: Array) -> Array:
     """Return `shift(images, offsets)` in the memory of the images, which are lost."""
-    rows, columns = crop(offsets, images.shape[1:3])
-    shape = images[:, rows, columns].shape
+    shown = crop(offsets, images.shape[1:3])
+    shape = images[:, *shown].shape
     out = images.reshape(-1)[: np.prod(shape)].reshape(shape)
-    for one, image, (dy, dx) in zip(out, images, offsets.tolist(), strict=True):
-        one[:] = image[rows.start - dy : rows.stop - dy, columns.start - dx : columns.stop - dx]
+    for one, image, by in zip(out, images, offsets.tolist(), strict=True):
+        one[:] = cut(image, by, shown)
     return out

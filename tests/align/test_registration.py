@@ -145,6 +145,16 @@ def test_pixels_between_pixels_are_means_of_light(room):
     assert np.median(np.abs(moved[0].astype(int) - moved[1])[well]) <= 2
 
 
+@pytest.mark.parametrize("colours", [(), (3,)])
+def test_bands_of_rows_show_in_no_resampled_photograph(monkeypatch, colours):
+    image = np.random.default_rng(0).integers(0, 256, (2, 45, 60, *colours), dtype=np.uint8)
+    moves = [warp.turn((45, 60), 20, (3.3, -2.6)) + [[0, 0, 0], [0, 0, 0], [1e-4, 2e-4, 0]], np.eye(3)]
+    whole, _ = resample.photographs(image, moves, true_g())
+    monkeypatch.setattr(resample, "BAND", 7)
+    banded, _ = resample.photographs(image, moves, true_g())
+    assert np.abs(banded.astype(int) - whole).max() <= 1
+
+
 def test_clipped_pixels_are_not_averaged_into_something_that_looks_measured():
     image = np.full((1, 20, 20), 40, np.uint8)
     image[0, :, 10:] = 255

@@ -11,6 +11,7 @@ Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV a
 from collections.abc import Sequence
 
 import numpy as np
+import scipy
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.optional import scipy_optimize as optimize
@@ -149,35 +150,31 @@ def _largest(a: F64, b: F64, shape: tuple[int, ...]) -> list[int]:
     return [int(side) for side in box]
 
 
-def sample(image: ArrayLike, H: ArrayLike, shape: tuple[int, ...]) -> Array:
+def sample(image: ArrayLike, H: F64, shape: tuple[int, ...]) -> Array:
     """Return the picture (h, w[, C]) whose pixel p is `image` at H p, by cubic interpolation (Catmull-Rom).
 
     A value stays between the four pixels around its place, so that a lamp gets no dark ring. The light must
     be linear; beyond the border the last pixels go on.
     """
     image = np.asarray(image, np.float32)
-    if image.ndim == 3:
-        return np.stack([sample(image[..., c], H, shape) for c in range(image.shape[2])], axis=-1)
-    low, high = image, image
-    for axis in (0, 1):  # of each pixel with the next one, below and right
-        after = np.arange(1, image.shape[axis] + 1).clip(max=image.shape[axis] - 1)
-        low, high = np.minimum(low, low.take(after, axis)), np.maximum(high, high.take(after, axis))
-    found = read(image, H, shape, order=3)
-    return np.clip(found, before(low, H, shape), before(high, H, shape))
+    knobs = {"order": 3, "mode": "edge", "clip": False, "preserve_range": True}
+    found = transform.warp(image, H, output_shape=shape[:2], **knobs)
+    ends = (scipy.ndimage.minimum_filter, scipy.ndimage.maximum_filter)
+    least, most = (end(image, size=2, axes=(0, 1), origin=-1, mode="nearest") for end in ends)
+    return np.clip(found, before(least, H, shape), before(most, H, shape))
 
 
-def nearest(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """Return the picture (h, w) whose pixel p is the pixel of `image` nearest to H p."""
-    return read(image, H, shape, order=0)
+def nearest(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
+    """Return the picture (h, w[, C]) whose pixel p is the pixel of `image` nearest to H p."""
+    return before(image, as_homographies([[0.5, 0.5]])[0] @ H, shape)
 
 
-def before(image: Array, H: ArrayLike, shape: tuple[int, ...]) -> Array:
-    """Return the picture (h, w) whose pixel p is the pixel of `image` just above and left of H p."""
-    half = np.array([[1, 0, -0.5], [0, 1, -0.5], [0, 0, 1]])
-    return read(image, half @ np.asarray(H, float), shape, order=0)
-
-
-def read(image: Array, H: ArrayLike, shape: tuple[int, ...], *, order: int) -> Array:
-    """Return the picture (h, w) whose pixel p is `image` (H, W) at H p, interpolated to this order."""
-    knobs = {"order": order, "mode": "edge", "clip": False, "preserve_range": True}
-    return np.asarray(transform.warp(image, np.asarray(H, float), output_shape=shape[:2], **knobs))
+def before(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
+    """Return the picture (h, w[, C]) whose pixel p is the pixel of `image` just above and left of H p."""
+    found = np.empty((*shape[:2], *image.shape[2:]), image.dtype)
+    across, last = H[:, :1] * np.arange(shape[1]), np.array(image.shape[1::-1])[:, None] - 1
+    for y, row in enumerate(found):  # a row at a time stays in the processor's cache
+        u, v, w = across + H[:, 1:2] * y + H[:, 2:]
+        column, line = np.floor([u / w, v / w]).clip(0, last).astype(np.intp)
+        row[:] = image[line, column]
+    return found
