@@ -109,7 +109,7 @@ def patch_based(_: Path) -> dict[str, list[float]]:
         start = process_time()
         H = patches.synthesise(Z, t, G)
         seconds += process_time() - start
-        led = ghosts.remove_ghosts(Z, t, G, settings=ghosts.Settings(reference=1)).E
+        led = ghosts.remove_ghosts(Z, t, G, fixed=1).E
         for way, E in zip(found, (merge(Z, t, G), led, H), strict=True):
             found[way].append(psnr(E, truth))
     return compared(found, seconds / len(sequences()))
@@ -135,7 +135,7 @@ def alternating(_: Path) -> dict[str, list[float]]:
 def figures_of(shot: Film, ours: Float, i: int) -> list[float]:
     """Return the PSNR of frame i: of it and its neighbours merged, without ghosts, and by ours."""
     near, times = shot.frames[i - 1 : i + 2], shot.turn[np.arange(i - 1, i + 2) % 2]
-    led = ghosts.remove_ghosts(near, times, G, settings=ghosts.Settings(reference=1)).E
+    led = ghosts.remove_ghosts(near, times, G, fixed=1).E
     return [psnr(E, shot.truth[i]) for E in (merge(near, times, G), led, ours[i])]
 
 

@@ -56,8 +56,8 @@ def plain(taken: Bracket) -> Merged:
 def rid(taken: Bracket, way: str) -> ghosts.Ghosts:
     """Return the map without ghosts: by "regions", "reference", or regions "alone"."""
     reference = REFERENCE if way == "reference" else None
-    settings = ghosts.Settings(reference=reference, alone=way == "alone")
-    return ghosts.remove_ghosts(taken.images, taken.times, G, W, settings=settings)
+    alone = way == "alone"
+    return ghosts.remove_ghosts(taken.images, taken.times, G, W, fixed=reference, alone=alone)
 
 
 def stops(E: Array, truth: Array, where: NDArray[np.bool_]) -> float:

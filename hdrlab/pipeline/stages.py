@@ -184,7 +184,7 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
         times,
         state.g,
         w(state.g),
-        settings=moving.Settings(reference=len(images) // 2 if way == "reference" else None),
+        fixed=len(images) // 2 if way == "reference" else None,
         merged=Merged(state.E, state.quality),
         valid=valid,
         merge=merge,

@@ -16,7 +16,6 @@ twice, or never. With one reference for all regions, the map shows its moment.
 """
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -42,35 +41,11 @@ REACH = 4
 WIDESPREAD = 50
 # of growing: the figure in a reference frame is found in one or two
 ROUNDS = 4
-
-
-@dataclass(frozen=True)
-class Settings:
-    """How motion is found, and which frames make the map where something moved.
-
-    Attributes
-    ----------
-    tau : contradiction, in ln E, that is tolerated everywhere, noise and edges aside
-    edge : share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides; at 0.5 no edge that
-        is shifted by up to a pixel counts
-    margin : pixels by which regions are dilated, and over which seams are blended; by default 1 in 150 of
-        the width, at least 4
-    reference : number of the reference frame of every region; by default each has its own best exposure
-    alone : nothing but the reference frame counts in a region, the plain way
-    """
-
-    tau: float = 0.1
-    edge: float = 0.35
-    margin: int | None = None
-    reference: int | None = None
-    alone: bool = False
-
-    def __post_init__(self) -> None:
-        if not (0 < self.tau < np.inf and 0 <= self.edge < np.inf):
-            got = f"{self.tau} and {self.edge}"
-            raise ValueError(f"expected a positive tau, and an edge of at least 0, got {got}")
-        if self.margin is not None and self.margin < 0:
-            raise ValueError(f"expected a margin of at least 0 pixels, got {self.margin}")
+# contradiction, in ln E, that is tolerated everywhere, noise and edges aside
+TAU = 0.1
+# share of a frame's range of ln E over 3 x 3 pixels that is tolerated besides: at 0.5 no edge counts that is
+# shifted by up to a pixel
+EDGE = 0.35
 
 
 class Regions(NamedTuple):
@@ -102,7 +77,7 @@ class Ghosts(NamedTuple):
 
 
 def detect_motion(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[F32, Mask]:
-    """Return the score (H, W) and the mask (H, W) of what moved, by Settings.
+    """Return the score (H, W) and the mask (H, W) of what moved: see TAU and EDGE.
 
     Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges counted for
     little, and then by the margin.
@@ -159,7 +134,8 @@ def remove_ghosts(
     g: ArrayLike,
     w: ArrayLike | None = None,
     *,
-    settings: Settings = Settings(),
+    fixed: int | None = None,
+    alone: bool = False,
     merged: Merged | None = None,
     valid: ArrayLike | None = None,
     merge: Callable[..., Merged] = merge_with_quality,
@@ -172,7 +148,8 @@ def remove_ghosts(
     times : (P,) seconds
     g : (n,) or (n, 3), response, ln exposure of each level
     w : (n,), weights; the hat by default
-    settings : how motion is found, and which frames make the map there
+    fixed : number of the reference frame of every region; by default each has its own best exposure
+    alone : nothing but the reference frame counts in a region, the plain way
     merged : the plain map of `merge`, where it is known; else it is made here
     valid : (P, H, W) bool, optional, False where a photograph holds no picture
     merge : `merge_with_quality`, of `radiance.merge` or of `fast.merge`
@@ -203,18 +180,17 @@ def remove_ghosts(
     (np.int32(1), (60, 90))
     """
     stack = as_stack(images)
-    mask, fixed = as_mask(valid, stack), settings.reference
+    mask, margin = as_mask(valid, stack), max(4, round(stack.shape[2] / 150))
     if fixed is not None and fixed not in range(len(stack)):
-        raise ValueError(f"expected the number of a frame, 0 to {len(stack) - 1}, as reference, got {fixed}")
+        raise ValueError(f"expected the number of a frame, 0 to {len(stack) - 1}, as fixed, got {fixed}")
     w = weights.hat(levels(stack)) if w is None else w
-    margin = max(4, round(stack.shape[2] / 150)) if settings.margin is None else settings.margin
     merged = merged or merge(stack, times, g, w, valid=mask)
     E, quality = merged.E.copy(), merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
     plain = merged.E.reshape(taken.images.shape[1:])
     deviation = measure_deviation(taken, w)
     deviation.v[find_clipped_elsewhere(taken, plain)] = np.inf  # no edge and no noise explains that
-    score, moved = detect_motion(deviation, tau=settings.tau, edge=settings.edge, margin=margin)
+    score, moved = detect_motion(deviation, tau=TAU, edge=EDGE, margin=margin)
 
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
@@ -225,7 +201,7 @@ def remove_ghosts(
     for r, box in enumerate(ndimage.find_objects(labels)):
         y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
         here = labels[wide] == r + 1
-        frames = select_frames(taken, wide, int(chosen[r]), alone=settings.alone)
+        frames = select_frames(taken, wide, int(chosen[r]), alone=alone)
         still = merge(stack[:, y, x], times, g, w, valid=frames)
         E[wide][here] = regions.blend(E[wide], still.E, alpha[wide])[here]
         quality[wide][here] = still.quality[here]
