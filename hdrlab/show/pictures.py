@@ -137,8 +137,7 @@ def _density(drawn: object) -> int:
 def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     """Return `image` as WebP that is painted over `first`: without loss, or in small what is a photograph.
 
-    Without loss it is what differs from the first picture, and transparent elsewhere; or the whole, where
-    that is smaller.
+    Without loss it is what differs from the first picture, and transparent elsewhere.
 
     Examples
     --------
@@ -151,9 +150,7 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     if first is not None and first.shape == image.shape:
         changed = (over != web.as_rgb(first)).any(axis=-1)
         over, lossless = np.dstack([over, np.uint8(255) * changed]), lossless or changed.mean() < FEW_CHANGED
-    if not lossless:
-        return web.encode_webp(image, quality=75)
-    return min((web.encode_webp(each, lossless=True) for each in (image, over)), key=len)
+    return web.encode_webp(over, lossless=True) if lossless else web.encode_webp(image, quality=75)
 
 
 def _is_drawing(image: web.Image) -> bool:
