@@ -30,7 +30,7 @@ ONLY_IN = {  # package -> rooms
     **dict.fromkeys(["click", "tqdm"], {"cli", "demo"}),
     "jupyterlab": {"cli"},
     **dict.fromkeys(
-        ["nbformat", "nbclient", "sphinx", "docutils", "ziamath", "latex2mathml"], {"course"}
+        ["nbformat", "nbclient", "sphinx", "numpydoc", "docutils", "ziamath", "latex2mathml"], {"course"}
     ),  # the site
     "pyseccomp": {"course"},  # the sandbox
     **dict.fromkeys(["pytest", "jupytext"], {"course"}),  # the checks, and the handouts
