@@ -118,6 +118,7 @@ def assemble_steps(
             raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     bracket, said = timing.complete_times(bracket, times)
     state = aligned(bracket, align, response, in_place=in_place)
+    apart = bool(state.doubts)  # photographs that do not lie on each other contradict each other, too
     yield (state := state._replace(notes=(*said, *state.notes)))
     choice = recovery.choose_response(response, state.bracket)
     explained = choice.spread <= timing.TRUE
@@ -151,7 +152,7 @@ def assemble_steps(
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
-    left = moved if state.moving is None else 0.0
+    left = moved if state.moving is None and not apart else 0.0
     yield assess(state, medians, contrary, left)
 
 
@@ -185,6 +186,7 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
         state.g,
         w(state.g),
         fixed=len(images) // 2 if way == "reference" else None,
+        most=moving.WIDESPREAD if way == "auto" else np.inf,
         merged=Merged(state.E, state.quality),
         valid=valid,
         merge=merge,

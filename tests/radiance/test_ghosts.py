@@ -231,6 +231,15 @@ def test_a_still_scene_has_no_region_and_its_map_bit_for_bit(wall):
         assert np.array_equal(found.E, merge_with_quality(still.images, still.times, g, w).E)
 
 
+def test_regions_that_hold_too_much_of_the_picture_leave_the_plain_map(moving):
+    b = moving.bracket
+    plain = merge_with_quality(b.images, b.times, FILM, W)
+    share = 100 * np.mean(found_in(b).labels > 0)
+    given_up = found_in(b, most=share / 2)
+    assert given_up.labels.any() and given_up.used.all() and np.array_equal(given_up.E, plain.E)
+    assert np.array_equal(found_in(b, most=share + 1).E, found_in(b).E)
+
+
 @pytest.mark.parametrize("level", [0, 255])
 def test_black_and_white_brackets_have_no_ghosts(level):
     found = ghosts.remove_ghosts(np.full((3, 20, 30, 3), level, np.uint8), [1, 2, 4], FILM)

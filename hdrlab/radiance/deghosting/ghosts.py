@@ -23,7 +23,6 @@ from scipy import ndimage
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_mask, as_stack, levels
-from hdrlab.core.steps import last
 from hdrlab.core.types import F32, ArrayLike, Flags, Indices, Labels, Mask
 from hdrlab.radiance.deghosting import reference, regions
 from hdrlab.radiance.deghosting.deviation import (
@@ -136,6 +135,7 @@ def remove_ghosts(
     *,
     fixed: int | None = None,
     alone: bool = False,
+    most: float = np.inf,
     merged: Merged | None = None,
     valid: ArrayLike | None = None,
     merge: Callable[..., Merged] = merge_with_quality,
@@ -150,6 +150,7 @@ def remove_ghosts(
     w : (n,), weights; the hat by default
     fixed : number of the reference frame of every region; by default each has its own best exposure
     alone : nothing but the reference frame counts in a region, the plain way
+    most : per cent of the pixels; where regions hold so many, the map stays the plain one
     merged : the plain map of `merge`, where it is known; else it is made here
     valid : (P, H, W) bool, optional, False where a photograph holds no picture
     merge : `merge_with_quality`, of `radiance.merge` or of `fast.merge`
@@ -195,9 +196,11 @@ def remove_ghosts(
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
 
-    labels, chosen = last(region_steps(taken, plain, moved, margin, choose=choose))
-    alpha = regions.feather(labels, margin // 2)
     used = np.ones(stack.shape[:3], bool) if mask is None else mask.copy()
+    for labels, chosen in region_steps(taken, plain, moved, margin, choose=choose):
+        if 100 * np.mean(labels > 0) >= most:  # and it would grow
+            return Ghosts(E, quality, labels, chosen, used, score)
+    alpha = regions.feather(labels, margin // 2)
     for r, box in enumerate(ndimage.find_objects(labels)):
         y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
         here = labels[wide] == r + 1
