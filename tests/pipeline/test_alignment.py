@@ -6,8 +6,10 @@ from brackets import MARGIN, H, W, photograph, radiance
 from brackets import bracket as shoot
 from skimage.data import astronaut, coffee
 
-from hdrlab import pipeline
+from hdrlab import pipeline, scenes
+from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
+from hdrlab.core.filters import warp
 from hdrlab.pipeline.alignment import register
 
 STILL = [(0, 0)] * 7
@@ -86,3 +88,11 @@ def test_a_verdict_is_the_same_at_every_size():
 def test_a_single_photograph_stays_where_it_is():
     found = register(np.full((1, 40, 50), 90, np.uint8), "mtb")
     assert np.array_equal(found.homographies, [np.eye(3)]) and len(found.pairs) == 0
+
+
+def test_photographs_that_turned_are_not_said_to_show_leaves_and_water_besides():
+    room = scenes.room((280, 420))
+    turned = [warp.turn(room.shape, degrees, (3, 2)) for degrees in (-1.5, 0, 1.2, -0.9)]
+    taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), offsets=turned, rng=1)
+    (doubt,) = pipeline.assemble(taken, align="mtb").doubts
+    assert "do not lie on each other" in doubt
