@@ -4,6 +4,7 @@
 """
 
 from collections.abc import Mapping, Sequence
+from datetime import UTC
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -26,8 +27,9 @@ def grade_folder(folder: Path, out: Path, course: "Course", asked: Any) -> None:
     times = handins.read_times(asked.received) if asked.received else {}
     found = handins.find(folder, course.roster, times)
     common.say("note", found.notes)
+    since = asked.since.replace(tzinfo=UTC) if asked.since else None
     everything = classroom.pieces(found.handins, course.homework, course.conditions)
-    wanted = classroom.select_handins(found.handins, course.roster, asked.only)
+    wanted = classroom.select_handins(found.handins, course.roster, asked.only, since)
     with journal.lock_folder(out):
         done = _graded([piece for piece in everything if piece.owner in wanted], out, course, asked)
         lost = [f"{one.piece.owner}: {one.why}" for one in done if one.why]

@@ -15,6 +15,8 @@ MODES = ("spot", "partial", "centre", "average", "matrix")
 @common.command()
 @click.argument("low", type=float, required=False)
 @click.argument("high", type=float, required=False)
+@click.option("--low", "low_", type=float, help="LOW, as an option.")
+@click.option("--high", "high_", type=float, help="HIGH, as an option.")
 @click.option("--map", "source", type=common.FILE, help="A radiance map in cd/m^2 instead of LOW and HIGH.")
 @click.option("--aperture", default=8.0, help="f-number, the same for all.")
 @click.option("--iso", default=100.0, help="ISO speed, the same for all.")
@@ -26,6 +28,8 @@ MODES = ("spot", "partial", "centre", "average", "matrix")
 def plan(
     low: float | None,
     high: float | None,
+    low_: float | None,
+    high_: float | None,
     source: Path | None,
     thirds: bool,
     snr: float | None,
@@ -47,6 +51,7 @@ def plan(
     from hdrlab.capture import planning
     from hdrlab.core.colour import luminance
 
+    low, high = low_ or low, high_ or high
     if source is not None and low is None:
         L = luminance(common.read_map(source, clean=False))
         low, high = np.quantile(L[L > 0], [0.001, 0.999]) if (L > 0).any() else (0.0, 0.0)

@@ -72,6 +72,7 @@ def check(
 @click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
 @click.option("--moodle", type=FILE, help="Of a class: the assignment's grading worksheet, to be filled in.")
 @click.option("--only", metavar="WHO", multiple=True, help="Of a class, this student or team. Repeatable.")
+@click.option("--since", type=click.DateTime(), help="Of a class, what has come since then, UTC.")
 @click.option("--regrade", is_flag=True, help="Of a class, anew what was graded before.")
 @click.option("--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]")
 @click.option("--cluster", metavar="ADDRESS", help="Of a class, on this Dask cluster, tcp://HOST:8786.")

@@ -44,7 +44,7 @@ def test_plan_refuses_what_is_no_range(arguments):
 
 def test_plan_by_noise_stands_beside_the_series_by_stops_and_takes_less_time(tmp_path):
     (tmp_path / "model.toml").write_text("read_noise = 3\nspeeds = [100, 800]\nconverter_noise = 3")
-    scene = (0.5, 500, "--snr", 8)
+    scene = ("--low", 0.5, "--high", 500, "--snr", 8)
     said = run(exposures.plan, *scene, "--camera", tmp_path / "model.toml")
     stops, noise = (
         re.search(rf"by {way}: .* in ([\d.]+) s .* ([\d.]+) at worst", said) for way in ("stops", "noise")

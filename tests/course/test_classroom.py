@@ -79,13 +79,17 @@ def test_canvas_gets_a_line_of_points_and_no_formula():
     assert lines[2][0] == "'=Ada" and float(lines[2][5]) == 80
 
 
-def test_each_member_of_a_team_pays_for_late_days_with_their_own_grace():
-    before = [Handed("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0))]
+def test_the_what_if_table_tells_each_member_what_so_many_days_would_cost():
+    before = [Handed("hw1", late, (who,), 90.0) for who, late in (("b1", 8), ("b2", 0), ("b3", 10))]
     course, points = COURSE._replace(before=before), {"t": 80.0}
-    for late, first, second in ((0, 80, 80), (2, 80, 80), (4, 78, 80), (14, 68, 76)):
-        came = marks.marks(course, {"t": handin("t", ("b1", "b2"), late)}, points)
-        scores = {row.student: row.score for row in came}
-        assert scores["b1"] == first and scores["b2"] == second
+    header, rows = marks.what_if(course, points)
+    table = {row[0]: dict(zip(header, row, strict=True)) for row in rows}
+    assert [table["b1"][f"late {days}"] for days in (0, 2, 4, 14)] == [80, 80, 78, 68]
+    assert [table["b2"][f"late {days}"] for days in (0, 10, 14)] == [80, 80, 76]
+    assert [table["b3"][f"late {days}"] for days in (0, 3)] == [100, 97]  # nothing came: were it all right
+    came = marks.marks(course, {"t": handin("t", ("b1", "b2"), 4)}, points)
+    scores = {row.student: row.score for row in came}
+    assert scores["b1"] == table["b1"]["late 4"] and scores["b2"] == table["b2"]["late 4"]
 
 
 def test_the_class_page_counts_promises_and_misconceptions_and_escapes_them():
@@ -192,7 +196,7 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
     assert all((folder / "out" / link).is_file() for link in links)
     assert "<h2>Not handed in</h2><p>b4 (Di)</p>" in page and "<li>b3 (Cy): 3 days, 3 excused" in page
     assert "refused" in (folder / "out" / "feedback" / "b3" / "feedback.html").read_text()
-    names = {"gradebook.csv", "canvas.csv", "moodle.csv", "class.html"}
+    names = {"gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html"}
     assert names <= {path.name for path in whole}
     feedback = folder / "out" / "feedback"  # a run that was killed may have left any of this
     (feedback / "t" / "feedback.html").unlink()
@@ -206,7 +210,8 @@ def test_a_class_is_graded_once_with_a_gradebook_and_a_page(folder, grade):
 
 def test_a_part_of_the_class_is_graded_and_the_books_are_of_all_of_it(folder, grade):
     assert "1 of 2 graded, 1 of them now" in grade("--only", "B2")  # of team t
-    assert "2 of 2 graded, 1 of them now" in grade()
+    assert "1 of 2 graded, 0 of them now" in grade("--since", "2026-10-27")
+    assert "2 of 2 graded, 1 of them now" in grade("--since", "2026-10-25")
     result = next((folder / "out" / "results").glob("t.*.json"))
     before = result.stat().st_mtime_ns, result.read_bytes()
     assert "2 of 2 graded, 1 of them now" in grade("--regrade", "--only", "t")

@@ -6,7 +6,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from hdrlab.course.classroom.late import Handed, accounts, lateness
+from hdrlab.course.classroom.late import Handed, accounts, lateness, what_if
 
 ANNA, BEN, CY = "anna", "ben", "cy"
 days, points = st.integers(0, 40), st.floats(0, 100)
@@ -71,14 +71,17 @@ def test_a_later_project_does_not_change_an_earlier_one(term, late, worth):
 def test_another_day_late_never_raises_a_score(term, late):
     if term:
         term = [one._replace(project=f"hw{k}") for k, one in enumerate(term)]
-        one, other = (costs([term[0]._replace(late=days), *term[1:]]) for days in (late, late + 1))
-        assert all(other[key].score <= one[key].score for key in one if key[1] == "hw0")
+        rows = what_if(term, "hw0", (late, late + 1))
+        assert all(rows[1][1][student].score <= one.score for student, one in rows[0][1].items())
 
 
-def test_days_of_grace_that_are_spent_are_gone_for_the_next_project():
-    for late, penalty in ((3, 0), (4, 1), (99, 90)):
-        term = [Handed("hw1", 7, (ANNA,), 100), Handed("project", late, (ANNA, BEN), 90)]
-        assert costs(term)[ANNA, "project"].penalty == penalty
+def test_the_what_if_table_holds_what_would_come_of_it():
+    term = [Handed("hw1", 7, (ANNA,), 100), Handed("project", 0, (ANNA, BEN), 90)]
+    for late, rows in what_if(term, "project"):
+        assert rows == {
+            who: costs([term[0], term[1]._replace(late=late)])[who, "project"] for who in (ANNA, BEN)
+        }
+    assert [rows[ANNA].penalty for _, rows in what_if(term, "project", (3, 4, 99))] == [0, 1, 90]
 
 
 def test_a_day_begun_is_a_day_late_whatever_zone_it_began_in():
@@ -105,3 +108,5 @@ def test_times_without_a_zone_are_refused():
 def test_what_makes_no_sense_is_refused(handed, said):
     with pytest.raises(ValueError, match=said):
         list(accounts(handed))
+    with pytest.raises(ValueError, match="handed in"):
+        what_if([], "hw1")

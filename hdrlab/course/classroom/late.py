@@ -9,9 +9,9 @@ a late day of each member, and each pays with their own days: nobody's grade han
 spent before, or will spend in another team, and nobody's days are spent for somebody else.
 """
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from datetime import datetime, timedelta
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 GRACE = 10
 DAY = timedelta(days=1)
@@ -95,3 +95,29 @@ def accounts(handed: Iterable[Handed], *, grace: int = GRACE, per_day: float = 1
             excused, lost = penalty(late, before, points, per_day=per_day)
             left[student] = before - excused
             yield Account(student, project, late, excused, lost, points - lost, left[student])
+
+
+def what_if(
+    handed: Sequence[Handed], project: str, days: Iterable[int] = range(15), **terms: Any
+) -> list[tuple[int, dict[str, Account]]]:
+    """Return what `project` would cost each of its students were it so many days late, and else all as it is.
+
+    `terms` are those of `accounts`.
+
+    Examples
+    --------
+    >>> before = [Handed("hw1", 8, ("b1",), 100), Handed("project", 0, ("b1", "b2"), 90)]
+    >>> for late, rows in what_if(before, "project", (0, 2, 5)):
+    ...     print(late, {student: (row.penalty, row.left) for student, row in rows.items()})
+    0 {'b1': (0.0, 2), 'b2': (0.0, 10)}
+    2 {'b1': (0.0, 0), 'b2': (0.0, 8)}
+    5 {'b1': (3.0, 0), 'b2': (0.0, 5)}
+    """
+    if project not in {one.project for one in handed}:
+        raise ValueError(f"expected a project that was handed in, got {project!r}")
+    table = []
+    for late in days:
+        supposed = [one._replace(late=late) if one.project == project else one for one in handed]
+        rows = accounts(supposed, **terms)
+        table.append((late, {row.student: row for row in rows if row.project == project}))
+    return table

@@ -10,12 +10,14 @@ from typing import NamedTuple
 
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.late import Handed, accounts, lateness
+from hdrlab.course.classroom.late import what_if as late_days
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
 NOT_GRADED = "not graded"
 LARGE = 1 << 27  # bytes of a gradebook: of a class of any size
+DAYS = range(15)  # of the what-if table
 
 
 class Mark(NamedTuple):
@@ -76,6 +78,26 @@ def marks(
         paid, score, grace = bill.penalty, bill.score, bill.left
         rows.append(Mark(*who, received, bill.late, bill.excused, work, of, paid, score, grace, note))
     return rows
+
+
+def what_if(course: Course, points: Mapping[str, float]) -> tuple[list[str], list[list[sheets.Cell]]]:
+    """Return header and rows of a table: each student's score, had the work come so many days late.
+
+    Work that has not come, or is not graded, is taken for one that earns all points. The parameters are those
+    of `marks`.
+    """
+    homework, late = course.homework, course.late
+    teams = {team: tuple(one.id for one in members) for team, members in course.roster.teams().items()}
+    work = {team: points.get(team, homework.points) for team in teams}
+    supposed = [Handed(homework.name, 0, members, work[team]) for team, members in teams.items()]
+    handed = [*course.before, *supposed]
+    table = late_days(handed, homework.name, DAYS, grace=late.free_days, per_day=late.points_a_day)
+    header = ["student", "name", "team", "homework", "work", *(f"late {days}" for days in DAYS)]
+    rows: list[list[sheets.Cell]] = [
+        [one.id, one.name, one.team, homework.name, work[one.team], *(by[one.id].score for _, by in table)]
+        for one in course.roster.students
+    ]
+    return header, rows
 
 
 def read(paths: Sequence[Path]) -> list[Handed]:

@@ -2,6 +2,7 @@
 
 gradebook.csv   a row for each student: points, days late, penalty, score
 canvas.csv      the scores, as Canvas imports them; moodle.csv, as Moodle's gradebook does
+what_if.csv     what each student's score would be, had the work come so many days late
 class.html      how many hold each promise, which misconceptions were met, and where each student stands
 """
 
@@ -76,6 +77,7 @@ def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequenc
         "gradebook.csv": (marks.COLUMNS, rows),
         "canvas.csv": marks.canvas(rows, course.homework),
         "moodle.csv": moodle.gradebook(rows, course.roster, course.homework),
+        "what_if.csv": marks.what_if(course, counted.points),
     }
     files = [sheets.write_csv(out / name, *table, private=True) for name, table in tables.items()]
     text = page(course.homework, counted, [*found.notes, *lost], rows)

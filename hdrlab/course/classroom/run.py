@@ -9,6 +9,7 @@ RESULTS/
 import tempfile
 from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from datetime import datetime
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -136,9 +137,9 @@ def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Condit
 
 
 def select_handins(
-    handins: Mapping[str, Handin], roster: Roster, only: Collection[str] = ()
+    handins: Mapping[str, Handin], roster: Roster, only: Collection[str] = (), since: datetime | None = None
 ) -> dict[str, Handin]:
-    """Return what counts of these students or teams, all unless told.
+    """Return what counts of these students or teams, all unless told, and has come since a time.
 
     Raises
     ------
@@ -148,7 +149,11 @@ def select_handins(
     names = {one if one in handins else roster.team_of([one]) for one in only}
     if missing := sorted(names - set(handins)):
         raise ValueError(f"expected names that have handed in, got {', '.join(missing)}")
-    return {team: one for team, one in handins.items() if not only or team in names}
+    return {
+        team: one
+        for team, one in handins.items()
+        if (not only or team in names) and (since is None or one.received >= since)
+    }
 
 
 def write_feedback(out: Path, done: Done) -> Done:
