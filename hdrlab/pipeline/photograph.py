@@ -21,6 +21,7 @@ from hdrlab.core.extremes import positive_median
 from hdrlab.core.filters.blur import blur_matrix
 from hdrlab.core.types import F32, Array, ArrayLike
 from hdrlab.fast._bands import banded
+from hdrlab.tonemap.reinhard import display
 
 # half of the guided filter's window, of the longer side; nodes of the coarse grid in that half
 REACH, NODES = 0.03, 4
@@ -67,7 +68,7 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     key = MIDDLE * 2 ** ((2 * mean - low - high) / max(high - low, 1e-6))
     Lm = scale(x, mean, key)
     white = max(1.0, float(np.quantile(Lm, 1 - WHITE)))
-    black = min(DEEPEST, float(np.quantile(display(Lm, white), BLACK)))
+    black = min(DEEPEST, float(np.quantile(display(Lm, Lm, white), BLACK)))
     saturation = 1.0
     if E.ndim == 3 and L.any():
         colours = E[L > 0]
@@ -120,11 +121,6 @@ def find_levels(x: F32) -> tuple[float, float, float]:
     return float(low), float(np.clip(few, low, high).mean(dtype=np.float64)), float(high)
 
 
-def display(Lm: F32, white: float) -> F32:
-    """Return Lm (1 + Lm / white^2) / (1 + Lm), at most 1: `tonemap.reinhard.display`."""
-    return np.minimum(Lm * (1 + Lm / np.float32(white**2)) / (1 + Lm), 1)
-
-
 def scale(x: F32, mean: float, key: float) -> F32:
     """Return Lm = key 10^(CONTRAST (x - mean)), at most 1e15."""
     exponent = np.log(np.float32(key)) + np.float32(CONTRAST * np.log(10)) * (x - np.float32(mean))
@@ -150,7 +146,7 @@ def photograph(L: ArrayLike, *, share: float, key: float, white: float, black: f
 
     def curve(L: F32, down: F32) -> F32:
         Lm = scale(compress_light(take(L), share, a, b, down), mean, key)
-        Ld = np.clip((display(Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
+        Ld = np.clip((display(Lm, Lm, white) - np.float32(black)) / np.float32(1 - black), 0, 1)
         return np.where(L > 0, Ld, 0)
 
     return banded(curve, L, down)

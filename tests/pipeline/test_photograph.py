@@ -11,13 +11,12 @@ from hdrlab.pipeline import develop, develop_and_describe
 from hdrlab.pipeline.photograph import (
     choose_settings,
     compress_light,
-    display,
     draw_lines,
     filter_light,
     find_logarithm,
     photograph,
 )
-from hdrlab.tonemap import durand, reinhard
+from hdrlab.tonemap import durand
 
 PLACES = {name: getattr(scenes, name) for name in ("chapel", "workshop", "street", "room")}
 GRAY = np.geomspace(1, 1e4, 96 * 128, dtype=np.float32).reshape(96, 128)
@@ -132,9 +131,7 @@ def test_settings_out_of_range_are_refused(wrong):
         photograph(-GRAY, share=1, key=0.2, white=2, black=0)
 
 
-def test_the_curve_and_the_logarithm_are_those_of_the_lessons():
+def test_the_logarithm_is_that_of_the_lesson():
     L = np.random.default_rng(5).lognormal(0, 4, (40, 60)).astype(np.float32)
     L[:3] = 0
     assert np.allclose(find_logarithm(L)(L), durand.logarithm(L), rtol=1e-6)
-    for white in (0.5, 3.0, 1e4):
-        assert np.allclose(display(L, white), reinhard.display(L, L, white), rtol=1e-6)
