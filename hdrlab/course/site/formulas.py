@@ -39,11 +39,10 @@ def formula(tex: str, *, inline: bool = True) -> str:
     math = tree(tex, inline=inline)
     ziamath.config.svg2 = False  # no <symbol>: their ids would meet again in the next formula
     drawn = ziamath.Math(ET.tostring(math, encoding="unicode"), size=SIZE).svgxml()
-    left, top, width, height = map(float, drawn.get("viewBox", "").split())
+    view = drawn.get("viewBox", "")
+    _, top, width, height = map(float, view.split())
     box = f"width:{EM * width:.3f}em;height:{EM * height:.3f}em;vertical-align:{-EM * (top + height):.3f}em"
-    svg = ET.Element(
-        "svg", {"viewBox": f"{left} {top} {width} {height}", "style": box, "aria-hidden": "true"}
-    )
+    svg = ET.Element("svg", {"viewBox": view, "style": box, "aria-hidden": "true"})
     svg.extend(drawn)
     for part in svg.iter():
         part.tag = part.tag.rpartition("}")[2]
