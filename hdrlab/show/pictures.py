@@ -126,8 +126,8 @@ def strip(
 
 def encode(drawn: object, density: int = 1) -> bytes:
     """Return what a draw function returned as WebP: a plot without loss, in small what is like a photo."""
-    image = render(drawn, density)
-    return web.encode_webp(image, lossless=not isinstance(drawn, np.ndarray) and _is_drawing(image))
+    image, drawing = render(drawn, density), not isinstance(drawn, np.ndarray)
+    return web.encode_webp(image, quality=85 - 15 * drawing, lossless=drawing and _is_drawing(image))
 
 
 def _density(drawn: object) -> int:

@@ -1,6 +1,7 @@
 """The course's site: what `hdrlab site` makes of notebooks, and what it says of those that fail."""
 
 import ast
+import base64
 import json
 import os
 import re
@@ -20,6 +21,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.course.site import live, reference
 from hdrlab.course.site import pages as build
+from hdrlab.io import web
 from hdrlab.io.photos import read_bracket, write_picture
 from hdrlab.io.web import decode_picture
 
@@ -305,6 +307,21 @@ def test_the_pictures_of_a_page_are_files_that_are_fetched_as_they_come_into_vie
     height, width = decode_picture((page.parent / asked["src"]).read_bytes()).shape[:2]
     assert (asked["width"], asked["height"]) == (str(width), str(height)) and asked["alt"]
     assert "data:image" not in page.read_text("utf-8")
+
+
+def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_they_are():
+    photograph = pipeline.develop(scenes.workshop((128, 192)))
+    bitmap = np.uint8(255) * (photograph.mean(axis=-1) > 128)
+    exact = [web.encode_webp(picture, lossless=True) for picture in (photograph, bitmap)]
+    apart = [
+        {"path": ["pictures", k], "data": base64.b64encode(each).decode()} for k, each in enumerate(exact)
+    ]
+    state = {"_esm": "", "scales": [], "pictures": [None, None], "alt": "A room"}
+    shown = live.live({"state": state, "buffers": apart}, "room-1").state["pictures"]
+    light = [base64.b64decode(each["base64"]) for each in shown]
+    assert len(light[0]) < len(exact[0]) / 2
+    assert np.abs(web.decode_picture(light[0]).astype(int) - photograph).mean() < 2
+    assert light[1] == exact[1]
 
 
 def test_notebooks_of_one_name_are_refused(tmp_path):

@@ -208,10 +208,10 @@ def test_the_environment_says_how_many_pictures_are_stored(monkeypatch):
 
 
 def test_heavy_photographs_are_stored_at_fewer_positions():
-    noise = np.random.default_rng(1).integers(0, 256, (600, 700, 3), dtype=np.uint8)
+    noise = np.random.default_rng(1).integers(0, 256, (300, 350, 3), dtype=np.uint8)
     tuner = widgets.tune(lambda level: noise, same, alt="Noise", stored=400, level=(0, 15))
     size = len(tuner.stored[0])
-    assert 1 < len(tuner.stored) == 1_000_000 // size < 16
+    assert 1 < len(tuner.stored) == widgets.HEAVIEST // size < 16
 
 
 def test_a_position_at_which_the_function_fails_has_no_picture():

@@ -63,9 +63,7 @@ def entry(source: Path, roster: Roster, name: str = "") -> Iterator[Entry]:
     """
     team = roster.owner(name or source.name)
     if team is None:
-        raise ValueError(
-            "expected a file, or a folder with it, that is named after a student or a team of the roster"
-        )
+        raise ValueError("expected a file or a folder that is named after a student or a team of the roster")
     if source.is_symlink() or not source.is_file():
         raise ValueError("expected a plain file, got a link, a pipe or a device")
     if not source.name.lower().endswith(ARCHIVES):

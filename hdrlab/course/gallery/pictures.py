@@ -43,9 +43,7 @@ def prepare(path: str | Path) -> Prepared:
     if header.kind not in ("JPEG", "PNG", "TIFF"):
         raise ValueError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
     if header.shape[0] * header.shape[1] > MOST_PIXELS:
-        raise ValueError(
-            f"{path.name}: expected at most {MOST_PIXELS} pixels, its header claims {header.shape}"
-        )
+        raise ValueError(f"{path.name}: expected at most {MOST_PIXELS} pixels, the header has {header.shape}")
     image = to_256(photos.read_photo(path))
     brought = {name: fit(image, side) for name, side in SIZES.items()}
     height, width = brought["large"].shape[:2]

@@ -72,9 +72,8 @@ def create(folder: str | Path, title: str, closes: datetime, marks: int) -> None
     with closing(_opened(folder / DATABASE)) as db:
         schema = (Path(__file__).parent / "schema.sql").read_text(encoding="utf8")
         db.executescript(f"BEGIN; {schema} PRAGMA user_version = {VERSION}; COMMIT;")
-        db.execute(
-            "INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", (title, closes.isoformat(), marks, token_bytes(32))
-        )
+        row = (title, closes.isoformat(), marks, token_bytes(32))
+        db.execute("INSERT INTO gallery VALUES (1, ?, ?, ?, ?)", row)
 
 
 def connect(folder: str | Path) -> sqlite3.Connection:

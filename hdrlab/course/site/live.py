@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.io import files, web
+from hdrlab.show.pictures import encode_change
 
 VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
@@ -32,17 +33,12 @@ class Live(NamedTuple):
     picture: bytes  # none where a question is answered without one
     alt: str
 
-    def as_script(self) -> str:
-        """Return the file that gives the widget to the page."""
-        content = {"script": self.script, "style": self.style, "state": self.state}
-        return f"hdrlab.widget({json.dumps(self.name)}, {json.dumps(content)});\n"
-
     def as_html(self, folder: str) -> str:
         """Return what stands on the page, where `folder` is the address of the files."""
         still = f"<p>{escape(self.alt)}</p>"
         if self.picture:
-            height, width = web.decode_picture(self.picture).shape[:2]
             source = f'src="{folder}/{self.name}.webp"'
+            height, width = web.decode_picture(self.picture).shape[:2]
             still = f'<img {source} alt="{escape(self.alt)}" width="{width}" height="{height}">'
         return f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">{still}</div>'
 
@@ -71,7 +67,17 @@ def live(model: Any, name: str) -> Live:
     shown = next((own[key] for key in PICTURES if own.get(key)), {"base64": ""})  # a question has none
     shown = shown[0] if isinstance(shown, list) else shown
     alt = own.get("question") or (own["alts"][0] if "alts" in own else own["alt"])
-    return Live(name, state["_esm"], state.get("_css", ""), own, base64.b64decode(shown["base64"]), alt)
+    picture = base64.b64decode(shown["base64"])
+    if "scales" in own:  # of pictures that are compared: they have no loss
+        picture = encode_change(web.decode_picture(picture))
+        own["pictures"] = [{"base64": _lighter(each["base64"])} for each in own["pictures"]]
+    return Live(name, state["_esm"], state.get("_css", ""), own, picture, alt)
+
+
+def _lighter(exact: str) -> str:
+    """Return a picture without loss in fewer bytes, where it is like a photograph."""
+    picture = base64.b64decode(exact)
+    return base64.b64encode(min(picture, web.encode_avif(web.decode_picture(picture)), key=len)).decode()
 
 
 def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
@@ -93,7 +99,8 @@ def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
 
 def write(one: Live, folder: Path) -> None:
     """Write the files of a widget; what stands there as it should is left alone."""
-    write_changed(folder / f"{one.name}.js", one.as_script().encode())
+    content = json.dumps({"script": one.script, "style": one.style, "state": one.state})
+    write_changed(folder / f"{one.name}.js", f'hdrlab.widget("{one.name}", {content});\n'.encode())
     if one.picture:
         write_changed(folder / f"{one.name}.webp", one.picture)
 

@@ -114,11 +114,9 @@ def response(g: ArrayLike, *, label: str = "", span: Ends = None, ax: Axes | Non
     if curves.ndim not in (1, 2) or (curves.ndim == 2 and curves.shape[1] != 3):
         raise ValueError(f"expected a response (n,) or (n, 3), got {describe(curves)}")
     ax = _exposure_axes(ax or axes(), span, len(curves))
-    channels = CHANNELS if curves.ndim == 2 else GRAY
+    channels, levels = CHANNELS if curves.ndim == 2 else GRAY, np.arange(len(curves))
     for (name, colour, style), curve in zip(channels, curves.reshape(len(curves), -1).T, strict=True):
-        ax.plot(
-            curve, np.arange(len(curve)), style, color=colour, linewidth=1.8, label=f"{label} {name}".strip()
-        )
+        ax.plot(curve, levels, style, color=colour, linewidth=1.8, label=f"{label} {name}".strip())
     return with_legend(ax, "upper left") if label or curves.ndim == 2 else ax
 
 

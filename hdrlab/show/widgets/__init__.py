@@ -36,7 +36,7 @@ State = TypeVar("State")
 
 THREADS = ThreadpoolController()  # of the linear algebra that is loaded by now
 STORED = 48  # pictures of a slider that are made while a reader waits, for most of them a second
-HEAVIEST = 1_000_000  # bytes of them, on a page where nobody waits and more of them are made
+HEAVIEST = 500_000  # bytes of them, on a page where nobody waits and more of them are made
 MOST = 200  # frames: a page that carries more is slow to open, and a generator may never end
 
 
@@ -175,7 +175,7 @@ def tune(
         What the picture shows; the parameters' values are added.
     stored : int
         The most pictures that are computed now, for a page without a kernel: all positions, or else a grid of
-        them, of at most 1 MB. Lower it where `f` takes long. The environment variable HDRLAB_STORED
+        them, of at most 0.5 MB. Lower it where `f` takes long. The environment variable HDRLAB_STORED
         overrules it, as for the site, where nobody waits. A position at which `f` fails has none.
     point : (down, right), optional
         Two of the parameters, shares of the picture from 0 to 1, that a press on the picture sets, too.

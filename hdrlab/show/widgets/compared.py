@@ -132,9 +132,7 @@ def blink(
     ['A', 'B']
     """
     if not SHORTEST <= period < np.inf:
-        raise ValueError(
-            f"expected a period of {SHORTEST} s or more, as faster flashes can harm, got {period}"
-        )
+        raise ValueError(f"expected a period of {SHORTEST} s or more: faster flashes can harm, got {period}")
     labels = [chr(ord("A") + k) for k in range(2 + len(more))] if labels is None else labels
     return Blinker(period=period, **_traits([a, b, *more], alt, labels, values, unit))
 

@@ -52,9 +52,7 @@ class Gallery(Front):
         same_origin(request, self.origin)
         voter, shown = self.voter(request)
         if not self.rates.take("ballots", voter.id, BALLOTS):
-            raise Refusal(
-                429, "Too many changes at once. Your ballot of before counts; try again in a moment."
-            )
+            raise Refusal(429, "Too many changes at once. Your ballot of before counts; try again later.")
         fields = await form(request)
         keys = [value for name, value in fields if name == "key"]
         if keys != [tokens.form_key(shown)]:
