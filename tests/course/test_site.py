@@ -24,6 +24,8 @@ from hdrlab.course.site import pages as build
 from hdrlab.io import web
 from hdrlab.io.photos import read_bracket, write_picture
 from hdrlab.io.web import decode_picture
+from hdrlab.show import pictures
+from hdrlab.show.plots import curves, tones
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 pytestmark = pytest.mark.skipif(
@@ -322,6 +324,16 @@ def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_t
     assert len(light[0]) < len(exact[0]) / 2
     assert np.abs(web.decode_picture(light[0]).astype(int) - photograph).mean() < 2
     assert light[1] == exact[1]
+
+
+def test_a_dark_page_turns_plots_about_and_leaves_photographs_and_maps_their_colours():
+    photograph = pipeline.develop(scenes.workshop((64, 96)))
+    line = curves.lines(np.arange(9), {"nine": np.arange(9)}, across="place", up="light")
+    slope = tones.maps({"": np.indices((64, 96))[0] - 32}, label="stops", signed=True)
+    shown = [
+        live.Live("", "", "", {}, pictures.encode(each), "").as_html("") for each in (line, slope, photograph)
+    ]
+    assert ["data-ink" in each for each in shown] == [True, False, False]
 
 
 def test_notebooks_of_one_name_are_refused(tmp_path):

@@ -13,6 +13,8 @@ from itertools import count
 from pathlib import Path
 from typing import Any, NamedTuple
 
+import numpy as np
+
 from hdrlab.io import files, web
 from hdrlab.show.pictures import encode_change
 
@@ -20,6 +22,7 @@ VIEW = "application/vnd.jupyter.widget-view+json"
 STATE = "application/vnd.jupyter.widget-state+json"
 NOT_OWN = ("layout", "tabbable", "tooltip", "frame")  # traits of every widget, and what a slider stores again
 PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
+PAPER, MARGIN = 0.72, 0.93  # of a plot's pixels, and of those at its edges, how many are white at least
 EMBEDDED = re.compile(r'src="data:image/webp;base64,([^"]+)"')
 
 
@@ -38,8 +41,7 @@ class Live(NamedTuple):
         still = f"<p>{escape(self.alt)}</p>"
         if self.picture:
             source = f'src="{folder}/{self.name}.webp"'
-            height, width = web.decode_picture(self.picture).shape[:2]
-            still = f'<img {source} alt="{escape(self.alt)}" width="{width}" height="{height}">'
+            still = f'<img {source} alt="{escape(self.alt)}" {_look(self.picture)}>'
         return f'<div class="live" data-name="{self.name}" data-from="{folder}/{self.name}.js">{still}</div>'
 
 
@@ -80,6 +82,18 @@ def _lighter(exact: str) -> str:
     return base64.b64encode(min(picture, web.encode_avif(web.decode_picture(picture)), key=len)).decode()
 
 
+def _look(picture: bytes) -> str:
+    """Return a picture's size as its element has it, and whether it is ink: a plot, lines on white paper.
+
+    The colours of a picture, or of a map, mean something; a dark page turns ink into chalk.
+    """
+    shown = web.decode_picture(picture)
+    white, (height, width, _) = (shown == 255).all(axis=-1), shown.shape
+    edges = np.concatenate([white[[0, -1]].ravel(), white[:, [0, -1]].ravel()])
+    ink = white.mean() > PAPER and edges.mean() > MARGIN
+    return f'width="{width}" height="{height}"{" data-ink" * int(ink)}'
+
+
 def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
     """Put the pictures that stand in an executed notebook's HTML into files, fetched as they come into view.
 
@@ -90,8 +104,7 @@ def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
     def moved(embedded: re.Match[str]) -> str:
         picture, file = base64.b64decode(embedded[1]), f"{name}-p{next(number)}.webp"
         write_changed(folder / file, picture)
-        height, width = web.decode_picture(picture).shape[:2]
-        return f'src="{address}/{file}" width="{width}" height="{height}" loading="lazy"'
+        return f'src="{address}/{file}" {_look(picture)} loading="lazy"'
 
     for data in [output["data"] for output in _outputs(notebook) if "text/html" in output.get("data", {})]:
         data["text/html"] = EMBEDDED.sub(moved, "".join(data["text/html"]))

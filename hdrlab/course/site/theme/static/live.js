@@ -36,6 +36,7 @@
     const { default: widget } = await import(address);
     URL.revokeObjectURL(address);
     const el = document.createElement("div");
+    el.toggleAttribute("data-ink", place.querySelector("img[data-ink]") !== null); // and so is what is drawn in its place
     const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value)]));
     await widget.render({ model: modelOf(values), el });
     const waiting = () => el.querySelector("canvas")?.getAttribute("aria-label") === "";
