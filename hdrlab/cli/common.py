@@ -15,6 +15,7 @@ Item = TypeVar("Item")
 Option = Callable[[Callable[..., Any]], Callable[..., Any]]
 FILE = click.Path(path_type=Path)
 OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the same command reads
+OPERATORS = ["photograph", *catalogue.names("tonemap")]
 SUFFIXES = ".hdr, .exr, .pfm or .tif"
 PIXELS = 400_000  # of a map, on an even grid, by which its range is told
 CLEAN = click.option(
@@ -31,9 +32,8 @@ def choice(name: str, values: Sequence[str], default: str | None = None, help: s
 
 def operator(name: str) -> Option:
     """Return the option that names a tone mapping operator."""
-    values = ["photograph", *catalogue.names("tonemap")]
     said = "photograph chooses its settings by the map; the others have their papers'."
-    return choice(name, values, help=said)
+    return choice(name, OPERATORS, help=said)
 
 
 class Command(click.Command):

@@ -83,7 +83,7 @@ def compare(source: Path, out: Path, operators: str | None, size: int, way: str,
     from hdrlab.show.plots import figures
 
     sheet.check_suffix(out)
-    names = operators.replace(" ", "").split(",") if operators else catalogue.names("tonemap")
+    names = operators.replace(" ", "").split(",") if operators else common.OPERATORS
     E = figures.fit(common.read_map(source, clean), size)
     entries = common.one_by_one(contact.entry_steps(E, names, way=way), names)
     sheet.write_sheet(out, sheet.draw(entries, title=f"{source.name}, {common.size(E)}"))

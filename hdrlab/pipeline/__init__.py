@@ -9,7 +9,7 @@ from typing import Any
 PLACES = {
     "assembly": ("Assembly", "Method"),
     "certainty": ("measure_deviation",),
-    "pictures": ("develop", "develop_and_describe", "own_saturation"),
+    "pictures": ("develop", "develop_and_describe", "find_operator", "settle"),
     "registration": ("aligned", "moved"),
     "stages": ("CONTRADICTION", "STAGES", "WEIGHTS", "assemble", "assemble_steps", "calibrate"),
     "timing": ("space_by_stops",),

@@ -1,7 +1,8 @@
 """A radiance map becomes a picture: by `photograph`, an operator of `tonemap` or a function of yours."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from importlib import import_module
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -67,12 +68,8 @@ def develop_and_describe(
     >>> develop_and_describe(E, "reinhard", key=0.36).settings
     'reinhard, key 0.36, saturation 1'
     """
-    operator, settings = find_operator(tonemap), dict(knobs)
-    if operator is photograph:
-        settings = choose_settings(E) | knobs
-        own = settings.pop("saturation")
-    else:
-        own = own_saturation(operator)
+    operator = find_operator(tonemap)
+    settings, own = settle(operator, E, knobs)
     saturation = own if saturation is None else float(saturation)
     L = colour.luminance(E)
     picture = colour.render(E, L, operator(L, **settings), saturation=saturation, way=way)
@@ -89,7 +86,15 @@ def find_operator(tonemap: Method) -> Callable[..., Any]:
     return photograph if tonemap == AUTO else catalogue.method("tonemap", tonemap)
 
 
-def own_saturation(operator: Callable[..., Any]) -> float:
-    """Return the SATURATION that the chapter's module of an operator states, or 1."""
+def settle(
+    operator: Callable[..., Any], E: ArrayLike, knobs: Mapping[str, Any] = MappingProxyType({})
+) -> tuple[dict[str, Any], float]:
+    """Return an operator's knobs for a map, those given and what `photograph` chooses, and its saturation.
+
+    That is the SATURATION that the chapter's module of an operator states, or 1.
+    """
+    if operator is photograph:
+        settings = choose_settings(E) | dict(knobs)
+        return settings, settings.pop("saturation")
     module = operator.__module__.replace("hdrlab.fast.", "hdrlab.tonemap.")
-    return float(getattr(import_module(module), "SATURATION", 1.0))
+    return dict(knobs), float(getattr(import_module(module), "SATURATION", 1.0))

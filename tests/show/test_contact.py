@@ -42,7 +42,7 @@ def test_every_operator_stands_on_the_sheet_under_its_name_with_its_figures():
 
 
 def test_the_pictures_are_those_of_the_pipeline_in_the_order_asked_for():
-    names = ["reinhard", "curves"]
+    names = ["reinhard", "photograph", "curves"]
     entries = list(contact.entry_steps(SCENE, names))
     assert [one.name for one in entries] == names
     for one in entries:

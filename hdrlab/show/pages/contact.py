@@ -3,7 +3,8 @@
 E        radiance            (H, W[, 3]), any linear unit
 L, Ld    luminance, display luminance     (H, W)
 
-The time is that of the operator alone: luminance in, display luminance out. `sheet` draws what is found here.
+The time is that of the operator alone: its choice of settings, and luminance in, display luminance out.
+`sheet` draws what is found here.
 """
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
@@ -35,8 +36,8 @@ def entry_steps(
     E : (H, W) or (H, W, 3)
         Radiance, any linear unit.
     operators : names, or labels with an operator each; optional
-        Which, and in which order: all, sorted, unless told. A label's operator is a name or your own function
-        `tonemap(L) -> Ld` in [0, 1].
+        Which, and in which order: those of `tonemap`, sorted, unless told; "photograph" is another. A label's
+        operator is a name or your own function `tonemap(L) -> Ld` in [0, 1].
     way : {"hue", "ratio"}
         What becomes of colours that a display does not have: see `core.colour.render`.
     clock : function
@@ -63,9 +64,10 @@ def entry_steps(
     L = colour.luminance(E)
     for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
         begun = clock()
-        Ld = tonemap(L)
+        settings, saturation = pipeline.settle(tonemap, E)
+        Ld = tonemap(L, **settings)
         seconds = clock() - begun
-        picture = colour.render(E, L, Ld, saturation=pipeline.own_saturation(tonemap), way=way)
+        picture = colour.render(E, L, Ld, saturation=saturation, way=way)
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
 
@@ -78,4 +80,4 @@ def _methods(operators: Sequence[str] | Mapping[str, Method] | None) -> dict[str
     named = operators if isinstance(operators, Mapping) else {name: name for name in operators}
     if not named:
         raise ValueError(f"expected operators out of {', '.join(catalogue.names('tonemap'))}, got none")
-    return {label: catalogue.method("tonemap", method) for label, method in named.items()}
+    return {label: pipeline.find_operator(method) for label, method in named.items()}
