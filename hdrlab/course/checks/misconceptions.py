@@ -75,8 +75,12 @@ def task_of(name: str) -> str:
     >>> task_of("scale_steps_no_threshold"), task_of("scale_too_low")
     ('scale_steps', 'scale')
     """
-    ids = [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
-    return max((id for id in ids if name.startswith(f"{id}_")), key=len)
+    return max((id for id in _ids() if name.startswith(f"{id}_")), key=len)
+
+
+@cache
+def _ids() -> list[str]:
+    return [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
 
 
 def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
