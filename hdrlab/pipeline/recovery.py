@@ -39,6 +39,10 @@ SLACK, FINEST = 0.05, 0.003
 WIDEST_GAP = 20
 # samples that show which levels two frames share
 SAMPLES = 1000
+IN_COMMON = (
+    "where one photograph shows something, all others are black or white: take some in between, 1 to 2 stops "
+    "apart, and longer ones if all of them are black"
+)
 
 
 class Choice(NamedTuple):
@@ -184,7 +188,10 @@ def find_response(response: Method, choice: Choice, bracket: Bracket) -> tuple[F
         if callable(response):
             raise
         said = f"no response was found ({error}), so that of the likeliest camera was taken: check the times"
-    g = space.recover(images, times, valid=valid)
+    try:
+        g = space.recover(images, times, valid=valid)
+    except ValueError as error:
+        raise ValueError(f"{error}; {IN_COMMON}") from None
     try:
         return validate_response(g, images, times, valid=valid), (said,), ""
     except ValueError:

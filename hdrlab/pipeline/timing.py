@@ -93,7 +93,8 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
     if len(seconds) < 2 or np.log2(found.times[-1]) < LEAST_SPAN or (equal and times == "stated"):
         got = ", ".join(f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True))
         raise ValueError(f"expected photographs of at least two different exposures, got {got}")
-    return found, (describe_steps(found.times),)
+    same = "all stated times are the same, so: " if equal and times == "correct" else ""
+    return found, (same + describe_steps(found.times),)
 
 
 def describe_steps(times: F64) -> str:

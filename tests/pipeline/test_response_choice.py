@@ -96,3 +96,10 @@ def test_held_out_stripes_share_no_pixel_with_those_that_make_a_response(three):
     fit, held = recovery.split_stripes(bracket(rows, three.times))
     assert not set(fit.images.ravel()) & set(held.images.ravel())
     assert fit.images.shape == held.images.shape == (3, 90, 270)
+
+
+@pytest.mark.parametrize("level", [0, 255])
+def test_photographs_that_show_nothing_in_common_are_refused_with_what_to_do(level):
+    taken = bracket(np.full((3, 40, 60, 3), level, np.uint8), [0.1, 0.2, 0.4])
+    with pytest.raises(ValueError, match="take some in between, 1 to 2 stops"):
+        pipeline.assemble(taken)

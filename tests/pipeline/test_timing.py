@@ -50,7 +50,8 @@ def test_relative_times_of_a_linear_camera_are_right(room):
 
 def test_equal_times_of_different_photographs_are_estimated_with_a_note(taken):
     found = pipeline.assemble(taken._replace(times=np.full(5, 0.01)))
-    assert "relative times, the shortest is 1" in found.notes[0] and "--stops" in found.notes[0]
+    assert found.notes[0].startswith("all stated times are the same, so: relative times, the shortest is 1")
+    assert "--stops" in found.notes[0]
     assert np.all(np.diff(found.bracket.times) > 0) and found.spread < 0.1
     with pytest.raises(ValueError, match="at least two different exposures"):
         pipeline.assemble(taken._replace(times=np.full(5, 0.01)), times="stated")
