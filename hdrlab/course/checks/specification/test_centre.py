@@ -11,8 +11,9 @@ def asked(subject, rng):
     """Return what came, what was expected, and where the middle is."""
     H, W = shape = int(rng.integers(20, 30)), int(rng.integers(36, 48))
     at = float(rng.uniform(0.2, 0.3)), float(rng.uniform(0.65, 0.8))
-    knobs = {"inside": float(rng.uniform(0.6, 0.8)), "share": int(rng.integers(120, 300)) / (H * W), "at": at}
-    return finite(subject.centre(shape, **knobs), shape, what="w"), metering.centre(shape, **knobs)
+    inside, share = float(rng.uniform(0.6, 0.8)), int(rng.integers(120, 300)) / (H * W)
+    came = subject.centre(shape, inside=inside, share=share, at=at)
+    return finite(came, shape, what="w"), metering.centre(shape, inside=inside, share=share, at=at)
 
 
 @pytest.mark.points(3)
