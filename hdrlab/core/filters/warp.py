@@ -9,9 +9,9 @@ Pixels are points at whole coordinates; x counts columns and y rows, as OpenCV a
 """
 
 from collections.abc import Sequence
+from functools import reduce
 
 import numpy as np
-import scipy
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.optional import scipy_optimize as optimize
@@ -159,9 +159,9 @@ def sample(image: ArrayLike, H: F64, shape: tuple[int, ...]) -> Array:
     image = np.asarray(image, np.float32)
     knobs = {"order": 3, "mode": "edge", "clip": False, "preserve_range": True}
     found = transform.warp(image, H, output_shape=shape[:2], **knobs)
-    ends = (scipy.ndimage.minimum_filter, scipy.ndimage.maximum_filter)
-    least, most = (end(image, size=2, axes=(0, 1), origin=-1, mode="nearest") for end in ends)
-    return np.clip(found, before(least, H, shape), before(most, H, shape))
+    more = np.pad(image, [(0, 1), (0, 1), (0, 0)][: image.ndim], mode="edge")
+    four = more[:-1, :-1], more[:-1, 1:], more[1:, :-1], more[1:, 1:]
+    return np.clip(found, *(before(reduce(end, four), H, shape) for end in (np.minimum, np.maximum)))
 
 
 def nearest(image: Array, H: F64, shape: tuple[int, ...]) -> Array:
