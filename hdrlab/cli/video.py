@@ -24,7 +24,7 @@ def video(
 ) -> None:
     """Make a film of high dynamic range out of FRAMES whose exposures take turns.
 
-    FRAMES is a folder of photographs, sorted by name, or a film; films but .gif want the extra `video`. The
+    FRAMES is a folder of photographs, sorted by name, or a film, which wants the extra `video`. The
     first frame has the first of --times, the next one the second, and so on in turns.
 
     Each frame gets from its neighbours what its own exposure lacks, brought along the motion between them.

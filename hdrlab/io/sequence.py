@@ -1,14 +1,13 @@
-"""Frames in and out: a folder of photographs, an animation, a film.
+"""Frames in and out: a folder of photographs, a film, an animation.
 
-A film is read and written through imageio: .gif by Pillow, which is there; .mp4, .mov, .mkv, .avi and .webm
-by PyAV, which is an extra (`pip install hdrlab[video]`), for it brings 35 MB of codecs that no still picture
-needs. PyAV rather than an ffmpeg program beside Python: frames come as arrays without a pipe, an error has a
-name, and there is nothing to find on the path.
+Films are read and written through imageio by PyAV, which is an extra (`pip install hdrlab[video]`), for it
+brings 35 MB of codecs that no still picture needs. PyAV rather than an ffmpeg program beside Python: frames
+come as arrays without a pipe, an error has a name, and there is nothing to find on the path. An animation,
+.gif, is written by Pillow, and is not read: its 256 colours are no exposures.
 
 Frames are decoded one at a time: a film need not fit into memory.
 """
 
-import struct
 from collections.abc import Iterable, Iterator
 from itertools import chain
 from pathlib import Path
@@ -21,23 +20,19 @@ from hdrlab.core.arrays import as_picture
 from hdrlab.core.optional import imageio_v3 as iio
 from hdrlab.core.types import F32, Array
 from hdrlab.io import album, photos, radiance, web
-from hdrlab.io.files import MAX_PIXELS, check_size, replacing, require_suffix
+from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
 
 FILMS = {".mp4", ".mov", ".mkv", ".avi", ".webm"}  # by PyAV
-ANIMATIONS = {".gif"}
-SUFFIXES = FILMS | ANIMATIONS
 WRITTEN = (".gif", ".mp4")
-# pixels that a byte of LZW stands for, at most
-BEST_GIF_RATIO = 1 << 12
 MISSING = "films need the extra `video` (pip install hdrlab[video]); folders of frames and .gif do without"
 
 
 def read(path: str | Path) -> Iterator[Array]:
-    """Yield the frames of a film, an animation, or a folder of photographs sorted by name.
+    """Yield the frames of a film, or of a folder of photographs sorted by name.
 
     Parameters
     ----------
-    path : a folder, or a .gif, .mp4, .mov, .mkv, .avi or .webm
+    path : a folder, or a .mp4, .mov, .mkv, .avi or .webm
 
     Returns
     -------
@@ -52,18 +47,18 @@ def read(path: str | Path) -> Iterator[Array]:
     Examples
     --------
     >>> import tempfile
-    >>> file = Path(tempfile.mkdtemp()) / "film.gif"
-    >>> write(file, (np.full((8, 8, 3), level, np.uint8) for level in (0, 255)))
-    2
-    >>> [frame.shape for frame in read(file)]
-    [(8, 8, 3), (8, 8, 3)]
+    >>> folder = Path(tempfile.mkdtemp())
+    >>> for level in (0, 255):
+    ...     photos.write_picture(folder / f"{level}.png", np.full((8, 8, 3), level, np.uint8))
+    >>> [frame.max() for frame in read(folder)]
+    [np.uint8(0), np.uint8(255)]
     """
     path = Path(path)
     if path.is_dir():
         files = album.photographs(path)
         return require_alike((photos.read_photo(file) for file in files), path)
-    if path.suffix.lower() not in SUFFIXES:
-        raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(SUFFIXES))})")
+    if path.suffix.lower() not in FILMS:
+        raise ValueError(f"{path}: expected a folder of frames, or a film ({', '.join(sorted(FILMS))})")
     if not path.is_file():
         raise FileNotFoundError(f"{path}: there is no such file")
     frames = require_alike(decode_frames(path), path)
@@ -85,49 +80,20 @@ def require_films(path: Path) -> None:
 
 
 def decode_frames(path: Path) -> Iterator[Array]:
-    """Yield the frames of a film or an animation, (H, W, 3) uint8."""
-    film = path.suffix.lower() in FILMS
-    (require_films if film else check_frames)(path)
+    """Yield the frames of a film, (H, W, 3) uint8."""
+    require_films(path)
     try:
-        with iio.imopen(path, "r", plugin="pyav" if film else "pillow") as file:
+        with iio.imopen(path, "r", plugin="pyav") as file:
             source: Any = file  # what its plug-in takes beyond the common type
             height, width = source.properties(index=0).shape[:2]
             if height * width > MAX_PIXELS:
                 raise ValueError(f"its header claims {width} x {height} pixels")
-            for frame in source.iter() if film else source.iter(mode="RGB"):
+            for frame in source.iter():
                 yield np.asarray(frame)[..., :3]
     except GeneratorExit:
         raise
     except Exception as error:  # on damaged files the codecs raise what they like
         raise ValueError(f"{path}: it is cut short or damaged ({error})") from None
-
-
-def check_frames(path: Path) -> None:
-    """Raise a ValueError where a GIF or a frame of it claims more pixels than it could hold [GIF89a]."""
-    data = path.read_bytes().ljust(14, b"\0") + bytes(2)  # a frame's sizes count without its last byte, too
-    width, height, flags = struct.unpack_from("<2HB", data, 6)
-    check_size(path, height, width, height * width // BEST_GIF_RATIO, available=len(data))
-    at = 13 + _colour_table(flags)
-    while at + 10 < len(data) and data[at] != 0x3B:  # ;
-        if data[at] == 0x2C:  # , begins a frame
-            left, top, width, height, flags = struct.unpack_from("<4HB", data, at + 1)
-            across, down = left + width, top + height
-            check_size(path, down, across, across * down // BEST_GIF_RATIO, available=len(data))
-            at = _skip_blocks(data, at + 11 + _colour_table(flags))
-        else:  # ! begins what a program added, and anything else is skipped as Pillow does
-            at = _skip_blocks(data, at + 2) if data[at] == 0x21 else at + 1
-
-
-def _colour_table(flags: int) -> int:
-    """Return the bytes of the colours that follow the flags of a GIF or of one of its frames."""
-    return 3 << (flags & 7) + 1 if flags & 0x80 else 0
-
-
-def _skip_blocks(data: bytes, at: int) -> int:
-    """Return where a row of blocks ends, each of which begins with its length; the last has none."""
-    while at < len(data) and data[at]:
-        at += data[at] + 1
-    return at + 1
 
 
 def require_alike(frames: Iterable[Array], path: Path) -> Iterator[Array]:
