@@ -2,15 +2,12 @@
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import click
 
 from hdrlab.cli import common
 from hdrlab.pipeline import catalogue
-
-if TYPE_CHECKING:
-    from hdrlab.pipeline.assembly import Assembly
 
 METHODS = [name for name in catalogue.names("response") if name != "linear"]  # which asks no photograph
 TIMES = "exif|estimate|FILE"
@@ -51,7 +48,7 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
 @click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
 @common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
-@common.choice("--response", [*METHODS, "all"], "debevec")
+@common.choice("--response", METHODS, "debevec")
 @click.option("--plot", type=common.OUT, help="Picture of the curve and the residuals: .png or .svg.")
 def calibrate(
     photos: tuple[Path, ...],
@@ -65,12 +62,12 @@ def calibrate(
 ) -> None:
     """Find the camera's response in PHOTOS (files, or one folder), and how far it is to be trusted.
 
-    The table says at which levels exposure doubles. With --response all every method is tried: their curves
-    are compared, plotted over each other, and written with the method's name in the file's name.
+    The table says at which levels exposure doubles.
     """
     from hdrlab import pipeline
     from hdrlab.io import photos as files
     from hdrlab.io import response_files
+    from hdrlab.pipeline import recovery
     from hdrlab.show.plots import calibration
 
     for path in out:
@@ -87,73 +84,21 @@ def calibrate(
     steps = pipeline.assemble_steps(
         bracket,
         align=align,
-        response="auto" if response == "all" else response,
+        response=response,
         times="estimate" if ready == "times" else "stated",
     )
     state = next(one for one in steps if one.stage == ready)
     common.say("note", (*state.notes, *state.doubts))
-    if response == "all":
-        _every(state, out, plot)
-    else:
-        _one(state, response, out, plot)
-
-
-def _assembled(state: "Assembly", name: str) -> "Assembly":
-    """Return the Assembly of an aligned bracket under the plausible response that a method finds."""
-    from hdrlab import pipeline
-    from hdrlab.pipeline import recovery
-
-    g = recovery.find_validated_method(name)(*state.bracket[:2], valid=state.bracket.valid)
-    return pipeline.assemble(state.bracket, align="none", response=lambda *_, **__: g, times="stated")
-
-
-def _one(state: "Assembly", name: str, out: tuple[Path, ...], plot: Path | None) -> None:
-    from hdrlab.show.plots import calibration
-
-    assembly = _assembled(state, name)
-    g, medians, (_, times, names, *_) = assembly.g, assembly.medians, assembly.bracket
-    common.say("warning", assembly.doubts)
-    click.echo(f"{name}, from {len(times)} photographs")
+    # an aligned bracket under the plausible response that the method finds
+    g = recovery.find_validated_method(response)(*state.bracket[:2], valid=state.bracket.valid)
+    found = pipeline.assemble(state.bracket, align="none", response=lambda *_, **__: g, times="stated")
+    common.say("warning", found.doubts)
+    g, medians, (_, seconds, names, *_) = found.g, found.medians, found.bracket
+    click.echo(f"{response}, from {len(seconds)} photographs")
     click.echo("\n".join(calibration.summary(g, medians, names)))
-    _write(out, g)
-    if plot:
-        calibration.write_plot(plot, calibration.calibration(g, medians, times, title=name))
-        click.echo(plot)
-
-
-def _every(state: "Assembly", out: tuple[Path, ...], plot: Path | None) -> None:
-    from hdrlab.core.metrics import well_exposed
-    from hdrlab.io import response_files
-    from hdrlab.show.plots import calibration
-
-    found = {}
-    for name in common.progress(METHODS, "methods"):
-        try:
-            found[name] = _assembled(state, name)
-        except ValueError as error:
-            click.echo(f"{name} refuses this bracket: {error}")
-    if not found:
-        raise ValueError("no method finds a response in this bracket")
-    g = {name: one.g for name, one in found.items()}
-    for name, one in found.items():
-        agree = common.agreement(one.spread)
-        click.echo(f"{name:<12}{calibration.reach(one.g):6.2f} stops, {agree}")
-    well = well_exposed(state.bracket.images, state.bracket.valid)
-    click.echo("\nRMSE of exposure over the levels 10 to 250, percent of the largest, worst channel")
-    click.echo("\n".join(calibration.matrix(list(g), calibration.rmse(g))))
-    click.echo("\nradiance maps: median difference, stops")
-    maps = {name: one.E for name, one in found.items()}
-    click.echo("\n".join(calibration.matrix(list(g), calibration.apart(maps, well), 3)))
-    for name in g:
-        _write(tuple(response_files.insert_name(path, name) for path in out), g[name])
-    if plot:
-        calibration.write_plot(plot, calibration.overlay(g, title=f"{len(g)} methods on one bracket"))
-        click.echo(plot)
-
-
-def _write(out: tuple[Path, ...], g: Any) -> None:
-    from hdrlab.io import response_files
-
     for path in out:
         response_files.write_curve(path, g)
         click.echo(path)
+    if plot:
+        calibration.write_plot(plot, calibration.calibration(g, medians, seconds, title=response))
+        click.echo(plot)

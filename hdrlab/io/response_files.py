@@ -93,17 +93,6 @@ def suffix_of(path: str | Path) -> str:
     return require_suffix(path, FORMS, "a response curve")
 
 
-def insert_name(path: str | Path, name: str) -> Path:
-    """Return the path with a name before its suffix.
-
-    Examples
-    --------
-    >>> insert_name("room.csv", "mann").name
-    'room-mann.csv'
-    """
-    return Path(path).with_stem(f"{Path(path).stem}-{name}")
-
-
 def as_curve(g: ArrayLike) -> F64:
     """Return g as float64 (n,) or (n, 3), n = 256 or 65536, within float32, or raise a ValueError."""
     curve = np.asarray(g)

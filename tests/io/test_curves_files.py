@@ -13,7 +13,7 @@ from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.io.maps import pfm
 from hdrlab.io.photos import write_picture
-from hdrlab.io.response_files import FORMS, insert_name, read_curve, suffix_of, write_curve
+from hdrlab.io.response_files import FORMS, read_curve, suffix_of, write_curve
 
 Z = np.arange(256)
 GRAY = np.log(np.maximum(Z, 0.25) / 128)
@@ -103,7 +103,6 @@ def test_what_is_no_response_is_not_written(suffix, g, expected, tmp_path):
 
 def test_a_name_says_which_format():
     assert suffix_of("a/room.old.CSV") == ".csv" and suffix_of("room.m") == ".m"
-    assert insert_name("a/room.m", "mann").as_posix() == "a/room-mann.m"
     for wrong in ("room.txt", "room", "folder.csv/room"):
         with pytest.raises(ValueError, match=".csv, .m"):
             suffix_of(wrong)

@@ -1,14 +1,12 @@
-"""What a calibration found, in words and pictures: a response with its residuals, or many together.
+"""What a calibration found, in words and pictures: a response with its residuals.
 
 g        response   (n,) or (n, 3), ln exposure of each pixel level, 0 at level n // 2
 medians  (P, C, 256), log2 exposure of each level by each frame: see `diagnostics.consistency`
-E        radiance   (H, W[, 3])
 
 A stop is a factor of 2. Functions return lines of text or figures; only `write_plot` writes.
 """
 
-from collections.abc import Mapping, Sequence
-from itertools import combinations, cycle, islice
+from collections.abc import Sequence
 from pathlib import Path
 
 import matplotlib
@@ -17,8 +15,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hdrlab.core.arrays import as_table
-from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS, radiance_errors, response_rmse
-from hdrlab.core.types import F32, F64, ArrayLike, Mask
+from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS
+from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show import plots
@@ -26,9 +24,6 @@ from hdrlab.show.pages.wording import signed
 from hdrlab.show.pictures import require_alt
 
 SUFFIXES = (".png", ".svg")
-COLOURS = ("#1A1A1A", "#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
-# not as many as colours, so that no two look alike
-STYLES = ("-", "--", "-.", ":", (0, (5, 1, 1, 1, 1, 1)))
 
 
 def doublings(g: ArrayLike) -> dict[int, float]:
@@ -79,47 +74,6 @@ def _rms(r: F64) -> float:
     return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
 
 
-def matrix(names: Sequence[str], values: Mapping[tuple[str, str], float], digits: int = 2) -> list[str]:
-    r"""Return a triangle of numbers, one for each pair of names, as lines of text.
-
-    Examples
-    --------
-    >>> print("\n".join(matrix(["mann", "space"], {("mann", "space"): 1.234})[1:]))
-    space     1.23
-    """
-    wide = max(map(len, names)) + 2
-    lines = [" " * wide + "".join(f"{name:>{wide}}" for name in names[:-1])]
-    for i, name in enumerate(names[1:], 1):
-        row = "".join(f"{values[other, name]:{wide}.{digits}f}" for other in names[:i])
-        lines.append(f"{name:<{wide}}{row}")
-    return lines
-
-
-def rmse(curves: Mapping[str, F64]) -> dict[tuple[str, str], float]:
-    """Return how far each two responses lie apart: `response_rmse` in percent, of the worst channel."""
-
-    def between(a: F64, b: F64) -> float:
-        a, b = np.broadcast_arrays(_channels(a), _channels(b))
-        return float(max(response_rmse(a, b).max(), response_rmse(b, a).max()))
-
-    return {(one, other): between(curves[one], curves[other]) for one, other in combinations(curves, 2)}
-
-
-def _channels(g: F64) -> F64:
-    """Return g as a table (256, channels)."""
-    return as_table(g, 256).reshape(256, -1)
-
-
-def apart(maps: Mapping[str, F32], well: Mask) -> dict[tuple[str, str], float]:
-    """Return by how many stops each two maps differ: the median over the well exposed pixels."""
-
-    def between(E: F32, other: F32) -> float:
-        ratio = 1 + radiance_errors(E, other, well)[well]
-        return float(np.median(np.abs(np.log2(ratio[ratio > 0]))))
-
-    return {(one, other): between(maps[one], maps[other]) for one, other in combinations(maps, 2)}
-
-
 def calibration(g: F64, medians: F64, times: ArrayLike, *, title: str = "") -> Figure:
     """Draw a response, and next to it the residuals of each frame."""
     r = consistency.measure_residuals(medians, g)
@@ -158,37 +112,6 @@ def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     _shade(ax)
     ax.legend(fontsize=7, ncols=3, loc="lower center", framealpha=0.9)
     return ax
-
-
-def overlay(curves: Mapping[str, F64], *, title: str = "") -> Figure:
-    """Draw responses over each other, channel by channel, and below how far each is from their median."""
-    tables = {name: _channels(g) for name, g in curves.items()}
-    count = max(one.shape[1] for one in tables.values())
-    figure = Figure(figsize=(2.2 + 4.2 * count, 6.8), dpi=100, layout="constrained")
-    grid = figure.subplots(2, count, squeeze=False, sharey="row")
-    looks = list(zip(tables.items(), islice(cycle(COLOURS), len(tables)), cycle(STYLES), strict=False))
-    middle = np.median([np.broadcast_to(one, (256, count)) for one in tables.values()], axis=0) / np.log(2)
-    span = (middle[3].min() - 1.5, middle[-1].max() + 1)  # noise rules below
-    channels = plots.CHANNELS if count == 3 else (("gray", "", ""),)
-    for c, (channel, *_) in enumerate(channels):
-        above, below = grid[:, c]
-        for (name, table), colour, style in looks:
-            stops = table[:, min(c, table.shape[1] - 1)] / np.log(2)
-            above.plot(stops, np.arange(256), color=colour, linestyle=style, linewidth=1.4, label=name)
-            below.plot(np.arange(256), stops - middle[:, c], color=colour, linestyle=style, linewidth=1.2)
-        above.set(title=channel, xlabel="exposure, stops from level 128", xlim=span, ylim=(-4, 259))
-        below.set(xlabel="pixel level Z", xlim=(0, 255), ylim=(-1, 1))
-        _shade(below)
-    grid[0, 0].set_ylabel("pixel level Z")
-    grid[1, 0].set_ylabel("stops from the methods' median")
-    for ax in grid.flat:
-        ax.grid(color="#D9D9D9", linewidth=0.6)
-    figure.legend(*grid[0, 0].get_legend_handles_labels(), loc="outside right center", frameon=False)
-    figure.suptitle(title, fontsize=11)
-    figure.set_label(
-        f"{title}: responses over exposure in stops, found by {', '.join(tables)}; below, their differences"
-    )
-    return figure
 
 
 def write_plot(path: str | Path, figure: Figure) -> None:
