@@ -168,6 +168,7 @@ ALL: Sequence[Reader] = (
     Reader("exr", ".exr", seeds.maps, read_exr, damaged="exr", needs="OpenEXR"),
     Reader("pfm", ".pfm", seeds.maps, read_map, damaged="pfm"),
     Reader("float-tiff", ".tif", seeds.maps, read_map),
+    Reader("ultrahdr", ".jpg", seeds.gains, read_map),
     Reader("jpeg", ".jpg", seeds.photographs, read_photo),
     Reader("png", ".png", seeds.photographs, read_photo),
     Reader("tiff", ".tif", seeds.photographs, read_photo, damaged="tiff"),
@@ -176,7 +177,6 @@ ALL: Sequence[Reader] = (
     Reader("heic", ".heic", seeds.telephones, read_other, needs="pillow_heif"),
     Reader("motion", ".jpg", seeds.telephones, read_photo),
     Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng", printed=LIBRAW),
-    Reader("gif", ".gif", seeds.films, lambda path: [*_frames(path)], damaged="gif"),
     Reader("film", ".mp4", seeds.films, lambda path: [*_frames(path)], needs="av"),
     Reader(
         "webp",

@@ -1,5 +1,6 @@
 """Small good files of each kind, by the project's own writers: what is mutated is read at first."""
 
+import contextlib
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,7 +14,7 @@ from PIL import Image
 
 from hdrlab.core.optional import OpenEXR, imagecodecs
 from hdrlab.io import photos, radiance, response_files, sequence, web
-from hdrlab.io.maps import rgbe
+from hdrlab.io.maps import rgbe, ultrahdr
 
 RGB = np.random.default_rng(0).integers(0, 256, (12, 17, 3), np.uint8)
 RGB[:, 5:12] = 90
@@ -57,6 +58,14 @@ def maps(folder: Path) -> None:
             header = {"type": OpenEXR.scanlineimage, "compression": getattr(OpenEXR, f"{kind}_COMPRESSION")}
             with OpenEXR.File(header, {"RGBA": np.dstack([E, E[..., 0]]).astype(np.float16)}) as file:
                 file.write(str(folder / f"{kind}.exr"))
+
+
+def gains(folder: Path) -> None:
+    """Write Ultra HDR pictures, one of which says in XMP alone what its gains mean."""
+    for name, light in (("a", E), ("b", E**3)):
+        ultrahdr.write_picture(folder / f"{name}.jpg", RGB, light)
+    data = (folder / "b.jpg").read_bytes()
+    (folder / "b.jpg").write_bytes(data.replace(ultrahdr.ISO, ultrahdr.ISO.swapcase()))
 
 
 def telephones(folder: Path) -> None:
@@ -106,14 +115,10 @@ def raw(folder: Path) -> None:
 
 
 def films(folder: Path) -> None:
-    """Write an animation, and a film where there is a codec."""
+    """Write a film where there is a codec."""
     frames = [np.roll(np.tile(RGB, (2, 2, 1)), k, axis=1) for k in range(3)]
-    for suffix in sequence.WRITTEN:
-        try:
-            sequence.write(folder / f"film{suffix}", iter(frames))
-        except (ValueError, ImportError):
-            if suffix == ".gif":
-                raise
+    with contextlib.suppress(ValueError, ImportError):
+        sequence.write(folder / "film.mp4", iter(frames))
 
 
 def pages(folder: Path) -> None:

@@ -17,6 +17,8 @@ WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
 @common.command()
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
+@common.choice("--to", ["picture", "ultrahdr"], help="ultrahdr: a .jpg that lights up on a bright screen.")
+@click.option("--headroom", default=8.0, help="Of ultrahdr: the brightest light, in times of white.")
 @common.operator("--operator")
 @click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
 @click.option(
@@ -27,6 +29,8 @@ WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
 def tonemap(
     source: Path,
     out: Path,
+    to: str,
+    headroom: float,
     operator: str,
     knobs: tuple[str, ...],
     saturation: float | None,
@@ -38,10 +42,14 @@ def tonemap(
     Bright colours may want more of a channel than a display has. By --way hue they become a little darker and
     a little paler, and keep their hue. By --way ratio the channel is clipped: the picture stays colourful,
     but a bright blue turns toward cyan.
+
+    An Ultra HDR picture (ISO 21496-1) is the picture for any program, with gains that lead from it to the
+    map, up to --headroom, for screens that can be brighter than white. Such a .jpg can be SOURCE as well.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
     from hdrlab.io import photos as files
+    from hdrlab.io.maps import ultrahdr
     from hdrlab.pipeline.pictures import find_operator
 
     E = common.read_map(source, clean)
@@ -49,7 +57,10 @@ def tonemap(
     check_knobs("tonemap", find_operator(operator), settings)
     with elapsed(operator):
         made = pipeline.develop_and_describe(E, operator, saturation=saturation, way=way, **settings)
-        files.write_picture(out, made.picture)
+        if to == "ultrahdr":
+            ultrahdr.write_picture(out, made.picture, E, headroom=headroom)
+        else:
+            files.write_picture(out, made.picture)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 

@@ -35,15 +35,15 @@ def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
         raise ValueError(f"{path}: it is cut short or damaged ({why})") from None
 
 
-def jpeg_end(data: bytes) -> int:
-    """Return where a JPEG ends, whatever follows it, such as a film or a gain map.
+def jpeg_end(data: bytes, start: int = 0) -> int:
+    """Return where the JPEG that begins at `start` ends, whatever follows it, such as a film or a gain map.
 
     Raises
     ------
     ValueError
         Where it has no end: libjpeg fills what is missing with gray, and only warns.
     """
-    at = 2
+    at = start + 2
     while found := MARKER.search(data, at):
         at = found.end()
         if found[1] == b"\xd9":

@@ -1,6 +1,9 @@
-"""Radiance files by their suffix: .hdr, .pic, .rad are RGBE, .pfm float maps, .exr OpenEXR, .tif(f) TIFF."""
+"""Radiance files by their suffix: .hdr, .pic, .rad are RGBE, .pfm float maps, .exr OpenEXR, .tif(f) TIFF.
 
-from collections.abc import Sequence
+Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read.
+"""
+
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -10,10 +13,11 @@ from hdrlab.core import gamut
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.types import F32, ArrayLike
 from hdrlab.io.files import require_suffix
-from hdrlab.io.maps import exr, pfm, rgbe, tiff
+from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
 SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
 SUFFIXES |= {".tif": tiff, ".tiff": tiff}
+READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr}  # which to write takes a picture as well
 
 
 def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
@@ -21,7 +25,7 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
 
     Parameters
     ----------
-    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file
+    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file, or a .jpg or .jpeg with a gain map
     clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the mean of its
         neighbours, infinity the largest finite value, and a negative channel makes its pixel less colourful
 
@@ -48,7 +52,7 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
 
 def read_sanitized(path: str | Path) -> gamut.Sanitized:
     """Return the radiance map as `read_radiance` cleans it, and counts of what it repaired."""
-    E, primaries = format_of(path).read(path), primaries_of(path)
+    E, primaries = format_of(path, READ).read(path), primaries_of(path)
     if primaries is None:
         return gamut.sanitize(E)
     found = gamut.sanitize(E, weights=gamut.xyz_matrix(primaries)[1])
@@ -57,7 +61,7 @@ def read_sanitized(path: str | Path) -> gamut.Sanitized:
 
 def read_valid(path: str | Path) -> F32:
     """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
-    E = format_of(path).read(path)
+    E = format_of(path, READ).read(path)
     try:
         E = as_radiance(E)
     except ValueError as error:
@@ -72,7 +76,7 @@ def primaries_of(path: str | Path) -> tuple[float, ...] | None:
     Two files of one photograph in different primaries so give one picture. Files of other
     kinds are taken to hold those of sRGB, as nearly all do.
     """
-    if format_of(path) is not exr:
+    if format_of(path, READ) is not exr:
         return None
     header = exr.read_header(path)
     named = header.attributes.get("chromaticities")
@@ -113,6 +117,6 @@ def write_radiance(
     form.write(path, E, **knobs)
 
 
-def format_of(path: str | Path) -> ModuleType:
-    """Return the module that reads and writes files of this suffix, or raise a ValueError."""
-    return SUFFIXES[require_suffix(path, SUFFIXES, "a radiance file")]
+def format_of(path: str | Path, formats: Mapping[str, ModuleType] = SUFFIXES) -> ModuleType:
+    """Return the module that reads, or writes, files of this suffix, or raise a ValueError."""
+    return formats[require_suffix(path, formats, "a radiance file")]

@@ -8,10 +8,11 @@ import base64
 import io
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from PIL import Image as Pillow
 
 from hdrlab.core.optional import imageio_v3 as iio
+from hdrlab.core.types import Array, ArrayLike
 
 Image = NDArray[np.uint8]
 
@@ -103,6 +104,6 @@ def data_uri(encoded: bytes, kind: str = "webp") -> str:
     return f"data:image/{kind};base64,{base64.b64encode(encoded).decode('ascii')}"
 
 
-def as_rgb(image: Image) -> Image:
+def as_rgb(image: Array) -> Array:
     """Return `image` in three channels."""
     return image if image.ndim == 3 else np.repeat(image[..., None], 3, axis=-1)

@@ -1,0 +1,97 @@
+"""Gain maps: one picture for every screen, and what a brighter screen makes of it (ISO 21496-1, 2025).
+
+sdr        the picture for any screen         (H, W) or (H, W, 3), linear, 1 = white
+hdr        the scene for a bright screen      same shape and unit, from 0 to its headroom
+headroom   the brightest light over white     of hdr, or of a screen; 1 = no brighter than white
+G          gain                               same shape, stops
+low, high  the least and the largest gain     stops, a number or one for each channel
+g          the gain map, as it is stored      same shape, 0 to 1
+gamma      of g: above 1 it gives codes to    1 = to all gains alike
+           large gains, below 1 to small ones
+k          offsets of sdr and of hdr          unit of sdr; black then has a gain that is finite
+W          share of the gain                  0 = none, the screen shows sdr; 1 = all, it shows hdr
+
+A photograph so holds two: whoever knows nothing of gains sees sdr. Both offsets are alike, or black would
+be gray where W is between 0 and 1, and small, or hdr would lose dark places beside them.
+"""
+
+import numpy as np
+
+from hdrlab.core.colour import luminance
+from hdrlab.core.types import F32, Array, ArrayLike
+
+OFFSETS = (1 / 1024, 1 / 1024)
+SPARE = 0.001  # share of the pixels, at either end, whose gain may lie outside low to high
+
+
+def log_gain(sdr: Array, hdr: Array, *, k: ArrayLike = OFFSETS) -> Array:
+    """Return G = log2((hdr + k_hdr) / (sdr + k_sdr)) [ISO 21496-1].
+
+    Examples
+    --------
+    >>> log_gain(np.array([0.5, 1.0]), np.array([0.5, 8.0])).round(2)
+    array([0., 3.])
+    """
+    k_sdr, k_hdr = np.asarray(k)
+    return np.log2((hdr + k_hdr) / (sdr + k_sdr))
+
+
+def find_range(G: Array) -> tuple[Array, Array]:
+    """Return low and high, of each channel: all gains but a thousandth at either end lie between them."""
+    low, high = np.quantile(G, [SPARE, 1 - SPARE], axis=(0, 1))
+    return low, np.maximum(high, low + 1 / 256)
+
+
+def gain_map(
+    sdr: Array, hdr: Array, low: ArrayLike, high: ArrayLike, *, gamma: float = 1.0, k: ArrayLike = OFFSETS
+) -> Array:
+    """Return g = ((G - low) / (high - low))^gamma, the quotient clipped to 0 ... 1 [ISO 21496-1].
+
+    Examples
+    --------
+    >>> gain_map(np.array([0.5, 0.5, 1.0]), np.array([0.5, 1.0, 16.0]), low=0.0, high=2.0).round(2)
+    array([0. , 0.5, 1. ])
+    """
+    G = log_gain(sdr, hdr, k=k)
+    return np.clip((G - low) / np.subtract(high, low), 0, 1) ** gamma
+
+
+def weight(screen: float, headroom: float) -> float:
+    """Return W = log2(screen) / log2(headroom), clipped to 0 ... 1: how much of the gain a screen shows.
+
+    Examples
+    --------
+    >>> weight(1, 8), round(weight(2, 8), 2), weight(16, 8)
+    (0.0, 0.33, 1.0)
+    """
+    return float(np.clip(np.log2(screen) / np.log2(headroom), 0, 1))
+
+
+def apply_gain(
+    sdr: Array,
+    g: Array,
+    low: ArrayLike,
+    high: ArrayLike,
+    *,
+    W: float = 1.0,
+    gamma: ArrayLike = 1.0,
+    k: ArrayLike = OFFSETS,
+) -> Array:
+    """Return (sdr + k_sdr) 2^(W G) - k_hdr, where G = low + (high - low) g^(1 / gamma) [ISO 21496-1].
+
+    Examples
+    --------
+    >>> apply_gain(np.array([0.5, 0.5, 1.0]), np.array([0, 0.5, 1]), low=0.0, high=2.0).round(2)
+    array([0.5, 1. , 4. ])
+    """
+    k_sdr, k_hdr = np.asarray(k)
+    G = low + np.subtract(high, low) * g ** np.divide(1, gamma)
+    return (sdr + k_sdr) * 2 ** (W * G) - k_hdr
+
+
+def expose(E: F32, sdr: Array, headroom: float) -> F32:
+    """Return hdr = min(s E, headroom), where s gives the light the log average of the picture's."""
+    L, Ld = luminance(E), luminance(sdr)
+    lit = (L > 0) & (Ld > 0)
+    s = np.exp(np.mean(np.log(Ld[lit] / L[lit]))) if lit.any() else 1.0
+    return np.minimum(np.float32(s) * E, np.float32(headroom))

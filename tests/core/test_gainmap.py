@@ -1,0 +1,71 @@
+"""hdrlab.core.gainmap: the equations of ISO 21496-1, by closed forms and round trips."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from hdrlab.core import gainmap
+
+RNG = np.random.default_rng(0)
+SDR = RNG.uniform(0, 1, (20, 30, 3))
+HDR = RNG.uniform(0, 8, (20, 30, 3))
+
+
+def test_a_gain_counts_stops():
+    sdr, hdr = np.array([0.25, 0.25, 1]), np.array([0.25, 0.5, 8])
+    assert np.allclose(gainmap.log_gain(sdr, hdr, k=(0, 0)), [0, 1, 3])
+    assert gainmap.log_gain(np.array(0.0), np.array(0.0)) == 0  # black has no gain
+
+
+def test_the_map_is_0_at_the_least_gain_and_1_at_the_largest_and_no_more_beyond():
+    sdr, hdr = np.full(5, 1.0), 2.0 ** np.array([-3, -1, 0, 3, 5])
+    assert np.allclose(gainmap.gain_map(sdr, hdr, -1, 3, k=(0, 0)), [0, 0, 0.25, 1, 1])
+    assert np.allclose(gainmap.gain_map(sdr, hdr, -1, 3, gamma=2, k=(0, 0)), [0, 0, 0.0625, 1, 1])
+
+
+@pytest.mark.parametrize("gamma", [0.5, 1.0, 2.2])
+@pytest.mark.parametrize("k", [(1 / 64, 1 / 64), (1e-3, 1e-2)])
+def test_gains_applied_again_give_the_bright_picture(gamma, k):
+    low, high = (f(gainmap.log_gain(SDR, HDR, k=k), axis=(0, 1)) for f in (np.min, np.max))
+    g = gainmap.gain_map(SDR, HDR, low, high, gamma=gamma, k=k)
+    assert np.allclose(gainmap.apply_gain(SDR, g, low, high, gamma=gamma, k=k), HDR)
+
+
+def test_without_weight_the_picture_stays_and_black_stays_black_with_any():
+    g = RNG.uniform(0, 1, SDR.shape)
+    assert np.allclose(gainmap.apply_gain(SDR, g, -2, 3, W=0), SDR)
+    low, high = -2.0, 3.0
+    nothing = gainmap.gain_map(np.zeros(3), np.zeros(3), low, high)
+    assert all(np.allclose(gainmap.apply_gain(np.zeros(3), nothing, low, high, W=W), 0) for W in (0, 0.3, 1))
+
+
+@given(st.floats(0.1, 100), st.floats(1.1, 100))
+def test_a_screen_shows_no_more_than_all_of_the_gain_and_more_the_brighter_it_is(screen, headroom):
+    W = gainmap.weight(screen, headroom)
+    assert 0 <= W <= 1 and W <= gainmap.weight(2 * screen, headroom)
+    assert gainmap.weight(headroom, headroom) == 1 and gainmap.weight(1, headroom) == 0
+
+
+def test_a_screen_of_half_the_stops_shows_the_square_root_of_the_ratio():
+    one = np.ones(1)
+    assert gainmap.apply_gain(one, one, 0, 4, W=gainmap.weight(4, 16), k=(0, 0)) == pytest.approx(4)
+
+
+def test_a_few_odd_pixels_do_not_widen_the_range():
+    G = RNG.uniform(-1, 2, (100, 100, 3))
+    G[0, 0] = 30
+    low, high = gainmap.find_range(G)
+    assert low.shape == high.shape == (3,) and np.all(high < 2.01) and np.all(low > -1.01)
+    low, high = gainmap.find_range(np.zeros((4, 4)))  # a range is never empty
+    assert high > low == 0
+
+
+def test_light_gets_the_log_average_of_the_picture_in_any_unit():
+    E = RNG.lognormal(0, 2, (40, 60, 3)).astype(np.float32)
+    sdr = (E / (1 + E)).astype(np.float32)
+    hdr = gainmap.expose(E, sdr, 4.0)
+    assert hdr.max() == 4 and np.allclose(gainmap.expose(1000 * E, sdr, 4.0), hdr, rtol=1e-4)
+    L, Ld = (one @ [0.2126, 0.7152, 0.0722] for one in (gainmap.expose(E, sdr, np.inf), sdr))
+    assert np.log(L).mean() == pytest.approx(np.log(Ld).mean(), abs=1e-4)
+    assert np.all(gainmap.expose(np.zeros((2, 2)), np.zeros((2, 2), np.float32), 4.0) == 0)

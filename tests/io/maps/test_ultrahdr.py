@@ -1,0 +1,257 @@
+"""Ultra HDR pictures, against libultrahdr, Pillow and damage."""
+
+import io
+import re
+import struct
+
+import imagecodecs
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab import pipeline, scenes
+from hdrlab.cli import run
+from hdrlab.core import colour, gainmap
+from hdrlab.io import radiance
+from hdrlab.io.maps import ultrahdr
+from hdrlab.io.photos import read_bracket, read_photo, write_picture
+from hdrlab.pipeline import catalogue
+
+HEADROOM = 8.0
+PLACES = ("chapel", "workshop", "street")
+PERCENT = [1, 50, 99]
+
+
+def scene(name="chapel", shape=(96, 144)):
+    return np.asarray(getattr(scenes, name)(shape))
+
+
+def truth(picture, E, path, headroom=HEADROOM):
+    """Return the light that the file states, and where it is not cut at the headroom."""
+    with Image.open(path) as image:
+        sdr = colour.decode_srgb(np.asarray(image) / np.float32(255))
+    hdr, whole = gainmap.expose(E, sdr, headroom), gainmap.expose(E, sdr, np.inf)
+    L = colour.luminance(whole)
+    return hdr, (L > 0) & (L < headroom)
+
+
+def seen_by_libultrahdr(path):
+    return np.maximum(imagecodecs.ultrahdr_decode(path.read_bytes())[..., :3].astype(np.float32), 0)
+
+
+@pytest.fixture
+def lamp(tmp_path):
+    """A small file, its radiance and its picture."""
+    E = scene(shape=(24, 36))
+    picture = pipeline.develop(E, "reinhard")
+    ultrahdr.write_picture(tmp_path / "lamp.jpg", picture, E)
+    return tmp_path / "lamp.jpg", E, picture
+
+
+def without(data, what):
+    """Return the file with the segments of the gain map that begin with `what` left out."""
+    start = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data))
+    first, part = data[:start], data[start:]
+    at = part.index(what)
+    size = int.from_bytes(part[at - 2 : at])
+    return first + part[: at - 4] + part[at - 2 + size :]
+
+
+@pytest.mark.parametrize("place", PLACES)
+@pytest.mark.parametrize("operator", catalogue.names("tonemap"))
+def test_another_decoder_restores_the_radiance_of_any_operators_picture(operator, place, tmp_path):
+    """Luminance within 3 % at its 1st, 50th and 99th percentile; 98 of 100 pixels, by our own reader."""
+    E, path = scene(place, (256, 384)), tmp_path / "picture.jpg"
+    picture = pipeline.develop(E, operator)
+    ultrahdr.write_picture(path, picture, E, headroom=HEADROOM)
+    hdr, kept = truth(picture, E, path)
+    L = colour.luminance(hdr)[kept]
+    found = colour.luminance(seen_by_libultrahdr(path))[kept]
+    assert np.percentile(found, PERCENT) == pytest.approx(np.percentile(L, PERCENT), rel=0.03)
+    low, middle, high = np.percentile(found / L, PERCENT)  # it does not round to levels, few in the dark
+    assert low > 0.93 and high < 1.08 and middle == pytest.approx(1, abs=0.005)
+    low, middle, high = np.percentile(colour.luminance(ultrahdr.read(path))[kept] / L, PERCENT)
+    assert low > 0.97 and high < 1.03 and middle == pytest.approx(1, abs=0.005)
+
+
+def test_every_other_program_shows_the_operators_picture(lamp, tmp_path):
+    path, _, picture = lamp
+    write_picture(tmp_path / "plain.jpg", picture)
+    with Image.open(path) as image, Image.open(tmp_path / "plain.jpg") as plain:
+        assert image.size == plain.size and image.mode == "RGB"
+        assert np.array_equal(np.asarray(image), np.asarray(plain))
+    assert np.array_equal(read_photo(path), read_photo(tmp_path / "plain.jpg"))
+
+
+def test_a_picture_by_a_function_of_ones_own_is_the_half_for_any_screen(tmp_path):
+    E = scene(shape=(48, 72))
+    picture = pipeline.develop(E, lambda L: L / (1 + L))
+    ultrahdr.write_picture(tmp_path / "own.jpg", picture, E, headroom=4)
+    hdr, kept = truth(picture, E, tmp_path / "own.jpg", 4)
+    assert np.median(ultrahdr.read(tmp_path / "own.jpg")[kept] / hdr[kept]) == pytest.approx(1, abs=0.01)
+    assert ultrahdr.read(tmp_path / "own.jpg").max() < 4.2
+
+
+def test_a_gray_map_is_written_as_rgb_which_other_decoders_ask_for(tmp_path):
+    E = colour.luminance(scene(shape=(48, 72)))
+    picture = pipeline.develop(E, "reinhard")
+    ultrahdr.write_picture(tmp_path / "gray.jpeg", picture, E)
+    hdr, kept = truth(picture, np.stack([E] * 3, axis=-1), tmp_path / "gray.jpeg")
+    back = radiance.read_radiance(tmp_path / "gray.jpeg")
+    assert back.shape == hdr.shape and back.dtype == np.float32
+    low, high = np.percentile(back[kept] / hdr[kept], [1, 99])
+    assert low > 0.97 and high < 1.03
+    assert np.median(seen_by_libultrahdr(tmp_path / "gray.jpeg")[kept] / hdr[kept]) > 0.98
+
+
+def test_what_libultrahdr_writes_is_read_as_it_reads_it_itself(tmp_path):
+    """Its gain map is smaller than the picture, and its fractions may have one denominator."""
+    E = gainmap.expose(scene(shape=(96, 144)), np.full((96, 144, 3), 0.3, np.float32), 8.0)
+    light = np.concatenate([E, np.ones_like(E[..., :1])], axis=-1).astype(np.float16)
+    data = imagecodecs.ultrahdr_encode(light, transfer=0, gamut=0, crange=1, nits=1600)
+    (tmp_path / "theirs.jpg").write_bytes(data)
+    theirs, ours = seen_by_libultrahdr(tmp_path / "theirs.jpg"), ultrahdr.read(tmp_path / "theirs.jpg")
+    ratio = colour.luminance(ours)[4:-4, 4:-4] / np.maximum(colour.luminance(theirs)[4:-4, 4:-4], 1e-3)
+    low, middle, high = np.percentile(ratio, [5, 50, 95])
+    assert 0.9 < low and high < 1.1 and middle == pytest.approx(1, abs=0.02)
+
+
+@pytest.mark.parametrize("what", [ultrahdr.ISO, ultrahdr.ADOBE])
+def test_either_way_of_saying_what_gains_mean_is_enough(what, lamp):
+    path, *_ = lamp
+    whole = ultrahdr.read(path)
+    path.write_bytes(without(path.read_bytes(), what))
+    assert np.allclose(ultrahdr.read(path), whole, rtol=1e-3, atol=1e-5)
+    if what == ultrahdr.ADOBE:  # of XMP it takes gains of one channel alone
+        assert np.median(seen_by_libultrahdr(path) / whole) == pytest.approx(1, abs=0.02)
+
+
+def test_attributes_of_xmp_are_read_as_well_as_lists(lamp):
+    path, *_ = lamp
+    data = without(path.read_bytes(), ultrahdr.ISO)
+    before = ultrahdr.read(path)
+    start = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data))
+    first, part = data[:start], data[start:]
+    names = 'hdrgm:GainMapMin="-1" hdrgm:GainMapMax="3" hdrgm:HDRCapacityMax="3"'
+    at = part.index(ultrahdr.ADOBE)
+    size = int.from_bytes(part[at - 2 : at])
+    body = ultrahdr.ADOBE + f'<rdf:Description hdrgm:Version="1.0" {names}/>'.encode()
+    path.write_bytes(first + part[: at - 2] + struct.pack(">H", len(body) + 2) + body + part[at - 2 + size :])
+    E = ultrahdr.read(path)
+    assert E.shape == before.shape and E.max() <= 8 * (1 + 1 / 64) and not np.allclose(E, before)
+
+
+def test_a_picture_that_lies_on_its_side_takes_its_gains_with_it(lamp, tmp_path):
+    path, *_ = lamp
+    upright = ultrahdr.read(path)
+    exif = Image.Exif()
+    exif[0x0112] = 6  # to be turned by a quarter
+    data = path.read_bytes()
+    block = b"Exif\0\0" + exif.tobytes().removeprefix(b"Exif\0\0")
+    path.write_bytes(data[:2] + ultrahdr._segment(b"\xe1", block) + data[2:])
+    assert np.allclose(ultrahdr.read(path), np.rot90(upright, -1), rtol=1e-5, atol=1e-6)
+
+
+def test_the_index_says_where_the_second_jpeg_begins(lamp):
+    path, *_ = lamp
+    data = path.read_bytes()
+    at = data.index(b"MPF\0") + 4
+    tags = struct.unpack_from(">3L4x3L4x", data, at + 50)
+    assert tags[1] == ultrahdr.jpeg_end(data) and tags[1] + tags[4] == len(data)
+    assert data[at + tags[5] :][:3] == b"\xff\xd8\xff"
+    assert int(re.search(rb'Length="(\d+)"', data)[1]) == tags[4]
+    with Image.open(io.BytesIO(data)) as image:
+        assert image.getxmp()["xmpmeta"]["RDF"]["Description"]["Version"] == "1.0"
+
+
+def test_a_frame_of_a_bracket_is_its_first_picture_with_a_warning(tmp_path):
+    E = scene(shape=(48, 72))
+    for k, name in enumerate("ab"):
+        ultrahdr.write_picture(tmp_path / f"{name}.jpg", pipeline.develop(E * 4**k, "curves"), E)
+    with pytest.warns(UserWarning, match=r"a\.jpg.* has a gain map: .* tone-mapped locally"):
+        taken = read_bracket(tmp_path, [1, 4])
+    assert np.array_equal(taken.images[0], read_photo(tmp_path / "a.jpg"))
+
+
+def test_the_command_writes_such_a_picture_and_takes_it_as_a_map(tmp_path, capsys):
+    E, out = scene(shape=(48, 72)), tmp_path / "picture.jpg"
+    radiance.write_radiance(tmp_path / "map.exr", E)
+
+    def told(*arguments):
+        with pytest.raises(SystemExit) as end:
+            run(list(map(str, arguments)))
+        return end.value.code or 0, capsys.readouterr().err
+
+    assert told("tonemap", tmp_path / "map.exr", "-o", out, "--to", "ultrahdr", "--headroom", 4) == (0, "")
+    assert told("tonemap", out, "-o", tmp_path / "again.png") == (0, "")
+    assert told("convert", out, tmp_path / "back.exr") == (0, "")
+    assert np.array_equal(radiance.read_radiance(tmp_path / "back.exr"), radiance.read_radiance(out))
+    code, said = told("tonemap", tmp_path / "map.exr", "-o", tmp_path / "no.png", "--to", "ultrahdr")
+    assert code == 2 and "expected an Ultra HDR picture" in said and not (tmp_path / "no.png").exists()
+    code, said = told("convert", tmp_path / "map.exr", tmp_path / "no.jpg")
+    assert code == 2 and "expected a radiance file" in said
+    write_picture(tmp_path / "plain.jpg", np.zeros((8, 8, 3), np.uint8))
+    code, said = told("tonemap", tmp_path / "plain.jpg", "-o", tmp_path / "no.png")
+    assert code == 2 and "plain.jpg: expected a JPEG with a gain map" in said and said.count("\n") == 1
+
+
+@pytest.mark.parametrize("headroom", [1.0, 0.5, np.nan, 1e9])
+def test_a_headroom_that_makes_no_sense_is_refused_and_nothing_is_written(headroom, tmp_path):
+    picture = np.zeros((8, 8, 3), np.uint8)
+    with pytest.raises(ValueError, match="expected"):
+        ultrahdr.write_picture(tmp_path / "no.jpg", picture, np.ones((8, 8, 3)), headroom=headroom)
+    with pytest.raises(ValueError, match="of one shape"):
+        ultrahdr.write_picture(tmp_path / "no.jpg", picture, np.ones((8, 9, 3)))
+    assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("E", [np.zeros((9, 9, 3)), np.full((9, 9), 3.0), np.ones((1, 1, 3))])
+def test_black_even_and_tiny_maps_are_written_too(E, tmp_path):
+    picture = np.full(E.shape, 120, np.uint8)
+    ultrahdr.write_picture(tmp_path / "even.jpg", picture, E)
+    assert ultrahdr.read(tmp_path / "even.jpg").shape == (*E.shape[:2], 3)
+
+
+def claims(**changed):
+    """Return ISO's binary metadata of one channel with some fractions changed, by place."""
+    numbers = [0, 1, 3, 1, -1, 1, 3, 1, 1, 1, 1, 64, 1, 64]
+    for place, value in changed.items():
+        numbers[int(place[1:])] = value
+    return struct.pack(">2HB14i", 0, 0, 0x40, *numbers)
+
+
+@pytest.mark.parametrize("wrong", [{"n3": 0}, {"n6": -5}, {"n8": 0}, {"n2": 0}, {"n4": 1 << 30}, {"n11": 0}])
+def test_gains_that_mean_nothing_are_refused(wrong):
+    with pytest.raises(ValueError, match="expected gains"):
+        ultrahdr._meaning(ultrahdr.ISO + claims(**wrong))
+    assert ultrahdr._meaning(ultrahdr.ISO + claims())["high"] == 3
+
+
+def test_a_file_cut_short_anywhere_is_refused_by_name(lamp):
+    path, *_ = lamp
+    data = path.read_bytes()
+    for end in np.linspace(0, len(data) - 2, 60).astype(int):
+        path.write_bytes(data[:end])
+        with pytest.raises(ValueError, match=r"lamp\.jpg"):
+            ultrahdr.read(path)
+
+
+def test_damaged_files_are_read_or_refused_by_name(lamp):
+    path, E, _ = lamp
+    data, rng = np.frombuffer(path.read_bytes(), np.uint8), np.random.default_rng(0)
+    second = ultrahdr.jpeg_end(data.tobytes())
+    spots = [(0, 700), (second, second + 2200), (0, len(data))]  # both headers, and all
+    refused = 0
+    for k in range(240):
+        low, high = spots[k % 3]
+        broken = data.copy()
+        broken[rng.integers(low, high, rng.integers(1, 6))] = rng.integers(0, 256)
+        path.write_bytes(broken.tobytes())
+        try:
+            found = ultrahdr.read(path)
+        except ValueError as error:
+            assert "lamp.jpg" in str(error)
+            refused += 1
+        else:
+            assert found.dtype == np.float32 and np.all(found >= 0) and np.isfinite(found).all()
+    assert 20 < refused < 220
