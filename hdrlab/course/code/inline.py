@@ -7,7 +7,7 @@ that need them. Two definitions of one name, from two modules, part by the modul
 
 import ast
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import NamedTuple
 
 from hdrlab.course.code.source import Key, key_of, module, statements, targets
@@ -61,7 +61,7 @@ def _block(order: Sequence[Key], names: dict[Key, str], done: set[str]) -> Block
     """Return the Block of an order whose last key is the function; `done` holds what is there so far."""
     imports, texts = set(), []
     for key in order:
-        imports |= set(_imports(key)) - done
+        imports |= {one.target for one in targets(key) if isinstance(one.target, str)} - done
         text = _text(key, names)
         # what is asked for is there, though an earlier one needed it
         if text not in done or key == order[-1]:
@@ -101,10 +101,6 @@ def _joined(texts: Iterable[str]) -> str:
         text += ("" if not text else "\n\n" if long or before else "\n") + one
         before = long
     return text
-
-
-def _imports(key: Key) -> Iterator[str]:
-    return (one.target for one in targets(key) if isinstance(one.target, str))
 
 
 def _in_order(key: Key, seen: set[Key] | None = None) -> list[Key]:

@@ -91,17 +91,12 @@ def cleaned(block: bytes) -> bytes:
     kept = [entry for entry in entries if entry.tag in TAGS["kept"]]
     settings = [entry for entry in pointed(block, entries) if entry.tag in TAGS["settings"]]
     start = 8 + 2 + 12 * (len(kept) + bool(settings)) + 4
-    spill = sum(_spilled(entry) for entry in kept)
+    spill = sum(len(one.value) + len(one.value) % 2 for one in kept if len(one.value) > 4)
     if settings:
         kept.append(Entry(POINTER, 4, 1, struct.pack(f"{sign}L", start + spill), 0))
     head = bytes(block[:4]) + struct.pack(f"{sign}L", 8)
     body = _written(sorted(kept), 8, sign)
     return head + body + (_written(sorted(settings), 8 + len(body), sign) if settings else b"")
-
-
-def _spilled(entry: Entry) -> int:
-    """Return how many bytes of an entry's value stand outside it, at an even place."""
-    return 0 if len(entry.value) <= 4 else len(entry.value) + len(entry.value) % 2
 
 
 def _written(entries: list[Entry], at: int, sign: str) -> bytes:

@@ -8,13 +8,12 @@ Light goes over more than a screen can show: an image whose range is wide is dra
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from hdrlab.core.types import Array
 from hdrlab.show import pictures, plots
 from hdrlab.show.plots import figures
 
-Image = NDArray[np.uint8]
 LEAST = 200  # pixels: a smaller picture is shown with larger pixels
 MOST = 480
 WIDE = 300.0  # expected's largest over its smallest: beyond this logarithms are drawn
@@ -94,7 +93,7 @@ def _wide(truth: Array) -> bool:
     return bool(light.size and np.nanmin(truth) >= 0 and light.max() > WIDE * light.min())
 
 
-def _drawn(values: Array, truth: Array) -> Image:
+def _drawn(values: Array, truth: Array) -> figures.Image:
     """Return values as gray or colours, black and white where they are in `truth`."""
     if _wide(truth):
         floor = truth[truth > 0].min()
@@ -105,13 +104,13 @@ def _drawn(values: Array, truth: Array) -> Image:
     return np.where(np.isfinite(levels), np.clip(levels, 0, 255), MISSING).astype(np.uint8)
 
 
-def _large(drawn: Image) -> Image:
+def _large(drawn: figures.Image) -> figures.Image:
     """Return a picture with pixels large enough to be seen one by one, and not too many of them."""
     k = max(1, LEAST // max(drawn.shape[:2]))
     return figures.fit(drawn.repeat(k, axis=0).repeat(k, axis=1), MOST)
 
 
-def _ringed(colours: Image, place: tuple[int, int]) -> Image:
+def _ringed(colours: figures.Image, place: tuple[int, int]) -> figures.Image:
     """Return the picture in large with a ring around a pixel of the small one."""
     large = _large(colours).copy()
     scale = len(large) / len(colours)

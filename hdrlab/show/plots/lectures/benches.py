@@ -27,8 +27,6 @@ from hdrlab.show.plots import curves
 from hdrlab.show.plots.figures import fit
 from hdrlab.show.plots.lectures import sensors
 
-Mask = NDArray[np.bool_]
-
 F = 8.0  # f-number of the benches
 COARSE = 96  # pixels: meters do not look closer, and the picture is only looked at
 SAMPLES = 500  # of a calibration: enough for pictures as small as those of the bench
@@ -40,9 +38,9 @@ class Shot(NamedTuple):
     """A photograph as the meter wanted it, and what it lost."""
 
     picture: NDArray[np.uint8]  # (H, W, 3), sRGB
-    full: Mask  # (H, W), a channel or more is full
-    noise: Mask  # (H, W), no more signal than noise
-    asked: Mask  # (H, W), pixels that the mode listens to
+    full: NDArray[np.bool_]  # (H, W), a channel or more is full
+    noise: NDArray[np.bool_]  # (H, W), no more signal than noise
+    asked: NDArray[np.bool_]  # (H, W), pixels that the mode listens to
     EV: float
     off: float  # stops, the subject against where it belongs
 
@@ -66,7 +64,7 @@ def meter_scene(
     return Shot(picture, np.any(picture == 255, axis=-1), noise, _enlarged(asked, L.shape), EV, off)
 
 
-def _enlarged(w: NDArray[np.float64], shape: tuple[int, ...]) -> Mask:
+def _enlarged(w: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.bool_]:
     """Return where a weight is at least half of the largest one, at the size of the picture."""
     rows, columns = (np.arange(n) * small // n for n, small in zip(shape, w.shape, strict=True))
     return (w >= w.max() / 2)[rows][:, columns]

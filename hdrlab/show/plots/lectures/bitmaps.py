@@ -26,14 +26,13 @@ from hdrlab.show.plots import picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
 from hdrlab.show.plots.nearest import show
 
-Image = NDArray[np.uint8]
 Offset = tuple[int, int]
 AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
 DIFFER, OUTSIDE = (230, 159, 0), (0, 90, 160)
 CENTRE, BEST = "#808080", "#D55E00"
 
 
-def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None) -> Image:
+def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = None) -> NDArray[np.uint8]:
     """Return two bitmaps (H, W) as one picture (H, W, 3); `compared` (H, W) is False where no bit counts."""
     a, b = np.asarray(fixed, bool), np.asarray(moved, bool)
     if a.ndim != 2 or a.shape != b.shape or (compared is not None and np.shape(compared) != a.shape):
@@ -116,7 +115,7 @@ def words(rows: dict[str, ArrayLike]) -> Figure:
     return figure
 
 
-def _picture(fixed: Mask, moving: Mask, offset: Offset) -> Image:
+def _picture(fixed: Mask, moving: Mask, offset: Offset) -> NDArray[np.uint8]:
     bits, kept = (shift_layer(one, offset) for one in moving)
     return overlay(fixed[0], bits, fixed[1] & kept)
 
