@@ -56,11 +56,6 @@ def evaluate(m: F64, a: F64) -> F64:
     return np.asarray(polyval(m, a), np.float64)
 
 
-def fit_line(irradiance: F64, X: F64) -> F64:
-    """Return s and r of the straight line s I + r that fits X best: least squares."""
-    return np.polyfit(irradiance, X, 1)
-
-
 def quadratic_form(blends: Sequence[Blend], degree: int) -> F64:
     """Return Q of E = a^T Q a: sum_j V^T (1 - P) V, V_ik = m_ij^k, P the projection on lines in I."""
     Q = np.zeros((degree + 1, degree + 1))
@@ -140,5 +135,5 @@ def join(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: floa
     """
     a = last(join_steps(blends, degree=degree, runs=runs)).a
     usable = select_blends(blends)
-    s, r = np.transpose([fit_line(blend.I, evaluate(blend.M, a)) for blend in rescale(usable)])
+    s, r = np.transpose([np.polyfit(blend.I, evaluate(blend.M, a), 1) for blend in rescale(usable)])
     return build_response(usable, evaluate(np.linspace(0, 1, TABLE_SIZE), a), s, r, ends=ends)

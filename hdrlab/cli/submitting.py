@@ -63,8 +63,8 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
         raise ValueError(f"{missing} to mend; nothing was written (--force makes the archive as it is)")
     files = list(common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files)))
     digest = handing.write(found, out, files)
-    told = handing.summary(files)
-    if told["cleaned"]:
-        click.echo(f"left out of {told['cleaned']} pictures: {', '.join(told['removed'])}")
-    common.say("warning", told["remains"])
+    removed = [one.removed for one in files if one.removed]
+    if removed:
+        click.echo(f"left out of {len(removed)} pictures: {', '.join(sorted(set().union(*removed)))}")
+    common.say("warning", [f"{one.name}: {one.remains}" for one in files if one.remains])
     click.echo(f"{out}: {len(files)} files, {out.stat().st_size / 1e6:.1f} MB, {digest[:12]}")

@@ -115,7 +115,7 @@ def test_the_error_is_the_papers_sum():
     a = np.array([0, 0.5, 0.3, 0.2])
     by_hand = 0.0
     for one in blends:
-        s, r = wilburn.fit_line(one.I, wilburn.evaluate(one.M, a))
+        s, r = np.polyfit(one.I, wilburn.evaluate(one.M, a), 1)
         by_hand += sum((s * x + r - wilburn.evaluate(m, a)) ** 2 for x, m in zip(one.I, one.M, strict=True))
     assert wilburn.error(a, wilburn.quadratic_form(blends, 3)) == pytest.approx(by_hand)
 

@@ -6,7 +6,7 @@ import zipfile
 from collections.abc import Iterator
 from datetime import UTC, datetime
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import hdrlab
 from hdrlab.course.archives import packing
@@ -82,13 +82,3 @@ def is_archive(path: Path) -> bool:
         return False
     with zipfile.ZipFile(path) as opened:
         return MANIFEST in opened.namelist()
-
-
-def summary(files: list[Packed]) -> dict[str, Any]:
-    """Return how many files told something that was left out, what, and which may still tell."""
-    told = [one for one in files if one.removed]
-    return {
-        "cleaned": len(told),
-        "removed": sorted(set().union(*(one.removed for one in told))),
-        "remains": [f"{one.name}: {one.remains}" for one in files if one.remains],
-    }
