@@ -83,6 +83,14 @@ def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroo
     ------
     ValueError
         For another suffix, shapes that do not fit together, or a headroom that is not above 1.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "wall.jpg"
+    >>> write_picture(file, np.full((4, 6), 128, np.uint8), np.ones((4, 6)))
+    >>> read_photo(file).shape
+    (4, 6, 3)
     """
     how = PICTURES[files.require_suffix(path, (".jpg", ".jpeg"), "an Ultra HDR picture")]
     picture, E = as_rgb(as_picture(picture)), as_rgb(as_radiance(E))
