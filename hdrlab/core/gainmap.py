@@ -52,8 +52,7 @@ def gain_map(
     >>> gain_map(np.array([0.5, 0.5, 1.0]), np.array([0.5, 1.0, 16.0]), low=0.0, high=2.0).round(2)
     array([0. , 0.5, 1. ])
     """
-    G = log_gain(sdr, hdr, k=k)
-    return np.clip((G - low) / np.subtract(high, low), 0, 1) ** gamma
+    return np.clip((log_gain(sdr, hdr, k=k) - low) / np.subtract(high, low), 0, 1) ** gamma
 
 
 def weight(screen: float, headroom: float) -> float:

@@ -227,6 +227,17 @@ def test_gains_that_mean_nothing_are_refused(wrong):
     assert ultrahdr._meaning(ultrahdr.ISO + claims())["high"] == 3
 
 
+def test_a_number_of_thousands_of_letters_is_refused_in_a_few_words(lamp):
+    path, *_ = lamp
+    data = without(without(path.read_bytes(), ultrahdr.ISO), ultrahdr.ADOBE)
+    start = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
+    said = ultrahdr.ADOBE + b'<rdf:Description hdrgm:GainMapMax="' + b"9" * 5000 + b'x"/>'
+    path.write_bytes(data[:start] + ultrahdr._segment(b"\xe1", said) + data[start:])
+    with pytest.raises(ValueError, match=r"lamp\.jpg: expected a JPEG with a gain map") as refused:
+        ultrahdr.read(path)
+    assert 200 < len(str(refused.value)) < 400 + len(str(path))
+
+
 def test_a_file_cut_short_anywhere_is_refused_by_name(lamp):
     path, *_ = lamp
     data = path.read_bytes()
