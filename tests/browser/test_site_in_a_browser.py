@@ -86,7 +86,7 @@ def move(page, widget):
 
 def assert_it_fits(page, axe):
     """Look at a page on a wide and on a narrow screen, and leave it wide."""
-    for width in (400, 1280):
+    for width in (400, 1440, 1280):
         page.set_viewport_size({"width": width, "height": 900})
         assert page.evaluate("document.documentElement.scrollWidth") <= width
         found = [each for each in axe(page, "html") if not each.startswith(MINOR)]
