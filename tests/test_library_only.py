@@ -42,7 +42,7 @@ PARTS = {
     "hdrlab.io.photos.read_photo('a.tif')": "tifffile",
     "hdrlab.io.photos.read_photo('deep.png')": "imagecodecs",
     "hdrlab.io.web.encode_webp(np.zeros((2, 2)))": "imageio",
-    "hdrlab.core.filters.warp.read(np.ones((9, 9)), np.eye(3), (9, 9), order=1)": "scikit-image",
+    "hdrlab.core.filters.warp.sample(np.ones((9, 9)), np.eye(3), (9, 9))": "scikit-image",
     "hdrlab.scenes.chapel()": "OpenEXR",
     "import_module('hdrlab.show.plots')": "matplotlib",
     "import_module('hdrlab.show.widgets')": "anywidget",
