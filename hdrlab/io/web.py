@@ -30,11 +30,6 @@ def encode_webp(image: Image, *, quality: int = 85, lossless: bool = False) -> b
     return iio.imwrite("<bytes>", as_rgb(image), extension=".webp", quality=quality, method=2)
 
 
-def encode_avif(image: Image) -> bytes:
-    """Return `image` as AVIF in full resolution of colour: a third of what it takes without loss."""
-    return iio.imwrite("<bytes>", as_rgb(image), extension=".avif", quality=95, subsampling="4:4:4", speed=8)
-
-
 def encode_jpeg(image: Image, *, quality: int = 80) -> bytes:
     """Return `image` as JPEG, the quickest to encode, with full colour resolution so that thin lines stay."""
     return iio.imwrite("<bytes>", as_rgb(image), extension=".jpg", quality=quality, subsampling=0)
@@ -95,7 +90,7 @@ def decode_picture(encoded: bytes) -> Image:
     >>> decode_picture(encode_webp(np.full((2, 3), 7, np.uint8), lossless=True)).shape
     (2, 3, 3)
     """
-    with Pillow.open(io.BytesIO(encoded), formats=("PNG", "JPEG", "WEBP", "AVIF", "GIF")) as image:
+    with Pillow.open(io.BytesIO(encoded), formats=("PNG", "JPEG", "WEBP", "GIF")) as image:
         return np.asarray(image.convert("RGB"))
 
 

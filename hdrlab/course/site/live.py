@@ -79,7 +79,8 @@ def live(model: Any, name: str) -> Live:
 def _lighter(exact: str) -> str:
     """Return a picture without loss in fewer bytes, where it is like a photograph."""
     picture = base64.b64decode(exact)
-    return base64.b64encode(min(picture, web.encode_avif(web.decode_picture(picture)), key=len)).decode()
+    lossy = web.encode_jpeg(web.decode_picture(picture), quality=95)
+    return base64.b64encode(min(picture, lossy, key=len)).decode()
 
 
 def _look(picture: bytes) -> str:
