@@ -321,7 +321,7 @@ def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_t
     state = {"_esm": "", "scales": [], "pictures": [None, None], "alt": "A room"}
     shown = live.live({"state": state, "buffers": apart}, "room-1").state["pictures"]
     light = [base64.b64decode(each["base64"]) for each in shown]
-    assert len(light[0]) < len(exact[0]) / 2
+    assert len(light[0]) < len(exact[0]) * 2 / 3
     assert np.abs(web.decode_picture(light[0]).astype(int) - photograph).mean() < 2
     assert light[1] == exact[1]
 
