@@ -69,7 +69,7 @@
   // What is wider than the page is scrolled, so the keyboard must reach it.
   function reach() {
     for (const each of document.querySelectorAll("pre, table, div.math"))
-      if (each.scrollWidth > each.clientWidth + 1) each.tabIndex = 0;
+      if (each.scrollWidth > each.clientWidth) each.tabIndex = 0;
       else each.removeAttribute("tabindex");
   }
 
