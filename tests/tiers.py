@@ -89,8 +89,6 @@ TIERS = {
         "tests/calibration/test_wilburn.py::test_linear_motion",
         "tests/calibration/test_wilburn.py::test_the_spline_reads_real_responses",
         "tests/capture/test_hand_motion.py::test_a_moved_camera",
-        "tests/cli/test_calibrate.py::test_a_method_that_refuses",
-        "tests/cli/test_calibrate.py::test_all_methods",
         "tests/cli/test_calibrate.py::test_the_plot_carries",
         "tests/cli/test_cli.py::test_a_doubtful_map",
         "tests/cli/test_demo.py::test_the_demo_announces",
