@@ -20,7 +20,8 @@ from hdrlab.course.site.pages import cache_of
 NOTEBOOKS = sorted(path.stem for path in (Path(__file__).parents[2] / "notebooks").glob("*.ipynb"))
 OTHERS = [
     *("index", "photographs", "verdicts", "instructors", "map", "commands", "assignments/hw2"),
-    *("reference/index", "reference/tonemap", "reference/capture.planning", "reference/show.widgets"),
+    *("reference/index", "reference/tonemap", "reference/tonemap.durand"),
+    *("reference/capture.planning", "reference/show.widgets"),
 ]
 MINOR = "empty-table-header"  # the empty corner of a table with names on two sides
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
