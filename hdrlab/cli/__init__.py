@@ -13,8 +13,7 @@ from io import TextIOWrapper
 
 import click
 
-from hdrlab import __version__
-from hdrlab.cli import (
+from hdrlab.cli import (  # noqa: F401  # whose commands join the group when they are imported
     curves,
     exposures,
     gallery,
@@ -27,6 +26,7 @@ from hdrlab.cli import (
     submitting,
     video,
 )
+from hdrlab.cli.common import main
 from hdrlab.cli.terminal import visible
 
 
@@ -55,34 +55,3 @@ def run(arguments: Sequence[str] | None = None) -> None:
         said, code = str(error) or type(error).__name__, 2
     click.echo(f"hdrlab: {visible(said)}", err=True)
     sys.exit(code)
-
-
-@click.group(context_settings={"help_option_names": ["-h", "--help"], "show_default": True})
-@click.version_option(__version__, prog_name="hdrlab")
-def main() -> None:
-    """High dynamic range imaging: photographs to a radiance map to a picture."""
-
-
-for command in (
-    lessons.demo,
-    lessons.lab,
-    photographs.assemble,
-    video.video,
-    curves.calibrate,
-    exposures.plan,
-    exposures.meter,
-    exposures.correct,
-    maps.tonemap,
-    maps.compare,
-    maps.convert,
-    maps.info,
-    grading.check,
-    grading.grade,
-    grading.doctor,
-    making.course,
-    submitting.report,
-    submitting.submit,
-    gallery.gallery,
-    site.site,
-):
-    main.add_command(command)

@@ -3,12 +3,12 @@
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
 import click
 
+from hdrlab import __version__
 from hdrlab.pipeline import catalogue
 
 Item = TypeVar("Item")
@@ -51,12 +51,19 @@ class Command(click.Command):
 
 
 class Group(click.Group):
-    """A group of such commands."""
+    """A group of such commands, and of such groups."""
 
     command_class = Command
+    group_class = type
 
 
-command = partial(click.command, cls=Command)
+@click.group(cls=Group, context_settings={"help_option_names": ["-h", "--help"], "show_default": True})
+@click.version_option(__version__, prog_name="hdrlab")
+def main() -> None:
+    """High dynamic range imaging: photographs to a radiance map to a picture."""
+
+
+command = main.command
 
 
 def _paths(value: Any) -> list[Path]:

@@ -18,7 +18,7 @@ FOLDER = click.argument("folder", type=common.FILE)
 NEEDS = ("starlette", "uvicorn")
 
 
-@click.group(cls=common.Group)
+@common.main.group()
 def gallery() -> None:
     """Let the class vote on its artifacts: init, add, links, serve, close, results."""
 

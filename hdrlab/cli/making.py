@@ -9,7 +9,7 @@ from hdrlab.cli.grading import FOLDER, PLAN, SECRET, secret_of
 from hdrlab.course import plan as plans
 
 
-@click.group(cls=common.Group)
+@common.main.group()
 def course() -> None:
     """Make the course: its handouts, and other systems' forms of it."""
 

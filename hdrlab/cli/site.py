@@ -65,11 +65,10 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> Non
 
 def _commands() -> str:
     """Return a page with the help of every command."""
-    from hdrlab import cli
     from hdrlab.course.site import pages
 
     text = (pages.PAGES / "commands.md").read_text("utf-8")
-    for name, command in cli.main.commands.items():
+    for name, command in sorted(common.main.commands.items()):
         context = click.Context(command, info_name=f"hdrlab {name}", terminal_width=88, max_content_width=88)
         text += f"\n## {name}\n\n```text\n{command.get_help(context)}\n```\n"
     return text
