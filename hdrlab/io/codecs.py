@@ -8,6 +8,7 @@ tifffile TIFF.
 import io
 import logging
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -35,8 +36,10 @@ def stored_pixels(path: Path, kind: str, out: Array | None = None) -> Array:
         raise ValueError(f"{path}: it is cut short or damaged ({why})") from None
 
 
-def jpeg_end(data: bytes, start: int = 0) -> int:
-    """Return where the JPEG that begins at `start` ends, whatever follows it, such as a film or a gain map.
+def jpeg_parts(data: bytes, start: int = 0) -> Iterator[tuple[int, int, int]]:
+    """Yield (marker, from, to) of what the JPEG at `start` is made of, without markers and lengths.
+
+    What stands between two segments has marker 0: coded pixels, bytes that fill, or what damage left there.
 
     Raises
     ------
@@ -45,11 +48,21 @@ def jpeg_end(data: bytes, start: int = 0) -> int:
     """
     at = start + 2
     while found := MARKER.search(data, at):
+        if found.start() > at:
+            yield 0, at, found.start()
         at = found.end()
+        end = at if found[1] == b"\xd9" else at + int.from_bytes(data[at : at + 2])
+        yield found[1][0], min(at + 2, end), end
         if found[1] == b"\xd9":
-            return at
-        at += int.from_bytes(data[at : at + 2])
+            return
+        at = end
     raise ValueError("no end of image after its last scan")
+
+
+def jpeg_end(data: bytes, start: int = 0) -> int:
+    """Return where the JPEG at `start` ends, whatever follows it, such as a film or a gain map."""
+    *_, (_, _, end) = jpeg_parts(data, start)
+    return end
 
 
 def _jpeg(data: bytes, out: Array | None) -> Array:

@@ -7,11 +7,11 @@ tells is blanked where it stands. A RAW file needs its maker's notes, in which a
 
 import struct
 import zlib
-from collections.abc import Iterator
 from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course.projects import exif
+from hdrlab.io.codecs import jpeg_parts
 
 PLAIN_CHUNKS = {
     *(b"IHDR", b"PLTE", b"IDAT", b"IEND", b"gAMA", b"cHRM", b"sRGB", b"iCCP", b"sBIT", b"pHYs", b"tRNS"),
@@ -62,55 +62,24 @@ def _exif(block: bytes) -> tuple[bytes, set[str]]:
 
 
 def _jpeg(data: bytes) -> Cleaned:
-    out, removed = bytearray(b"\xff\xd8"), set()
-    end = 2
-    for marker, start, end in _segments(data):
+    out, removed, before = bytearray(b"\xff\xd8"), set(), 0
+    for marker, start, end in jpeg_parts(data):
         body = data[start:end]
         if 0xE0 <= marker <= 0xEF or marker == 0xFE:
             body, told = _application(marker, body)
             removed |= told
             if not body:
                 continue
-            out += struct.pack(">BBH", 0xFF, marker, len(body) + 2)
-        elif marker:
-            out += bytes((0xFF, marker)) + (b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2))
+        elif not marker and before != 0xDA and body.strip(b"\xff"):
+            raise ValueError("expected a marker of JPEG, the file is damaged")
+        before = marker
+        if marker:
+            length = b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2)
+            out += bytes((0xFF, marker)) + length
         out += body
     if end < len(data):
         removed.add("what follows the picture")
     return Cleaned(bytes(out), frozenset(removed))
-
-
-def _segments(data: bytes) -> Iterator[tuple[int, int, int]]:
-    """Yield (marker, start, end) of what a JPEG is made of; marker 0 is coded pixels, the last is its end."""
-    at = 2
-    while True:
-        while data[at] == 0xFF and data[at + 1] == 0xFF:
-            at += 1
-        if data[at] != 0xFF:
-            raise ValueError("expected a marker of JPEG, the file is damaged")
-        marker = data[at + 1]
-        if marker == 0xD9:
-            yield marker, at + 2, at + 2
-            return
-        end = at + 2 + struct.unpack_from(">H", data, at + 2)[0]
-        if end > len(data):
-            raise ValueError("expected all of a JPEG, the file is cut short")
-        yield marker, at + 4, end
-        at = end
-        if marker == 0xDA:
-            at = _scan(data, end)
-            yield 0, end, at
-
-
-def _scan(data: bytes, at: int) -> int:
-    """Return where coded pixels end: at a marker that is neither a stuffed byte nor a restart."""
-    while True:
-        at = data.find(b"\xff", at)
-        if at < 0 or at + 1 >= len(data):
-            raise ValueError("expected the end of a JPEG, the file is cut short")
-        if data[at + 1] not in (0x00, 0xFF, *range(0xD0, 0xD8)):
-            return at
-        at += 1 if data[at + 1] == 0xFF else 2
 
 
 def _application(marker: int, body: bytes) -> tuple[bytes, set[str]]:
