@@ -131,13 +131,11 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     What matters is skin, where it covers a hundredth of the picture, or else the blocks of most contrast and
     focus. A photograph that lacks less than a third of a stop is written as it is. 16 bits become 8.
     """
-    import numpy as np
-
+    from hdrlab.core.arrays import to_256
     from hdrlab.enhance import battiato, skin
     from hdrlab.io import photos
 
-    image = photos.read_photo(photo)
-    Z = image if image.dtype == np.uint8 else ((image.astype(np.uint32) + 128) // 257).astype(np.uint8)
+    Z = to_256(photos.read_photo(photo))
     found = battiato.correct(Z, by=by, find_skin=skin.FINDERS[way], target=target)
     photos.write_picture(out, found.picture)
     click.echo(

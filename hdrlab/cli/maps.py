@@ -11,14 +11,16 @@ from hdrlab.cli import common
 from hdrlab.cli.terminal import visible
 from hdrlab.pipeline import catalogue
 
+BRIGHT = ("ultrahdr", "png", "avif", "jxl")
 WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
 
 
 @common.command()
 @click.argument("source", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
-@common.choice("--to", ["picture", "ultrahdr"], help="ultrahdr: a .jpg that lights up on a bright screen.")
-@click.option("--headroom", default=8.0, help="Of ultrahdr: the brightest light, in times of white.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="Picture: .png, .jpg, .tif; .avif, .jxl.")
+@common.choice("--to", ["picture", *BRIGHT], help="All but picture light up on a bright screen, see below.")
+@click.option("--headroom", default=8.0, help="Of a bright screen: the brightest light over white.")
+@common.choice("--primaries", ["bt2020", "p3"], help="Of png and avif, see below.")
 @common.operator("--operator")
 @click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
 @click.option(
@@ -31,6 +33,7 @@ def tonemap(
     out: Path,
     to: str,
     headroom: float,
+    primaries: str,
     operator: str,
     knobs: tuple[str, ...],
     saturation: float | None,
@@ -45,13 +48,21 @@ def tonemap(
 
     An Ultra HDR picture (ISO 21496-1) is the picture for any program, with gains that lead from it to the
     map, up to --headroom, for screens that can be brighter than white. Such a .jpg can be SOURCE as well.
+
+    By --to png (16 bits) and avif (10 bits) the light of the map itself is coded by PQ (SMPTE ST 2084), with
+    white at 203 cd/m2 and as bright as the operator made it; a program that knows no PQ shows it pale. By
+    --to jxl it is kept for the archive, as floats without loss or headroom. A suffix .avif or .jxl is enough.
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
     from hdrlab.io import photos as files
     from hdrlab.io.maps import ultrahdr
+    from hdrlab.io.screens import write
+    from hdrlab.pipeline import screens
     from hdrlab.pipeline.pictures import find_operator
 
+    suffix = out.suffix.lower()[1:]
+    to = suffix if to == "picture" and suffix in ("avif", "jxl") else to
     E = common.read_map(source, clean)
     settings = dict(common.knob(one) for one in knobs)
     check_knobs("tonemap", find_operator(operator), settings)
@@ -59,8 +70,12 @@ def tonemap(
         made = pipeline.develop_and_describe(E, operator, saturation=saturation, way=way, **settings)
         if to == "ultrahdr":
             ultrahdr.write_picture(out, made.picture, E, headroom=headroom)
-        else:
+        elif to == "picture":
             files.write_picture(out, made.picture)
+        else:
+            hdr = screens.light(made.picture, E, headroom=float("inf") if to == "jxl" else headroom)
+            v = hdr if to == "jxl" else screens.signal(hdr, primaries=primaries)
+            write(out, to, v, primaries=primaries)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 

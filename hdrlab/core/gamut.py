@@ -26,6 +26,9 @@ from hdrlab.core.colour import LUMINANCE
 from hdrlab.core.types import F32, F64, ArrayLike, Mask
 
 SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)  # ITU-R BT.709, white D65
+# of screens that show more colours: ITU-R BT.2020, and Display P3, whose primaries are of SMPTE RP 431-2
+WIDE = {"bt2020": (0.708, 0.292, 0.170, 0.797, 0.131, 0.046, *SRGB[6:])}
+WIDE |= {"p3": (0.680, 0.320, 0.265, 0.690, 0.150, 0.060, *SRGB[6:])}
 BRADFORD = np.array([[0.8951, 0.2664, -0.1614], [-0.7502, 1.7135, 0.0367], [0.0389, -0.0685, 1.0296]])
 
 

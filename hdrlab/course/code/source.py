@@ -166,14 +166,9 @@ def _resolved(at: str, use: Use) -> Found | None:
     if original in module(source).definitions:
         return Found(Key(source, original), use.node)
     inner = f"{source}.{original}"
-    if _is_module(inner) and use.attribute in module(inner).definitions:  # a module's function
+    if find_spec(inner) and use.attribute in module(inner).definitions:  # a module's function
         return Found(Key(inner, use.attribute), use.whole)
     raise ValueError(f"{at}, line {use.node.lineno}: {name} cannot be copied from {source}")
-
-
-@cache
-def _is_module(dotted: str) -> bool:
-    return find_spec(dotted) is not None
 
 
 def statements(key: Key) -> list[ast.stmt]:

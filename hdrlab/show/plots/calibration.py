@@ -92,12 +92,6 @@ def calibration(g: F64, medians: F64, times: ArrayLike, *, title: str = "") -> F
     return figure
 
 
-def _shade(ax: Axes) -> None:
-    """Shade the levels below 10 and above 250, where no method is evaluated."""
-    for low, high in ((0, LOW_LEVEL), (HIGH_LEVEL, 255)):
-        ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
-
-
 def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     """Draw a line per frame, the channels' mean: pixel level across, stops up; dark lines are short times."""
     ax = ax or plots.axes()
@@ -109,7 +103,8 @@ def draw_residuals(r: F64, times: ArrayLike, *, ax: Axes | None = None) -> Axes:
     most = max(0.1, 1.5 * float(np.quantile(sizes, 0.99))) if len(sizes) else 0.1  # but for rare levels
     ax.axhline(0, color="#1A1A1A", linewidth=0.8)
     ax.set(xlabel="pixel level Z", ylabel="g(Z) − ln E − ln t, stops", xlim=(0, 255), ylim=(-most, most))
-    _shade(ax)
+    for low, high in ((0, LOW_LEVEL), (HIGH_LEVEL, 255)):
+        ax.axvspan(low, high, color="#EFEFEF", linewidth=0, zorder=0)
     ax.legend(fontsize=7, ncols=3, loc="lower center", framealpha=0.9)
     return ax
 
