@@ -75,12 +75,15 @@ def task_of(name: str) -> str:
     >>> task_of("scale_steps_no_threshold"), task_of("scale_too_low")
     ('scale_steps', 'scale')
     """
-    return max((id for id in _ids() if name.startswith(f"{id}_")), key=len)
+    tasks = [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
+    return max((id for id in tasks if name.startswith(f"{id}_")), key=len)
 
 
 @cache
-def _ids() -> list[str]:
-    return [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
+def solutions(tasks: tuple[plan.Task, ...]) -> Mapping[str, str]:
+    """Return the library's text for each of the tasks of a homework: a cell that stands alone."""
+    blocks = inline.inlined({task.id: task.function for task in tasks})
+    return {id: block.text for id, block in blocks.items()}
 
 
 def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
@@ -104,9 +107,8 @@ def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
 def _changed(name: str) -> Callable[..., Any]:
     task = task_of(name)
     tasks = next(one.tasks for one in plan.read().homeworks.values() if task in [own.id for own in one.tasks])
-    blocks = inline.inlined({own.id: own.function for own in tasks})
     scope: dict[str, Any] = {"__name__": name}
-    exec("\n\n\n".join(put_in({id: block.text for id, block in blocks.items()}, name).values()), scope)
+    exec("\n\n\n".join(put_in(solutions(tasks), name).values()), scope)
     return scope[task]
 
 

@@ -7,8 +7,7 @@ import json
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from hdrlab.course.checks.misconceptions import put_in
-from hdrlab.course.code import inline
+from hdrlab.course.checks.misconceptions import put_in, solutions
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework
 
@@ -30,8 +29,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "smoothness * w[z]" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (False, False)
     """
-    blocks = inline.inlined({task.id: task.function for task in homework.tasks})
-    cells = {task.id: blocks[task.id].text for task in homework.tasks}
+    cells = dict(solutions(homework.tasks))
     for name in mistakes:
         cells = put_in(cells, name)
     return cells

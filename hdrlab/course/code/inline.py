@@ -146,8 +146,8 @@ def _text(key: Key, names: dict[Key, str]) -> str:
                 raise ValueError(f"{key.module}, line {node.lineno}: expected the name on one line")
             edit = (node.col_offset, node.end_col_offset or 0, names.get(target, target.name))
             edits.setdefault(node.lineno, []).append(edit)
-    own = [within for one in statements(key) for within in ast.walk(one)]
-    for inner in own if renamed != key.name else ():
+    own = statements(key) if renamed != key.name else ()
+    for inner in (within for one in own for within in ast.walk(one)):
         if isinstance(inner, ast.Name) and inner.id == key.name:
             place = (inner.col_offset, inner.end_col_offset or 0, renamed)
             edits.setdefault(inner.lineno, []).append(place)
