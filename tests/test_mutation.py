@@ -47,14 +47,14 @@ def test_every_operator_number_and_condition_is_changed_but_words_types_and_refu
     assert said == CHANGES
 
 
-@pytest.mark.parametrize("file", ["hdrlab/radiance/merge.py", "hdrlab/course/plan.py"])
+@pytest.mark.parametrize("file", ["hdrlab/radiance/merge.py", "hdrlab/course/submission.py"])
 def test_a_mutant_is_python_and_differs_in_one_place(file):
     text = (ROOT / file).read_text(encoding="utf8")
-    found = mutants(file, text)
+    found, whole = mutants(file, text), ast.dump(ast.parse(text))
     assert len(found) > 20
     for one in found:
         changed = one.applied(text)
-        assert ast.dump(ast.parse(changed)) != ast.dump(ast.parse(text))
+        assert ast.dump(ast.parse(changed)) != whole
         assert changed.replace(one.new, "", 1) != changed
         assert len(changed) - len(text) == len(one.new) - len(one.old)
 
@@ -87,10 +87,10 @@ def test_a_mutant_is_killed_by_a_test_that_fails_or_hangs_and_survives_one_that_
 
 def test_what_is_listed_as_changing_nothing_stands_in_its_file_and_has_a_reason():
     listed = tomllib.loads((mutation.HERE / "equivalent.toml").read_text(encoding="utf8"))["equivalent"]
-    for one in listed:
-        text = (ROOT / one["file"]).read_text(encoding="utf8")
-        assert any(
-            (each.text, each.old, each.new) == (one["text"], one["old"], one["new"])
-            for each in mutants(one["file"], text)
-        ), one
-        assert len(one["why"]) > 10
+    there = {
+        (file, one.text, one.old, one.new)
+        for file in {one["file"] for one in listed}
+        for one in mutants(file, (ROOT / file).read_text(encoding="utf8"))
+    }
+    assert [one for one in listed if (one["file"], one["text"], one["old"], one["new"]) not in there] == []
+    assert all(len(one["why"]) > 10 for one in listed)

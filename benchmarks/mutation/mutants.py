@@ -67,23 +67,14 @@ def mutants(file: str, text: str) -> list[Mutant]:
     lines = [len(line.encode()) for line in words]
     begin = [0, *(sum(lines[:k]) for k in range(1, len(lines) + 1))]
     raw, found = text.encode(), []
-    for node, new in changes(ast.parse(text)):
-        start, end = (
-            begin[node.lineno - 1] + node.col_offset,
-            begin[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0),
-        )
-        one = Mutant(
-            file,
-            node.lineno,
-            node.col_offset,
-            words[node.lineno - 1].strip(),
-            start,
-            end,
-            raw[start:end].decode(),
-            new,
-        )
-        if one.old != one.new and compiles(one.applied(text)):
-            found.append(one)
+    for top in ast.parse(text).body:
+        first, last = begin[top.lineno - 1], begin[top.end_lineno or 0]
+        for node, new in changes(top):
+            start = begin[node.lineno - 1] + node.col_offset
+            end = begin[(node.end_lineno or 0) - 1] + (node.end_col_offset or 0)
+            old, line = raw[start:end].decode(), words[node.lineno - 1].strip()
+            if old != new and compiles((raw[first:start] + new.encode() + raw[end:last]).decode()):
+                found.append(Mutant(file, node.lineno, node.col_offset, line, start, end, old, new))
     return sorted(set(found), key=lambda one: (one.start, one.end, one.new))
 
 
