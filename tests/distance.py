@@ -11,6 +11,7 @@ import io
 import tokenize
 import tomllib
 from collections import Counter, defaultdict
+from functools import cache
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -128,8 +129,9 @@ class Library:
         return count
 
 
+@cache
 def read(package=ROOT / "hdrlab"):
-    """Return the Library of a package."""
+    """Return the Library of a package; reading takes seconds."""
     sources = {}
     for path in sorted(package.rglob("*.py")):
         name = ".".join(path.relative_to(package.parent).with_suffix("").parts).removesuffix(".__init__")

@@ -72,15 +72,15 @@ def find(place):
         return module, getattr(module, name)
 
 
-def link(place):
+def link(place, modules):
     name = find(place)[0].__name__
-    page = f"reference/{reference.short(name)}.rst" if name in reference.modules() else "instructors.md"
+    page = f"reference/{reference.short(name)}.rst" if name in modules else "instructors.md"
     return f"[`{place}`]({page})"
 
 
 def written():
     """Return the page."""
-    tasks = timetable.tasks()
+    tasks, modules = timetable.tasks(), reference.modules()
     lines = [HEAD + "; ".join(f"{letter}, {name}" for letter, name in PAPERS.items()) + ".", ""]
     lines += ["| system | library | steps in a notebook | graded |", "|---|---|---|---|"]
     for n, (name, papers, places, sections, graded) in enumerate(table(), 1):
@@ -89,7 +89,7 @@ def written():
             each = ", ".join(f"“{heading}”" for other, heading in sections if other == number)
             played.append(f"[{number}](notebooks/{path_of(number).name}): {each}")
         checked = [f"[`{task}`](assignments/{tasks[task][0]}.ipynb)" for task in graded]
-        cells = [", ".join(map(link, places)), "; ".join(played), ", ".join(checked)]
+        cells = [", ".join(link(place, modules) for place in places), "; ".join(played), ", ".join(checked)]
         lines.append(f"| {n} {name} ({', '.join(papers)}) | {' | '.join(cells)} |")
     return "\n".join(lines) + "\n"
 

@@ -1,7 +1,5 @@
 """The slide is the code: how far each task and each whole verb is from its code, and how large rooms are."""
 
-import functools
-
 import distance
 import pytest
 
@@ -38,7 +36,6 @@ def half(
 ):
     return x / 2
 """
-library = functools.cache(distance.read)  # it takes seconds
 TOY = distance.Library({"toy": "", "toy.a": A, "toy.b": B, "toy.c": C})
 
 
@@ -51,15 +48,15 @@ def test_lines_are_those_of_what_a_function_calls_without_docstrings_and_comment
 
 @pytest.mark.parametrize("function", distance.tasks().values(), ids=distance.tasks())
 def test_a_task_needs_at_most_60_lines_of_3_files(function):
-    files, lines = library().distance(function)
+    files, lines = distance.read().distance(function)
     assert files <= 3 and lines <= 60
 
 
 @pytest.mark.parametrize("verb", distance.VERBS)
 def test_a_whole_verb_needs_at_most_120_lines_of_5_files(verb):
-    files, lines = library().distance(f"hdrlab.{verb}")
+    files, lines = distance.read().distance(f"hdrlab.{verb}")
     assert files <= 5 and lines <= 120
 
 
 def test_tasks_and_rooms_stay_below_their_ceilings():
-    assert not list(distance.excesses(library()))
+    assert not list(distance.excesses(distance.read()))
