@@ -5,6 +5,7 @@ import doctest
 import importlib
 import importlib.util
 import pkgutil
+import tempfile
 from functools import cache
 from pathlib import Path
 
@@ -46,6 +47,7 @@ def test_every_module_can_be_imported():
 @pytest.mark.parametrize("name", [name for name in MODULES if ">>> " in source(name)])
 def test_examples_run(name, monkeypatch, tmp_path):
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
     module = importlib.import_module(name)
     flags = doctest.ELLIPSIS | doctest.NORMALIZE_WHITESPACE
     with np.printoptions(legacy=False):  # whoever imports colour-science prints as NumPy 1.13 did

@@ -7,10 +7,12 @@ import os
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from unittest import mock
 
 import errands
 import pytest
@@ -32,9 +34,13 @@ test_cluster.graded({address!r}, Path({folder!r}), errands.slow)
 @contextmanager
 def clustered(workers, threads, at_once=0):
     """Start a scheduler, and so many workers: at once, or a little later."""
-    knobs = {"processes": True, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
+    knobs = {"threads_per_worker": threads, "dashboard_address": "127.0.0.1:0", "silence_logs": 50}
     ended = threading.Event()
-    with LocalCluster(n_workers=at_once, threads_per_worker=threads, **knobs) as running:
+    with (
+        tempfile.TemporaryDirectory() as scratch,  # what a worker that is killed leaves
+        mock.patch.dict(os.environ, {"TMPDIR": scratch}),
+        LocalCluster(n_workers=at_once, processes=True, local_directory=scratch, **knobs) as running,
+    ):
         keeper = threading.Thread(target=_keep, args=(running, workers, at_once, ended))
         keeper.start()
         try:

@@ -153,8 +153,7 @@ def test_after_a_kill_at_any_of_twenty_moments_the_results_are_the_same_bytes(fo
 
 
 @PROC
-def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole, monkeypatch):
-    monkeypatch.setenv("TMPDIR", str(folder / "scratch"))
+def test_a_cluster_whose_workers_are_killed_gives_the_same_bytes(folder, whole):
     with test_cluster.clustered(2, 1, at_once=2) as running:
         words = "--cluster", running.scheduler_address
         undisturbed, _ = graded(folder, folder / "cluster", random.Random(1), 0, *words)
