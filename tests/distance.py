@@ -7,8 +7,6 @@ inside hdrlab; what is looked up at run time is not.
 """
 
 import ast
-import io
-import tokenize
 import tomllib
 from collections import Counter, defaultdict
 from functools import cache
@@ -40,23 +38,19 @@ TASK, VERB = (3, 60), (5, 120)
 # lines
 TASKS_TOGETHER, LESSONS_TOGETHER, PACKAGE = 900, 9_000, 22_000
 
-LAYOUT = {
-    getattr(tokenize, name)
-    for name in ("COMMENT", "NL", "NEWLINE", "INDENT", "DEDENT", "ENCODING", "ENDMARKER")
-}
 DOCUMENTED = (ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
 def code_lines(text):
     """Return the numbers of the lines that hold code."""
-    lines = set()
-    for token in tokenize.generate_tokens(io.StringIO(text).readline):
-        if token.type not in LAYOUT:
-            lines.update(range(token.start[0], token.end[0] + 1))
+    words = [line.strip() for line in text.split("\n")]
+    lines, docstrings = {n for n, word in enumerate(words, 1) if word and word[0] != "#"}, set()
     for node in ast.walk(ast.parse(text)):
+        if isinstance(node, ast.Constant | ast.JoinedStr):  # a long string is code, whatever it holds
+            lines.update(range(node.lineno, node.end_lineno + 1))
         if isinstance(node, DOCUMENTED) and ast.get_docstring(node) is not None:
-            lines.difference_update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
-    return lines
+            docstrings.update(range(node.body[0].lineno, node.body[0].end_lineno + 1))
+    return lines - docstrings
 
 
 class Library:
