@@ -15,7 +15,6 @@ import tomllib
 from collections.abc import Callable
 from contextlib import suppress
 from datetime import datetime
-from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -130,15 +129,7 @@ def read(path: str | Path | None = None) -> Plan:
     >>> plan.homeworks["hw2"].points
     100.0
     """
-    return _own() if path is None else _read(Path(path))
-
-
-@cache
-def _own() -> Plan:
-    return _read(PLAN)
-
-
-def _read(path: Path) -> Plan:
+    path = PLAN if path is None else Path(path)
     try:
         sheets = tomllib.loads(path.read_text(encoding="utf8"))
     except (ValueError, RecursionError) as error:  # of digits beyond counting, and brackets in brackets

@@ -25,8 +25,8 @@ def encode_webp(image: Image, *, quality: int = 85, lossless: bool = False) -> b
 
     The encoder's efforts take half of the time of its defaults, or less, for 2 to 8 % more bytes.
     """
-    effort = {"method": 1, "quality": 25} if lossless else {"method": 2, "quality": quality}
-    return _encode(image, format="WEBP", lossless=lossless, **effort)
+    method, quality = (1, 25) if lossless else (2, quality)
+    return _encode(image, format="WEBP", lossless=lossless, method=method, quality=quality)
 
 
 def encode_jpeg(image: Image, *, quality: int = 80) -> bytes:

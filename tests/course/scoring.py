@@ -12,6 +12,8 @@ from hdrlab.course.checks import misconceptions, plugin
 from hdrlab.course.reports import causes
 from hdrlab.course.reports.results import Check
 
+PLAN = plan.read()
+
 
 def functions(path):
     """Return the functions of a file by their names."""
@@ -50,7 +52,7 @@ def score(task, subject, seed=0):
     As in grading: a well-known mistake that explains all answers costs half at most.
     """
     said = answered(task, subject, seed)
-    asked = plan.read().task(task)
+    asked = PLAN.task(task)
     found = misconceptions.closest(asked, subject.calls[: plugin.CALLS]) if any(said.values()) else None
     worth = [Fraction(str(points)) for _, _, points, *_ in checks(task)]
     each = [

@@ -85,8 +85,7 @@ def keeps_the_light_the_right_way_up(tonemap):
 
 def exposure(tonemap):
     """The unit of L cancels: a power of two to the last bits, any other factor to a twentieth of a level."""
-    for L in (scene(), RADIANCES["zeros among it"]):
-        Ld = tonemap(L)
+    for L, Ld in [(L, tonemap(L)) for L in (scene(), RADIANCES["zeros among it"])]:
         for factor, atol in ((2.0**-20, 1e-5), (2.0**20, 1e-5), (3.7e-6, 2e-4), (5.1e7, 2e-4)):
             assert np.allclose(tonemap(L * np.float32(factor)), Ld, atol=atol), factor
 

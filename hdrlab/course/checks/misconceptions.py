@@ -75,8 +75,12 @@ def task_of(name: str) -> str:
     >>> task_of("scale_steps_no_threshold"), task_of("scale_too_low")
     ('scale_steps', 'scale')
     """
-    tasks = [task.id for homework in plan.read().homeworks.values() for task in homework.tasks]
-    return max((id for id in tasks if name.startswith(f"{id}_")), key=len)
+    return max((one.id for tasks in _sheets() for one in tasks if name.startswith(f"{one.id}_")), key=len)
+
+
+@cache
+def _sheets() -> list[tuple[plan.Task, ...]]:
+    return [homework.tasks for homework in plan.read().homeworks.values()]
 
 
 @cache
@@ -106,7 +110,7 @@ def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
 @cache
 def _changed(name: str) -> Callable[..., Any]:
     task = task_of(name)
-    tasks = next(one.tasks for one in plan.read().homeworks.values() if task in [own.id for own in one.tasks])
+    tasks = next(tasks for tasks in _sheets() if task in [one.id for one in tasks])
     scope: dict[str, Any] = {"__name__": name}
     exec("\n\n\n".join(put_in(solutions(tasks), name).values()), scope)
     return scope[task]
@@ -127,8 +131,7 @@ def closest(asked: plan.Task, calls: Sequence[Call]) -> Misconception | None:
     far = [difference(call[2], truth) for call, truth in zip(calls, truths, strict=True)]
     if max(far, default=0) <= ROUNDING or all(came is None for _, _, came in calls):
         return None
-    scores = [(_distance(one, calls, far), one) for one in of_task(asked)]
-    agreeing = [(score, one) for score, one in scores if score is not None]
+    agreeing = [(score, one) for one in of_task(asked) if (score := _distance(one, calls, far)) is not None]
     return min(agreeing, key=lambda pair: pair[0])[1] if agreeing else None
 
 

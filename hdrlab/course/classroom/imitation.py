@@ -5,6 +5,7 @@ What is right is the library's own function, and a mistake changes it.
 
 import json
 from collections.abc import Iterable, Mapping
+from functools import reduce
 from typing import Any
 
 from hdrlab.course.checks.misconceptions import put_in, solutions
@@ -29,10 +30,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "smoothness * w[z]" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (False, False)
     """
-    cells = dict(solutions(homework.tasks))
-    for name in mistakes:
-        cells = put_in(cells, name)
-    return cells
+    return reduce(put_in, mistakes, dict(solutions(homework.tasks)))
 
 
 def notebook(homework: Homework, cells: Mapping[str, str] | None = None) -> str:
