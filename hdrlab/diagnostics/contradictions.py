@@ -76,9 +76,8 @@ class Contradictions(NamedTuple):
     def local(self) -> bool:
         """Whether one response, and one factor per frame, cannot explain the bracket."""
         by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
-        if not len(by):
-            return False
-        return bool(np.median(by) > LOCAL or (np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT))
+        slight = len(by) > 0 and np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT
+        return bool(slight or (len(by) and np.median(by) > LOCAL))
 
     @property
     def vignetted(self) -> bool:

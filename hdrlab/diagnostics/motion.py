@@ -6,10 +6,14 @@ r    residuals      x - (sum_j w x) / (sum_j w)
 R    of a block     (P, h, w), sum w r / sum w over its pixels and channels, so that noise averages out, less
                     the frame's median: where a frame is off as a whole, its time or the response is
 d    deviation      (h, w), sqrt(sum_j W R^2 / sum_j W), W the sum of w over the block
+b    of a row       (P, h), sum w r / sum w over a row of blocks, less the frame's best cubic in y
 
 Leaves, water and people make d large where they are, though most pixels of each level agree, so that a median
 over levels, as in `consistency`, does not see them. An edge that is off by a pixel does so along a line;
 what counts is at least two blocks wide and high.
+
+Lamps flicker, and most cameras read row after row: then b has bands, and the same of columns has none. A sky
+above the ground, where a response is a little wrong, makes no bands, for a cubic explains it.
 """
 
 import numpy as np
@@ -31,12 +35,14 @@ STILL = 0.2 * np.log(2)
 FEWEST = 0.1
 # of the blocks measured: of a still scene, film scanned frame by frame included, up to 0.009 deviate
 MOVED = 0.02
+# stops of b, and times what columns show: still scenes under steady light stay below 0.04, and 1.8
+BANDED, ACROSS = 0.055, 2.5
 
 
 def measure_motion(
     images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike, *, valid: ArrayLike | None = None
-) -> float:
-    """Return the share of the picture in which the photographs contradict each other.
+) -> tuple[float, float]:
+    """Return the share of the picture in which the photographs contradict each other, and by bands of light.
 
     Parameters
     ----------
@@ -48,8 +54,10 @@ def measure_motion(
 
     Returns
     -------
-    float
-        Of the blocks that two photographs measure; 0 where these are few. Above MOVED, it is motion.
+    share, bands : float
+        The share is one of the blocks that two photographs measure; 0 where these are few. Above MOVED, it is
+        motion. Bands are the RMS of b in stops, 0 unless it is ACROSS times that of columns. Above BANDED,
+        lamps flicker.
 
     Raises
     ------
@@ -62,7 +70,7 @@ def measure_motion(
     >>> wall, ball = np.full((60, 90), 0.5, np.float32), movers.ball((60, 90), (30, 45), 12, 2.0)
     >>> for step in (0, 30):
     ...     taken = movers.shoot(wall, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
-    ...     measure_motion(taken.images, taken.times, responses.true_g("film"), np.ones(256)) > MOVED
+    ...     measure_motion(taken.images, taken.times, responses.true_g("film"), np.ones(256))[0] > MOVED
     False
     True
     """
@@ -75,6 +83,7 @@ def measure_motion(
     r = curves.T.astype(np.float32).take(place) - np.log(t).astype(np.float32)[:, None, None, None]
     r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
     R, W = sum_blocks(trust * r), sum_blocks(trust)
+    rows, columns = (measure_bands(R.sum(axis=k), W.sum(axis=k), Z.shape[-1] * R.shape[k]) for k in (2, 1))
     W[W < FAINT * BLOCK**2 * Z.shape[-1]] = 0
     R /= np.maximum(W, 1e-9)
     for one, own in zip(R, W, strict=True):
@@ -83,7 +92,18 @@ def measure_motion(
     measured = (W > 0).sum(axis=0) > 1
     whole = sliding_window_view(np.pad(measured & (d > STILL), 1), (2, 2)).all(axis=(2, 3))
     moved = sliding_window_view(whole, (2, 2)).any(axis=(2, 3))
-    return float(moved.sum() / measured.sum()) if np.mean(measured) > FEWEST else 0.0
+    share = float(moved.sum() / measured.sum()) if np.mean(measured) > FEWEST else 0.0
+    return share, rows * (rows > ACROSS * columns)
+
+
+def measure_bands(R: F32, W: F32, count: int) -> float:
+    """Return the RMS of b in stops, from sums of w r and of w (P, n) over so many blocks and channels."""
+    W = np.where(W > FAINT / 2 * BLOCK**2 * count, W, 0)
+    b, A = R / np.maximum(W, 1e-9), np.vander(np.linspace(-1, 1, R.shape[1]), 4)
+    for one, own in zip(b, np.sqrt(W), strict=True):
+        one -= A @ np.linalg.lstsq(own[:, None] * A, own * one, rcond=None)[0]
+    W[:, (W > 0).sum(axis=0) < 2] = 0
+    return float(np.sqrt((W * b**2).sum() / max(W.sum(), 1e-9)) / np.log(2))
 
 
 def weigh_levels(Z: Array, w: Array, top: int, valid: Mask | None) -> F32:

@@ -45,9 +45,7 @@ def find_outlying_frames(
         rests = [[k for k in kept if k != j] for j in kept]
         errors = [measure_misfit(found.of(rest), B[rest]) for rest in rests]
         best = int(np.argmin(errors))
-        rivals = tuple(
-            j for j, left in zip(kept, errors, strict=True) if left <= AGREEING and j != kept[best]
-        )
+        rivals = tuple(j for j, e in zip(kept, errors, strict=True) if e <= AGREEING and j != kept[best])
         error, kept = errors[best], rests[best]
     return (tuple(sorted(set(range(len(B))) - set(kept))), rivals) if error <= AGREEING else ((), ())
 

@@ -42,6 +42,8 @@ CORE = 0.01 * np.log(2)
 FEWEST = 5
 # patches that a pair of frames counts for: common errors do not average away
 MOST = 100
+# of weights by what is left, which then hardly change
+ROUNDS = 4
 # w(z) g''(z), as Debevec weights it
 CURVATURES = second_differences(W, 1)
 
@@ -127,21 +129,14 @@ def step_residuals(found: Fit, B: F64) -> F64:
 
 
 def fit_steps(
-    H: F64,
-    B: F64,
-    Q: F64,
-    *,
-    g: F64 | None = None,
-    sd: float = 1 / 6,
-    smoothness: float = 1.0,
-    rounds: int = 4,
+    H: F64, B: F64, Q: F64, *, g: F64 | None = None, sd: float = 1 / 6, smoothness: float = 1.0
 ) -> Fit:
     """Return the robust Fit: patches that miss by much more than their pair's others count less each round.
 
     sd is in stops here.
     """
     V0 = V = weight_pairs(H)
-    for _ in range(rounds):
+    for _ in range(ROUNDS):
         found = solve_steps(V, B, Q, g=g, sd=sd * np.log(2), smoothness=smoothness)
         r2 = step_residuals(found, B) ** 2
         total = np.maximum(V.sum(axis=(2, 3), keepdims=True), 1e-9)

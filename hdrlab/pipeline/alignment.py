@@ -50,11 +50,7 @@ class Registration(NamedTuple):
 
 
 def register(
-    images: ArrayLike,
-    method: str = "auto",
-    *,
-    times: ArrayLike | None = None,
-    g: Curve = None,
+    images: ArrayLike, method: str = "auto", *, times: ArrayLike | None = None, g: Curve = None
 ) -> Registration:
     """Return the Registration of photographs by a method of METHODS.
 

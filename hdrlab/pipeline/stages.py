@@ -9,11 +9,11 @@ from functools import partial
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.core import weights
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
+from hdrlab.core.types import F64
 from hdrlab.diagnostics import consistency, motion
 from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions, warn_of_contradictions
 from hdrlab.diagnostics.outlying_frames import find_outlying_frames
@@ -141,7 +141,7 @@ def assemble_steps(
     E = merge(images[few], seconds, g, w(g), valid=shown, repair=False).E
     medians = consistency.measure_level_exposures(images[few], seconds, E, valid=shown)
     contrary = find_contradictions(images, seconds, valid=valid)
-    moved = motion.measure_motion(images, seconds, g, w(g), valid=valid)
+    moved, bands = motion.measure_motion(images, seconds, g, w(g), valid=valid)
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
     if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
         state = state._replace(bracket=state.bracket._replace(images=images[:0].copy()))
@@ -152,8 +152,8 @@ def assemble_steps(
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
-    left = moved if state.moving is None and not apart else 0.0
-    yield assess(state, medians, contrary, left)
+    still = state.moving is not None or apart
+    yield assess(state, medians, contrary, *((0.0, 0.0) if still else (moved, bands)))
 
 
 def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
@@ -215,15 +215,15 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     return state._replace(E=state.E * np.float32(k), s=s, notes=(*state.notes, note))
 
 
-def assess(state: Assembly, medians: NDArray[np.float64], found: Contradictions, moved: float) -> Assembly:
+def assess(state: Assembly, medians: F64, found: Contradictions, moved: float, bands: float) -> Assembly:
     """Return the Assembly with the medians of each level, and the warnings that follow from what was found.
 
-    `moved` is the share of the picture in which ghosts are left; it counts where nothing else explains it.
+    `moved` is the share of the picture in which ghosts are left, `bands` those of light, stops; each counts
+    where nothing before it explains what is there.
     """
     state = state._replace(stage="compare", medians=medians)
     if state.spread > timing.WORTHLESS:
-        why = f"the photographs contradict each other by {state.spread:.2f} stops"
-        state = state._replace(fallback=why)
+        state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
     names = state.bracket.names
     if np.isnan(state.spread):
         why = "no level stands in two frames, so nothing supports times and map: take photographs in between"
@@ -233,6 +233,11 @@ def assess(state: Assembly, medians: NDArray[np.float64], found: Contradictions,
         said = (
             f"the photographs contradict each other in {100 * moved:.0f} % of the picture, as where leaves, "
             "water or people moved, and the map shows all of them there: --ghosts regions shows one"
+        )
+    if not said and bands > motion.BANDED:
+        said = (
+            f"lamps flicker: the light changed by {bands:.2f} stops in bands across the picture, and as a "
+            "whole as well; no times put that right: take daylight, or exposures of 1/25 s and longer"
         )
     if not said and state.spread > CONTRADICTION:
         stops = zip(names, consistency.measure_deviations(medians), strict=True)
