@@ -82,10 +82,7 @@ def calibrate(
     )
     ready = "times" if estimate_times or times == "estimate" else "align"
     steps = pipeline.assemble_steps(
-        bracket,
-        align=align,
-        response=response,
-        times="estimate" if ready == "times" else "stated",
+        bracket, align=align, response=response, times="estimate" if ready == "times" else "stated"
     )
     state = next(one for one in steps if one.stage == ready)
     common.say("note", (*state.notes, *state.doubts))

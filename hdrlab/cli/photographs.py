@@ -95,9 +95,8 @@ def assemble(
     radiance.format_of(out)  # an unknown suffix is better known before the work than after it
     if uncertainty:
         require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
-    methods["method"] = merge
-    methods["times"] = "stated" if keep_times or times == "stated" else "correct"
-    methods["times"] = "estimate" if times == "estimate" else methods["times"]
+    kept = "stated" if keep_times or times == "stated" else "correct"
+    methods |= {"method": merge, "times": "estimate" if times == "estimate" else kept}
     knobs = {"response": recover, "release": not (report or uncertainty)}
     assembly = _assembled(read_bracket(photos, times, mask, stops), methods | knobs)
     if uncertainty:

@@ -5,6 +5,7 @@ stops    errors        (P,), log2(exposure by the pixels / exposure stated), mos
 regions  disagreement  (P - 1,), stops by which parts of the picture disagree, under the best of factors
 significance           (P - 1,), the same over the standard error of a part's median
 corners  change        (P - 1,), stops from the middle to the corners
+tints    another white balance   (P,), stops by which one channel is too bright, and another too dark
 cost     in the map    stops, RMS over the picture: what the errors change where each frame has its weight
 
 The map follows its frames: one at the end of a bracket, .7 stops off, draws it along and shows in the
@@ -16,6 +17,8 @@ likelier than several middling ones.
 
 If factors explain all, times are wrong. If parts of one picture ask for different factors, none are: the
 corners, where the aperture changed and with it the vignetting; or light, or a camera's processing by place.
+If channels ask for factors of their own, one up and one down in the same frame, white balance changed. A
+curve for each channel hides that from the map's spread.
 
 An error counts by what it costs. An end frame that is nearly black measures little, and bends by a camera's
 own processing: half a stop there leaves the map sound.
@@ -40,7 +43,7 @@ ENOUGH = 50
 PIXELS = 30_000
 # stops, the prior: here times are free, for the question is what is wrong and not what is likely
 LOOSE = 4.0
-# stops: true times of real brackets stay within 0.24
+# stops: true times of real brackets stay within 0.24, and tints of one white balance within 0.16
 WRONG = 0.25
 # stops in the map, RMS: a smaller error leaves it sound
 COST = 0.05
@@ -59,13 +62,14 @@ EXPLAINED = 0.015
 
 
 class Contradictions(NamedTuple):
-    """stops (P,); regions, significance, corners (P - 1,), NaN where not known; cost."""
+    """stops (P,); regions, significance, corners (P - 1,), NaN where not known; cost; tints (P,)."""
 
     stops: F64
     regions: F64
     significance: F64 = np.zeros(0)
     corners: F64 = np.zeros(0)
     cost: float = np.inf
+    tints: F64 = np.zeros(1)
 
     @property
     def wrong(self) -> tuple[int, ...]:
@@ -78,12 +82,6 @@ class Contradictions(NamedTuple):
         by, errors = (one[np.isfinite(one)] for one in (self.regions, self.significance))
         slight = len(by) > 0 and np.median(by) > SLIGHT and np.median(errors) > SIGNIFICANT
         return bool(slight or (len(by) and np.median(by) > LOCAL))
-
-    @property
-    def vignetted(self) -> bool:
-        """Whether the corners change against the middle."""
-        by = self.corners[np.isfinite(self.corners)]
-        return bool(len(by) and np.median(by) > SLIGHT)
 
 
 def find_contradictions(
@@ -125,11 +123,13 @@ def find_contradictions(
     frames, pairs = slice(start, stop + 1), slice(start, stop)
     if stop - start < 2 or np.ptp(B[frames]) == 0:
         return Contradictions(stops, *places)
-    here = B[frames]
-    best = response_steps.fit_steps(H[pairs], here, response_steps.free_directions(here), sd=LOOSE)
-    stops[frames] = response_steps.remove_trend(best.x, here) / np.log(2)
+    here, Q, tints = B[frames], response_steps.free_directions(B[frames]), np.zeros(len(B))
+    tables = H[pairs], *np.split(H[pairs], H.shape[1], axis=1)  # of all channels, and of each
+    best, *each = (response_steps.fit_steps(one, here, Q, sd=LOOSE) for one in tables)
+    x = np.stack([response_steps.remove_trend(one.x, here) for one in (best, *each)]) / np.log(2)
+    stops[frames], tints[frames] = x[0], np.minimum(x[1:].max(axis=0), -x[1:].min(axis=0))
     places[:, pairs] = measure_disagreement(found.of(frames), here, best)
-    return Contradictions(stops, *places)._replace(cost=measure_cost(stack, stops))
+    return Contradictions(stops, *places, measure_cost(stack, stops), tints)
 
 
 def measure_cost(stack: Array, stops: F64) -> float:
@@ -145,8 +145,7 @@ def measure_cost(stack: Array, stops: F64) -> float:
 def find_longest_run(informative: Mask) -> tuple[int, int]:
     """Return start and stop of the longest run of True."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], informative, [False]]).astype(int)))
-    runs = edges.reshape(-1, 2).tolist()
-    start, stop = max(runs, key=lambda run: run[1] - run[0], default=(0, 0))
+    start, stop = max(edges.reshape(-1, 2).tolist(), key=lambda run: run[1] - run[0], default=(0, 0))
     return start, stop
 
 
@@ -199,10 +198,17 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
 
     Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
     """
-    if found.vignetted:
+    if found.tints.max() > WRONG:
+        j = int(found.tints.argmax())
+        return (
+            f"{names[j]} has another white balance: a channel is too bright by {found.tints[j]:.2f} stops or "
+            "more, another too dark; leave it out, and set the white balance to a fixed one, such as daylight"
+        )
+    corners = found.corners[np.isfinite(found.corners)]
+    if len(corners) and np.median(corners) > SLIGHT:
         return (
             "the corners change against the middle of the picture by "
-            f"{np.nanmedian(found.corners):.2f} stops from one photograph to the next: with the aperture its "
+            f"{np.median(corners):.2f} stops from one photograph to the next: with the aperture its "
             "vignetting changed; keep the aperture fixed"
         )
     by = np.nanmedian(found.regions) if found.local else 0.0

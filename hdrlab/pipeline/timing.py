@@ -53,8 +53,7 @@ def space_by_stops(bracket: Bracket, stops: ArrayLike) -> Bracket:
     images, _, names, valid, linear = bracket
     if not np.all(np.asarray(stops) >= 0):
         raise ValueError(f"expected positive steps between the photographs in stops, got {stops!r}")
-    times = np.empty(len(images))
-    steps = np.broadcast_to(np.asarray(stops, float), (len(images) - 1,))
+    times, steps = np.empty(len(images)), np.broadcast_to(np.asarray(stops, float), (len(images) - 1,))
     times[mtb.by_brightness(images)] = 2 ** np.cumsum([0, *steps])
     return make_bracket(images, times, names, valid=valid, linear=linear)
 

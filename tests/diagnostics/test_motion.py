@@ -16,7 +16,18 @@ def share(step, **change):
     ball = movers.ball((60, 90), (30, 45), 12, 2.0)
     taken = movers.shoot(WALL, ball, movers.path(3, (0, step)), [0.25, 0.5, 1.0]).bracket
     given = {"images": taken.images, "times": taken.times, "g": G, "w": W} | change
-    return motion.measure_motion(**given)
+    return motion.measure_motion(**given)[0]
+
+
+def bands(axis, cycles=3, size=0.2):
+    """Bands of a wall under lamps whose light differs from row to row (0) or column to column (1)."""
+    n = WALL.shape[axis]
+    phases = [2 * np.pi * (cycles * np.arange(n) / n + j / 3) for j in range(3)]
+    lamps = [1 + size * np.sin(one) for one in phases]
+    times = np.array([0.25, 0.5, 1.0])
+    light = [WALL * (one[:, None] if axis == 0 else one) * t for one, t in zip(lamps, times, strict=True)]
+    Z = np.interp(np.log(light), G, np.arange(256)).round().astype(np.uint8)
+    return motion.measure_motion(Z, times, G, W)[1]
 
 
 def test_the_share_of_the_picture_that_moved_is_measured():
@@ -50,3 +61,20 @@ def test_leaves_and_water_are_noticed_where_the_spread_is_small(ill, tmp_path):
 def test_a_still_scene_through_sharpening_and_jpeg_is_not(tmp_path):
     found = pipeline.assemble(brackets.shoot(brackets.plan(tmp_path, 3)), align="none")
     assert found.moving is None and found.doubts == ()
+
+
+def test_lamps_that_flicker_make_bands_across_the_rows_and_not_along_them():
+    rms = 0.2 / np.sqrt(2) / np.log(2)
+    assert bands(0) == pytest.approx(rms, rel=0.2)
+    assert bands(1) == 0
+
+
+def test_light_that_differs_from_the_top_to_the_bottom_makes_no_bands():
+    assert bands(0, cycles=0.5) < motion.BANDED < bands(0, size=0.1)
+
+
+@pytest.mark.parametrize("i", [3, 5])
+def test_flicker_is_told_from_wrong_times(i, tmp_path):
+    plan = brackets.plan(tmp_path, i)
+    (said,) = pipeline.assemble(brackets.shoot(plan, ills.ILLS["flicker"]), align="none").doubts
+    assert said.startswith("lamps flicker: the light changed by 0.")

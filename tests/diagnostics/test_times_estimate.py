@@ -294,6 +294,24 @@ def test_corners_that_darken_with_the_aperture_are_told_from_local_tone_mapping(
     assert "the aperture" in warn_of_contradictions(find_contradictions(images, times), "abcde")
 
 
+@pytest.mark.parametrize(("count", "frame"), [(3, 1), (4, 0), (5, 2)])
+def test_a_frame_of_another_white_balance_is_named(taken, count, frame):
+    images, times, names, *_ = taken(count)
+    warm = camera.shoot(scenes.room((280, 420)) * np.float32([1.35, 1, 0.72]), times, rng=2)
+    shifted = images.copy()
+    shifted[frame] = warm.images[frame]
+    found = find_contradictions(shifted, times)
+    assert found.tints.argmax() == frame and found.tints[frame] == pytest.approx(0.43, abs=0.05)
+    said = warn_of_contradictions(found, names, 0.001)  # also where the map explains its photographs
+    assert said.startswith(f"{names[frame]} has another white balance")
+    assert find_contradictions(images, times).tints.max() < 0.05
+
+
+def test_a_gray_bracket_has_no_white_balance(taken):
+    images, times, *_ = taken(5)
+    assert find_contradictions(images[..., 1], times * [1, 1, 2, 1, 1]).tints.max() == 0
+
+
 def test_an_error_counts_by_what_it_costs_in_the_map(taken):
     images, times = taken(5)[:2]
     dark = np.where(np.arange(5)[:, None, None, None] == 0, np.minimum(images, 3), images)
