@@ -450,6 +450,8 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
         "of three photographs, one time is wrong",
         "the stated times contradict the pixels",
         "the photographs contradict each other by",
+        "has another white balance",
+        "lamps flicker",
         "the corners change against the middle",
         "do not lie on each other",
         "the photographs disagree by",
