@@ -129,7 +129,7 @@ def find_contradictions(
     x = np.stack([response_steps.remove_trend(one.x, here) for one in (best, *each)]) / np.log(2)
     stops[frames], tints[frames] = x[0], np.minimum(x[1:].max(axis=0), -x[1:].min(axis=0))
     places[:, pairs] = measure_disagreement(found.of(frames), here, best)
-    return Contradictions(stops, *places, measure_cost(stack, stops), tints)
+    return Contradictions(stops, *places)._replace(cost=measure_cost(stack, stops), tints=tints)
 
 
 def measure_cost(stack: Array, stops: F64) -> float:
