@@ -199,10 +199,9 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
     Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
     """
     if found.tints.max() > WRONG:
-        j = int(found.tints.argmax())
         return (
-            f"{names[j]} has another white balance: a channel is too bright by {found.tints[j]:.2f} stops or "
-            "more, another too dark; leave it out, and set the white balance to a fixed one, such as daylight"
+            f"{names[int(found.tints.argmax())]} has another white balance: a channel is too bright by "
+            f"{found.tints.max():.2f} stops or more, another too dark; leave it out, and set a fixed balance"
         )
     corners = found.corners[np.isfinite(found.corners)]
     if len(corners) and np.median(corners) > SLIGHT:
