@@ -4,6 +4,7 @@ import base64
 
 import numpy as np
 import pytest
+from halves import decoded
 from laboratory import open_widget
 
 from hdrlab import scenes
@@ -228,7 +229,7 @@ def test_the_brush_shows_what_python_computes(open_, gray, centre, size, magnifi
     page.evaluate("(centre) => window.model.set('centre', centre)", list(centre))
     shown = pixels(page)
 
-    seen = (np.frombuffer(widget.radiance, "<f2").astype(np.float64) / widget.scale).reshape(map_.shape)
+    seen = decoded(widget.radiance, widget.scale, map_.shape)
     L = colour.luminance(seen)
     Ld = brush.lens(L, centre, size=size, magnification=magnification, limit=limit)
     window = brush.place_window(L.shape, centre, -(-size // magnification))

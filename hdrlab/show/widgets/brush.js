@@ -128,7 +128,7 @@ async function render({ model, el }) {
   const tell = teller(root);
   const [height, width, channels] = model.get("shape");
   const picture = await decode(model.get("picture"), "image/webp");
-  const map = prepare(halves(model.get("radiance")), model.get("scale"), channels);
+  const map = prepare(await halves(model.get("radiance"), channels), model.get("scale"), channels);
   [canvas.width, canvas.height] = [width, height];
   const whole = span(map, { x: 0, y: 0, across: width, down: height }, width);
   const lens = document.createElement("canvas");

@@ -6,7 +6,11 @@ const HALF = Float32Array.from({ length: 65536 }, (_, bits) => {
   return sign * (power === 0 ? part * 2 ** -24 : (1024 + part) * 2 ** (power - 25));
 });
 
-// The bits of half floats, copied: a view into a larger buffer may start at an odd byte.
-function halves(view) {
-  return new Uint16Array(view.buffer.slice(view.byteOffset, view.byteOffset + view.byteLength));
+// The bits of half floats, as `web.encode_halves` wrote them: their steps, the low bytes before the high ones.
+async function halves(view, channels) {
+  const packed = new Blob([view]).stream().pipeThrough(new DecompressionStream("deflate"));
+  const bytes = new Uint8Array(await new Response(packed).arrayBuffer());
+  const bits = new Uint16Array(bytes.length / 2);
+  for (let i = 0; i < bits.length; i++) bits[i] = bytes[i] + (bytes[i + bits.length] << 8) + (bits[i - channels] ?? 0);
+  return bits;
 }

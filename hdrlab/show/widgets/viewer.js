@@ -18,8 +18,9 @@ function levelsOf(bitmap) {
 }
 
 // What the pixels stand for: three digits are what half floats hold for certain.
-function valuesOf(model, k) {
-  const [bits, scale, channels] = [halves(model.get("values")[k]), model.get("scales")[k], model.get("channels")[k]];
+async function valuesOf(model, k) {
+  const [scale, channels] = [model.get("scales")[k], model.get("channels")[k]];
+  const bits = await halves(model.get("values")[k], channels);
   return (pixel) => {
     const each = Array.from(bits.subarray(channels * pixel, channels * (pixel + 1)), (one) => HALF[one] / scale);
     return each.map((value) => `${Number(value.toPrecision(3))}`).join(" ");
@@ -34,7 +35,7 @@ async function viewer(root, model, { help, hint, compose, take = () => null, key
   const bitmaps = await Promise.all(model.get("pictures").map((bytes) => decode(bytes, "image/webp")));
   const [labels, unit] = [model.get("labels"), model.get("unit")];
   const levels = bitmaps.map(levelsOf);
-  const values = model.get("values").map((_, k) => valuesOf(model, k));
+  const values = await Promise.all(model.get("values").map((_, k) => valuesOf(model, k)));
   const { width, height } = bitmaps[0];
   const enlarged = Math.max(1, Math.floor(WIDE / width));
   [canvas.width, canvas.height] = [width * enlarged, height * enlarged];
