@@ -26,9 +26,7 @@ NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
     default=min(4, os.cpu_count() or 1),
     help="How many notebooks run at a time.",
 )
-@click.option(
-    "--address", default="", help="Where it will stand: a link's preview needs it, https:// and all."
-)
+@click.option("--address", default="", help="Where it will stand, https:// and all, for a link's preview.")
 def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
     """Make a site of the course: notebooks that were run, guides, and the reference.
 

@@ -59,9 +59,8 @@ def _histograms(v: F32, a: Axes) -> Iterator[F32]:
     for j in range(a.Y):
         rows = v[max(0, j * a.h - a.h // 2) : j * a.h + a.h // 2 + 1]
         t = (rows - np.float32(a.low)) * np.float32(BINS / a.step)
-        left = np.floor(
-            t
-        )  # a pixel is shared between the two bins beside it, and jumps from none to the next
+        # a pixel is shared between the two bins beside it, and jumps from none to the next
+        left = np.floor(t)
         index = (left.astype(np.intp) + start).ravel()
         right = np.bincount(index, (t - left).ravel(), a.X * bins)
         counts = np.bincount(index, minlength=a.X * bins) - right

@@ -123,7 +123,5 @@ def _about(path: Path) -> About:
         students = (students,)
     if not isinstance(students, list | tuple) or not all(isinstance(one, str) for one in students):
         raise ValueError(f"{path}: expected students as a list of texts, such as\n{EXAMPLE}")
-    title, caption = (
-        plain(str(said.get(name, "")), most) for name, most in (("title", 60), ("caption", 280))
-    )
+    title, caption = (plain(str(said.get(key, "")), most) for key, most in (("title", 60), ("caption", 280)))
     return About(tuple(plain(one, 80) for one in students), title, caption)

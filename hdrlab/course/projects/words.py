@@ -119,7 +119,8 @@ def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words
         found.append(Section("", "", _html(parser, before, top)))
     for start, end in zip(starts, ends[: len(starts)], strict=True):
         heading = _text(tokens[start + 1])
-        found.append(Section(heading, _asked(heading), _html(parser, tokens[start + 3 : end], top)))
+        asked = (name for name, says in ASKED.items() if re.search(says, heading, re.IGNORECASE))
+        found.append(Section(heading, next(asked, ""), _html(parser, tokens[start + 3 : end], top)))
     return Words(title, tuple(found), tuple(notes))
 
 
@@ -130,10 +131,6 @@ def _html(parser: MarkdownIt, tokens: Sequence[Token], top: int) -> Markup:
 
 def _text(inline: Token) -> str:
     return plain("".join(one.content for one in inline.children or ()), 200)
-
-
-def _asked(heading: str) -> str:
-    return next((name for name, says in ASKED.items() if re.search(says, heading, re.IGNORECASE)), "")
 
 
 def _lowered(tokens: Sequence[Token], top: int) -> Sequence[Token]:

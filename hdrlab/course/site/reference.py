@@ -4,8 +4,6 @@ A module's docstring is read beside its code, so it is laid out for the eye: leg
 formulas with * and |. Here it becomes what Sphinx reads.
 """
 
-import ast
-import importlib.util
 import inspect
 import pkgutil
 import re
@@ -13,7 +11,6 @@ from collections.abc import Iterable, Iterator, Sequence
 from importlib import import_module
 from itertools import groupby, takewhile
 from pathlib import Path
-from typing import Any
 
 import hdrlab
 from hdrlab.course.code import names
@@ -24,6 +21,7 @@ RST = Path(__file__).parent / "rst"  # templates of the pages
 ENTRY = re.compile(r"(\S+(?: \S+)*?) {2,}(\S.*)")  # of a legend: a letter, two spaces or more, what it is
 NAME = re.compile(r"\b[a-z_]+(?:\.[a-z_0-9]+)+\b|^pipeline\b")
 DOCTEST = ">>> "
+Row = tuple[str, str, list[str]]
 
 
 def modules() -> list[str]:
@@ -33,11 +31,8 @@ def modules() -> list[str]:
 
 
 def summary(name: str) -> str:
-    """Return the first sentence of a module's docstring, read from its file."""
-    spec = importlib.util.find_spec(name)
-    assert spec is not None and spec.origin is not None
-    text = ast.get_docstring(ast.parse(Path(spec.origin).read_text(encoding="utf8"))) or ""
-    return " ".join(text.split("\n\n")[0].split())
+    """Return the first paragraph of a module's docstring, in one line."""
+    return " ".join((import_module(name).__doc__ or "").split("\n\n")[0].split())
 
 
 def imported(sources: Iterable[str], known: Sequence[str]) -> set[str]:
@@ -85,12 +80,11 @@ def rows() -> list[tuple[str, str]]:
     return [(line[:column].strip(), line[column:].strip()) for line in table if not line.startswith("---")]
 
 
-def _row(
-    lecture: str, where: str, known: Sequence[str], uses: dict[str, set[str]]
-) -> tuple[str, str, list[str]]:
+def _row(lecture: str, where: str, known: Sequence[str], uses: dict[str, set[str]]) -> Row:
     """Return a row of the map: the lecture's name, links to the functions, the notebooks that play them."""
     linked = NAME.sub(lambda found: f":py:obj:`{found[0]} <{_home(found[0])}>`", where)
-    told = {_module(f"hdrlab.{word}", known) for word in NAME.findall(where)}
+    words = [f"hdrlab.{word}" for word in NAME.findall(where)]
+    told = {word if word in known else word.rpartition(".")[0] for word in words}  # a function's module
     return lecture, linked, [notebook for notebook in uses if told & uses[notebook]]
 
 
@@ -99,11 +93,6 @@ def _home(word: str) -> str:
     module, _, name = f"hdrlab.{word}".rpartition(".")
     thing = getattr(import_module(module), name, None)
     return f"{thing.__module__}.{name}" if inspect.isfunction(thing) else f"{module}.{name}"
-
-
-def _module(word: str, names: Sequence[str]) -> str:
-    """Return the module that a word of the map names, or the one in which what it names is."""
-    return word if word in names else word.rpartition(".")[0]
 
 
 def escaped(line: str) -> str:
@@ -149,8 +138,3 @@ def _legend(block: Sequence[str]) -> list[str]:
         else:
             text += [f"   {escaped(line.strip())}"]
     return text
-
-
-def is_field(value: Any) -> bool:
-    """Return whether a member is a NamedTuple's field, whose only words are "Alias for field number 0"."""
-    return type(value).__name__ == "_tuplegetter"

@@ -43,11 +43,10 @@ class Processes:
         """Begin a piece if there is room; each has a process to itself anyway."""
         if len(self._running) == self._jobs:
             return False
-        self._running[self._threads.submit(self._done, piece)] = piece
+        patience, stopped = self._patience, self._stopped.is_set
+        future = self._threads.submit(process.run, self._work, piece, patience=patience, stopped=stopped)
+        self._running[future] = piece
         return True
-
-    def _done(self, piece: Piece) -> bytes:
-        return process.run(self._work, piece, patience=self._patience, stopped=self._stopped.is_set)
 
     def endings(self) -> list[Ending]:
         """Wait a little, and return what has ended."""
