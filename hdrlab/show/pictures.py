@@ -24,6 +24,7 @@ SIDE = 1000  # pixels
 SHARP = 2  # pixels of a plot along a pixel of the page, which many screens show
 COLUMN = 640  # pixels of the page: a smaller picture is shown as wide
 FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
+PAPER, MARGIN = 0.72, 0.93  # of a plot's pixels, and of those at its edges, how many are white at least
 DECADE = float(np.log10(2))  # of a stop
 
 
@@ -40,8 +41,9 @@ class Picture(NamedTuple):
         return "; ".join(self.alts)
 
     def _repr_html_(self) -> str:
-        sizes = [[side / self.density for side in web.decode_picture(one).shape[:2]] for one in self.frames]
-        each = zip(map(web.data_uri, self.frames), self.alts, self.captions, sizes, strict=True)
+        images = [web.decode_picture(one) for one in self.frames]
+        told = (self.alts, self.captions, images, map(is_ink, images))
+        each = zip(map(web.data_uri, self.frames), *told, strict=True)
         return _template().render(each=list(each), scales=self.scales, density=self.density, column=COLUMN)
 
 
@@ -125,9 +127,14 @@ def strip(
 
 
 def encode(drawn: object, density: int = 1) -> bytes:
-    """Return what a draw function returned as WebP: a plot without loss, in small what is like a photo."""
+    """Return what a draw function returned as WebP: a plot without loss, in small what is like a photo.
+
+    A map, whose pixels are squares of one colour each, is like a photo where that takes half of the bytes.
+    """
     image, drawing = render(drawn, density), not isinstance(drawn, np.ndarray)
-    return web.encode_webp(image, quality=85 - 15 * drawing, lossless=drawing and _is_drawing(image))
+    small = web.encode_webp(image, quality=80 - 30 * drawing)
+    exact = web.encode_webp(image, lossless=True) if drawing and _is_drawing(image) else b""
+    return exact if 0 < len(exact) < 2 * len(small) else small
 
 
 def _density(drawn: object) -> int:
@@ -158,6 +165,16 @@ def _is_drawing(image: web.Image) -> bool:
     return len(web.encode_runs(image)) <= web.MAX_RUN_BYTES * image.shape[0] * image.shape[1]
 
 
+def is_ink(image: web.Image) -> bool:
+    """Tell a plot, lines on white paper: a dark page turns its ink into chalk.
+
+    The colours of a picture, or of a map, mean something.
+    """
+    white = (image == 255).all(axis=-1)
+    edges = np.concatenate([white[[0, -1]].ravel(), white[:, [0, -1]].ravel()])
+    return bool(white.mean() > PAPER and edges.mean() > MARGIN)
+
+
 def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
     """Return what a draw function returned as a picture (H, W) or (H, W, 3) uint8, or raise a ValueError.
 
@@ -166,7 +183,8 @@ def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
     figure = getattr(drawn, "figure", None)
     if hasattr(figure, "savefig"):
         return _pixels(figure, density)
-    if isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and _is_picture(drawn.shape):
+    pixels = isinstance(drawn, np.ndarray) and drawn.dtype == np.uint8 and drawn.size > 0
+    if isinstance(drawn, np.ndarray) and pixels and (drawn.ndim == 2 or drawn.shape[2:] == (3,)):
         return drawn
     came = f"an array of {describe(drawn)}" if isinstance(drawn, np.ndarray) else type(drawn).__name__
     raise ValueError(f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}")
@@ -209,10 +227,6 @@ def in_words(name: str, value: object) -> str:
     if not name.endswith("s") or name.endswith(("ss", "us")):
         return f"{words} {said}"
     return f"{said} {words[:-1] if said == '1' else words}"
-
-
-def _is_picture(shape: tuple[int, ...]) -> bool:
-    return 0 not in shape and (len(shape) == 2 or (len(shape) == 3 and shape[-1] == 3))
 
 
 def _pixels(figure: Any, density: int) -> NDArray[np.uint8]:

@@ -37,9 +37,21 @@ function slider(parent, name, count) {
 const [SMALL, COLUMN] = [480, 640]; // pixels of the page
 const TALLEST = 75; // percent of the screen's height
 
+// Whether a picture is ink on white paper, as `pictures.is_ink` tells it, by a few of its pixels.
+function isInk(pixels) {
+  const [width, height] = [96, 64];
+  const context = new OffscreenCanvas(width, height).getContext("2d", { willReadFrequently: true });
+  context.imageSmoothingEnabled = false;
+  context.drawImage(pixels, 0, 0, width, height);
+  const white = new Uint32Array(context.getImageData(0, 0, width, height).data.buffer).map((one) => one === 0xffffffff);
+  const share = (some) => some.reduce((sum, one) => sum + one, 0) / some.length;
+  const edge = (_, k) => k < width || k >= white.length - width || k % width === 0 || (k + 1) % width === 0;
+  return share(white) > 0.72 && share(white.filter(edge)) > 0.93;
+}
+
 function picture(parent) {
   const canvas = element(parent, "canvas", { role: "img", "aria-label": "" });
-  let asked = 0;
+  let [asked, inked] = [0, null];
   function paint(pixels, alt) {
     const [width, height] = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];
     if (canvas.width !== width) canvas.width = width;
@@ -49,6 +61,8 @@ function picture(parent) {
     if (pixels instanceof ImageData) canvas.getContext("2d").putImageData(pixels, 0, 0);
     else canvas.getContext("2d").drawImage(pixels, 0, 0);
     canvas.setAttribute("aria-label", alt);
+    // JupyterLab may be dark, and turn about at any time. The site knows what is ink before it shows it.
+    if (document.body.dataset.jpThemeLight) inked ??= canvas.toggleAttribute("data-ink", isInk(canvas));
   }
   return {
     canvas,
@@ -62,9 +76,10 @@ function picture(parent) {
   };
 }
 
-// Binary traits arrive as a view into a larger buffer: Blob takes the view, not the whole buffer.
+// Binary traits arrive as a view into a larger buffer: Blob takes the view, not the whole buffer. A page of the site
+// has the first picture already.
 function decode(bytes, type) {
-  return createImageBitmap(new Blob([bytes], { type }));
+  return createImageBitmap(bytes instanceof Element ? bytes : new Blob([bytes], { type }));
 }
 
 // Where a pointer and the keys work on a picture. The canvas inside stays an image to a screen reader.
