@@ -178,8 +178,10 @@ def test_no_page_asks_for_anything_outside_and_what_it_asks_for_is_there(found):
 
 
 def test_style_sheets_and_scripts_name_no_address_outside(made):
+    codes = set((made[1] / "_widgets").glob("code-*.js"))
     for file in [*(made[1] / "_static").glob("*.css"), *(made[1] / "_widgets").glob("*.js")]:
-        text = re.sub(r"/\*.*?\*/", "", file.read_text("utf-8"), flags=re.DOTALL)
+        text = file.read_text("utf-16" if file.parent.name == "_widgets" and file not in codes else "utf-8")
+        text = re.sub(r"/\*.*?\*/", "", text, flags=re.DOTALL)
         assert not re.search(r"@import|url\(\s*['\"]?(?!data:)|https?://", text), file.name
 
 
@@ -206,6 +208,9 @@ def test_every_picture_has_alt_text_and_headings_go_down_one_by_one(found):
 def test_formulas_are_drawn_and_spoken(made):
     text = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
     assert text.count("<svg") == text.count("<math") == 2
+    drawn = re.findall('<symbol id="([^"]+)"', text)
+    assert drawn and len(drawn) == len(set(drawn)) < text.count("<use ")
+    assert set(re.findall('<use href="#([^"]+)"', text)) == set(drawn)
     assert "\\ln" not in text
 
 
@@ -258,9 +263,14 @@ def test_a_widget_lies_in_a_file_of_its_own_with_a_picture_in_its_place(made):
     page = (made[1] / "notebooks" / "01_one.html").read_text("utf-8")
     assert 'data-from="../_widgets/01_one-1.js"' in page
     assert 'alt="A square, ever lighter, step 1"' in page
-    text = (made[1] / "_widgets" / "01_one-1.js").read_text("utf-8")
-    name, content = json.loads("[" + text.removeprefix("hdrlab.widget(").removesuffix(");\n") + "]")
+    text = (made[1] / "_widgets" / "01_one-1.js").read_text("utf-16")
+    name, content = json.loads("[" + text.removeprefix("hdrlab.take(").removesuffix(");\n") + "]")
     assert name == "01_one-1" and len(content["state"]["frames"]) == 5
+    assert content["state"]["frames"][0] == {"shown": True}, "the page has it already"
+    (code,) = set(re.findall('data-code="../_widgets/([^"]+)"', page))
+    assert code == f"{content['code']}.js"
+    text = (made[1] / "_widgets" / code).read_text("utf-8")
+    assert text.startswith(f'hdrlab.take("{content["code"]}", {{"script": ')
 
 
 def test_what_is_unchanged_is_not_made_again(made):
@@ -304,7 +314,8 @@ def test_a_notebook_of_ones_own_may_lack_a_title_and_pictures_and_speak_ipython(
 
 def test_the_pictures_of_a_page_are_files_that_are_fetched_as_they_come_into_view(made):
     page = made[1] / "notebooks" / "02_two.html"
-    (shown,) = [tag for tag in re.findall(r"<img [^>]+>", page.read_text("utf-8")) if 'loading="lazy"' in tag]
+    shown, still = re.findall(r"<img [^>]+>", page.read_text("utf-8"))
+    assert 'loading="lazy"' in shown and 'loading="lazy"' in still
     asked = dict(re.findall(r'(\w+)="([^"]*)"', shown))
     height, width = decode_picture((page.parent / asked["src"]).read_bytes()).shape[:2]
     assert (asked["width"], asked["height"]) == (str(width), str(height)) and asked["alt"]

@@ -37,7 +37,6 @@ def formula(tex: str, *, inline: bool = True) -> str:
         import ziamath
 
     math = tree(tex, inline=inline)
-    ziamath.config.svg2 = False  # no <symbol>: their ids would meet again in the next formula
     drawn = ziamath.Math(ET.tostring(math, encoding="unicode"), size=SIZE).svgxml()
     view = drawn.get("viewBox", "")
     _, top, width, height = map(float, view.split())

@@ -9,6 +9,7 @@ import hashlib
 import io
 import json
 import re
+import shutil
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -106,6 +107,7 @@ def _build(
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
     headings = {name: _title(notebook) for name, notebook in handouts.items()}
     widgets = 0
+    shutil.rmtree(html / WIDGETS, ignore_errors=True)  # of notebooks that may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():
             texts[f"{folder}/{name}.ipynb"], count = _prepared(notebook, name, known, html / WIDGETS)
@@ -126,7 +128,6 @@ def _build(
     complaints = _sphinx(source, html, address)
     for part in ("notebooks", "assignments", "reference"):
         _keep(html, {name.rpartition(".")[0] + ".html" for name in texts}, part)
-    _forget_widgets(html / WIDGETS, {*titles, "front"})
     _publish(html, out)
     return Site(out / "index.html", len(texts), widgets + 1, complaints)
 
@@ -144,10 +145,10 @@ def _title(notebook: Any) -> str:
 def _prepared(notebook: Any, name: str, known: set[str], folder: Path) -> tuple[str, int]:
     """Return a notebook without its widgets, which go to `folder`, and how many there are."""
     found = list(live.widgets(notebook, name))
-    live.set_apart(notebook, name, folder, f"../{WIDGETS}")
     for output, one in found:
         live.write(one, folder)
         output["data"] = {"text/html": one.as_html(f"../{WIDGETS}")}
+    live.set_apart(notebook, name, folder, f"../{WIDGETS}")
     notebook.metadata.pop("widgets", None)
     notebook.metadata.setdefault("language_info", LANGUAGE)
     if not _title(notebook):
@@ -193,13 +194,6 @@ def _keep(folder: Path, names: set[str], part: str = "") -> None:
     """Remove all files of a part of a folder but those that are named."""
     for file in [one for one in (folder / part).rglob("*") if one.is_file()]:
         if file.relative_to(folder).as_posix() not in names:
-            file.unlink()
-
-
-def _forget_widgets(folder: Path, notebooks: set[str]) -> None:
-    """Remove widgets that belong to no notebook any more."""
-    for file in folder.iterdir():
-        if re.sub(r"-p?\d+$", "", file.stem) not in notebooks:
             file.unlink()
 
 

@@ -15,6 +15,7 @@ HERE = Path(__file__).parent
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
 SAYING, SUMMARY = 40, 200  # letters that a page's description has at least, and at most
+GLYPH = re.compile(r'<symbol id="([^"]+)".*?</symbol>', re.DOTALL)
 # From a source to its place in the reference: viewcode names the module from which it came there first
 BACK = re.compile(r'((?<=id=")([\w.]+)">\s*<a class="viewcode-back" href="[^"#]*?([\w.]+)\.html)#[^"]*')
 SETTINGS: dict[str, Any] = tomllib.loads((HERE / "settings.toml").read_text("utf-8"))
@@ -65,7 +66,8 @@ def _docstring(app: Any, what: str, name: str, obj: Any, options: Any, lines: li
 def _skip(app: Any, what: str, name: str, obj: Any, skip: bool, options: Any) -> bool | None:
     """Leave out fields of NamedTuples, and what a module has from elsewhere."""
     elsewhere = what == "module" and not str(getattr(obj, "__module__", "hdrlab")).startswith("hdrlab")
-    return True if elsewhere or reference.is_field(obj) else None
+    # a field's only words are "Alias for field number 0"
+    return True if elsewhere or type(obj).__name__ == "_tuplegetter" else None
 
 
 def _resolve(app: Any, env: Any, node: Any, content: Any) -> Any:
@@ -95,12 +97,19 @@ def _describe(app: Any, page: str, template: str, context: dict[str, Any], doctr
 
 
 def _breakable(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
-    """Let a name in a table break after a dot or an underscore: a narrow column cuts it nowhere else."""
+    """Let a name in a table break after a dot or an underscore, and draw each letter of formulas once.
+
+    A narrow column cuts a name nowhere else; a formula uses what one before it has drawn.
+    """
+    drawn: dict[str, int] = {}
 
     def broken(table: re.Match[str]) -> str:
         return NAME.sub(lambda name: re.sub(r"([._])(?=.)", r"\1<wbr>", name[0]), table[0])
 
+    def once(glyph: re.Match[str]) -> str:
+        return glyph[0] if drawn.setdefault(glyph[0], glyph.start()) == glyph.start() else ""
+
     if "body" in context:
-        context["body"] = TABLE.sub(broken, context["body"])
+        context["body"] = GLYPH.sub(once, TABLE.sub(broken, context["body"]))
         if page.startswith("_modules/"):
             context["body"] = BACK.sub(r"\1#hdrlab.\3.\2", context["body"])

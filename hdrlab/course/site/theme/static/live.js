@@ -1,13 +1,24 @@
 // The widgets of a page, with no kernel: each is opened when it comes near the screen.
-// A page from a folder may load scripts but read no files, so a widget's file is a script that calls `widget`.
+// A page from a folder may load scripts but read no files, so a widget's file is a script that calls `take`.
 (() => {
   const places = new Map();
-  const styles = new Set();
+  const codes = new Map(); // of each kind of widget, its module
 
-  const unpack = (value) => {
-    if (Array.isArray(value)) return value.map(unpack);
-    if (value?.base64 === undefined) return value;
-    return new DataView(Uint8Array.from(atob(value.base64), (letter) => letter.charCodeAt(0)).buffer);
+  // Bytes as `live.write` packed them, fifteen bits a letter.
+  function bytesOf({ letters, length }) {
+    const bytes = new Uint8Array(length);
+    for (let [k, at, bits, held] = [0, 0, 0, 0]; k < length; k++) {
+      if (held < 8) [bits, held] = [((bits & 255) << 15) | (letters.charCodeAt(at++) - 0x3000), held + 15];
+      bytes[k] = bits >> (held -= 8);
+    }
+    return new DataView(bytes.buffer);
+  }
+
+  // `shown` is the picture that stands on the page.
+  const unpack = (value, shown) => {
+    if (Array.isArray(value)) return value.map((each) => unpack(each, shown));
+    if (value?.shown) return shown;
+    return value?.letters === undefined ? value : bytesOf(value);
   };
 
   // What a widget's script asks of its model: values, and who is told when one changes.
@@ -25,19 +36,21 @@
     };
   }
 
+  function learn(code, { script, style }) {
+    document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
+    codes.set(code, import(URL.createObjectURL(new Blob([script], { type: "text/javascript" }))));
+  }
+
   const frame = () => new Promise(requestAnimationFrame);
 
-  async function open(place, { script, style, state }) {
-    if (!styles.has(style)) {
-      styles.add(style);
-      document.head.append(Object.assign(document.createElement("style"), { textContent: style }));
-    }
-    const address = URL.createObjectURL(new Blob([script], { type: "text/javascript" }));
-    const { default: widget } = await import(address);
-    URL.revokeObjectURL(address);
+  async function open(place, { code, state }) {
+    const { default: widget } = await codes.get(code);
     const el = document.createElement("div");
-    el.toggleAttribute("data-ink", place.querySelector("img[data-ink]") !== null); // and so is what is drawn in its place
-    const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value)]));
+    const shown = place.querySelector("img"); // a question may have none
+    if (shown) shown.loading = "eager";
+    await shown?.decode();
+    el.toggleAttribute("data-ink", shown?.hasAttribute("data-ink") ?? false); // and so is what is drawn in its place
+    const values = Object.fromEntries(Object.entries(state).map(([name, value]) => [name, unpack(value, shown)]));
     await widget.render({ model: modelOf(values), el });
     const waiting = () => el.querySelector("canvas")?.getAttribute("aria-label") === "";
     for (let k = 0; k < 120 && waiting(); k++) await frame();
@@ -47,7 +60,8 @@
 
   window.hdrlab = {
     running: `${document.documentElement.dataset.content_root}installing.html`,
-    widget(name, content) {
+    take(name, content) {
+      if (content.script) learn(name, content);
       for (const place of places.get(name) ?? [])
         open(place, content).catch((error) => {
           place.dataset.state = "failed";
@@ -56,13 +70,20 @@
     },
   };
 
+  // What is loaded runs in this order: a widget after the code of its kind.
+  const asked = new Set();
+  function load(src) {
+    if (!asked.has(src)) document.head.append(Object.assign(document.createElement("script"), { src, async: false }));
+    asked.add(src);
+  }
+
   const near = new IntersectionObserver((entries) => {
     for (const { isIntersecting, target } of entries) {
       if (!isIntersecting) continue;
       near.unobserve(target);
-      const { name, from } = target.dataset;
+      const { name, code, from } = target.dataset;
       places.set(name, [...(places.get(name) ?? []), target]);
-      document.head.append(Object.assign(document.createElement("script"), { src: from }));
+      [code, from].forEach(load);
     }
   }, { rootMargin: "600px 0px" });
 
