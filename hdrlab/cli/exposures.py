@@ -149,9 +149,7 @@ def _camera(file: Path, known: Sequence[str]) -> dict[str, Any]:
     """Return what a file says of a camera's noise."""
     said = tomllib.loads(file.read_text(encoding="utf8"))
     try:
-        found = {
-            name: tuple(map(float, one)) if name == "speeds" else float(one) for name, one in said.items()
-        }
+        found = {key: tuple(map(float, one)) if key == "speeds" else float(one) for key, one in said.items()}
     except (TypeError, ValueError, OverflowError):
         found = {"": ()}
     if not set(found) <= set(known) or found.get("speeds") == ():

@@ -179,9 +179,7 @@ def _split(line: str) -> list[str]:
 
 def _heading(cells: list[str]) -> list[str] | None:
     """Return what each column holds, where these cells head a table of times."""
-    found = [
-        next((what for what, how in HEADINGS.items() if re.search(how, one.lower())), "") for one in cells
-    ]
+    found = [next((key for key, how in HEADINGS.items() if re.search(how, one.lower())), "") for one in cells]
     timed = {"seconds", "rate", "inverse"} & set(found) and not any(map(VALUE.fullmatch, cells))
     return found if "file" in found and timed else None
 

@@ -131,9 +131,7 @@ def compare(each: Sequence[Printed], given: Sequence[str] = (), library: str = "
         enough = {n: mine[text] for n, text in has.items() if text in long}
         own[task] = {n: one for n, one in enough.items() if one.token_coverage >= SHORT}
         short[task] = len(has) - len(own[task])
-    return Likeness(
-        *_pairs([printed.work.team for printed in each], shares(len(each), own)), own, short, copied
-    )
+    return Likeness(*_pairs([one.work.team for one in each], shares(len(each), own)), own, short, copied)
 
 
 def shares(n: int, own: Mapping[str, Mapping[int, CodeFingerprint]]) -> np.ndarray:
