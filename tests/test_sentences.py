@@ -227,12 +227,7 @@ SENTENCES = {
     },
     "14": {
         "the darker half of the pixels shares a handful": lambda n: n.darker_levels("linear") <= 5,
-        "with 10 bits 0.6 % at 1000 cd/m²": lambda n: round(step_at(n, "gamma", 1000), 1) == 0.6,
-        "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
-            round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
-        ),
         "a dark halo of 5.7 stops": lambda n: round(float(np.log2(101 / 2)), 1) == 5.7,
-        "the walls then stand at half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
     },
     "16": {
         "seven in ten belong to the brightest tenth": lambda n: (
@@ -365,6 +360,19 @@ SENTENCES = {
         "`ghosts` is about as good here": lambda n: (
             abs(np.diff([n.decibels(n.E3[way], n.taken.moments[1]) for way in ("patches", "ghosts")])[0]) < 1
         ),
+    },
+    "25": {
+        "Seven pixels in a hundred are beyond white": lambda n: round(100 * np.mean(n.light > 1)) == 7,
+        "beyond three stops, eight times white, less than one is left": lambda n: np.mean(n.light > 8) < 0.01,
+        "with 10 bits 0.6 % at 1000 cd/m²": lambda n: round(step_at(n, "gamma", 1000), 1) == 0.6,
+        "0.9 % at 1000 cd/m² and 9 % at 0.01": lambda n: (
+            round(step_at(n, "PQ", 1000), 1) == 0.9 and round(step_at(n, "PQ", 0.01)) == 9
+        ),
+        "the walls then stand at half a candela": lambda n: 0.4 < np.median(n.candela) < 0.6,
+        "whose step is a fortieth of a stop": lambda n: 0.02 < np.max(n.largest - n.lowest) / 255 < 0.025,
+        "over eight stops a code is a thirtieth of a stop": lambda n: round(255 / 8) == 32,
+        "At 2 a third of the gain": lambda n: round(n.gainmap.weight(2, 8), 3) == 0.333,
+        "at 4 two thirds": lambda n: round(n.gainmap.weight(4, 8), 3) == 0.667,
     },
 }
 
