@@ -152,8 +152,9 @@ def assemble_steps(
         yield (state := deghost(state, ghosts, w, merge))
     if flare != "none":
         yield (state := remove_glare(state))
-    still = state.moving is not None or apart
-    yield assess(state, medians, contrary, *((0.0, 0.0) if still else (moved, bands)))
+    left = (0.0, 0.0) if state.moving is not None or apart else (moved, bands)
+    state = assess(state, medians, contrary, *left)
+    yield state._replace(doubts=state.doubts[:1]) if apart else state  # all others follow from that one
 
 
 def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
