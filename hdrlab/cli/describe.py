@@ -47,6 +47,7 @@ def _photo(path: str | Path) -> dict[str, Any]:
         "format": header.kind,
         **_size(height, width, channels, np.dtype(header.dtype).name),
         "orientation": header.orientation,
+        **({"processing": header.processing} if header.processing else {}),
         **{key: value for key, value in header.exposure._asdict().items() if value is not None},
     }
 

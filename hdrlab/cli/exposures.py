@@ -116,7 +116,8 @@ def meter(photo: Path, mode: str, at: str) -> None:
         wanted = exposure.true_time(exposure.true_time(said.seconds) * 2.0**stops)
         dial = exposure.shutter_series(3)
         name = dial.names[int(np.argmin(abs(dial.values - wanted)))]
-        click.echo(f"taken with {_seconds(said.seconds)} s; with {name} s it would be right")
+        time = f"{said.seconds:g}" if said.seconds >= 0.4 else f"1/{1 / said.seconds:.0f}"
+        click.echo(f"taken with {time} s; with {name} s it would be right")
 
 
 @common.command()
@@ -163,7 +164,3 @@ def _place(text: str) -> tuple[float, float]:
     except ValueError:
         raise ValueError(f"--at: expected two parts of the picture, such as 0.5,0.5, got {text!r}") from None
     return down, right
-
-
-def _seconds(time: float) -> str:
-    return f"{time:g}" if time >= 0.4 else f"1/{1 / time:.0f}"

@@ -30,6 +30,8 @@ BEST_COMPRESSION_RATIO = 1 << 12
 RATIOS = dict.fromkeys(("WEBP", "AVIF", "HEIF"), 1 << 16)
 # words that stand near the beginning of a file with a gain map: Adobe's, ISO 21496-1, Apple's
 GAIN_MAPS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
+# codes of PQ or HLG, as a PNG and an AVIF or HEIC say: the curve's number after that of the primaries
+BEYOND_GAMMA = re.compile(rb"cICP.[\x10\x12]|nclx\0.\0[\x10\x12]", re.DOTALL)
 LONGEST_HEADER = 1 << 18
 MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
 # EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of Apple]
@@ -75,6 +77,7 @@ def look(path: str | Path) -> Header:
         shape = (shape[1], shape[0], *shape[2:])
     gains = any(word in head for word in GAIN_MAPS)
     processing = "has a gain map: the picture in it was tone-mapped locally" if gains else header.processing
+    processing = "is coded for an HDR screen, by PQ or HLG" if BEYOND_GAMMA.search(head) else processing
     return header._replace(shape=shape, processing=processing)
 
 

@@ -47,8 +47,7 @@ def write(path: str | Path, kind: str, values: ArrayLike, *, primaries: str = "b
     """
     files.require_suffix(path, (f".{kind}",), "a picture of this kind")
     colour, matrix = PRIMARIES[primaries]
-    most = 2**16 - 1 if kind == "png" else 2**10 - 1
-    codes = np.rint(np.asarray(values) * most).astype(np.uint16)
+    codes = np.rint(np.asarray(values) * {"png": 65535, "avif": 1023}.get(kind, 0)).astype(np.uint16)
     if kind == "jxl":
         data = imagecodecs.jpegxl_encode(np.asarray(values, np.float32), lossless=True)
     elif kind == "avif":

@@ -11,9 +11,11 @@ from PIL import Image
 
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
+from hdrlab.cli.describe import describe_file
 from hdrlab.core import colour
 from hdrlab.io import radiance
 from hdrlab.io import screens as files
+from hdrlab.io.photos import read_bracket
 from hdrlab.pipeline import screens
 
 PLACES = ("chapel", "workshop", "street")
@@ -146,3 +148,43 @@ def test_what_is_there_stays_where_the_codec_fails(tmp_path):
     with pytest.raises((ValueError, RuntimeError)):
         files.write(tmp_path / "room.png", "png", np.zeros((4, 6, 7)))
     assert (tmp_path / "room.png").read_bytes() == b"before"
+
+
+@pytest.mark.parametrize("name", ["room.avif", "room.png"])
+def test_codes_of_pq_are_told_of_where_a_file_is_described_and_where_it_stands_in_a_bracket(
+    name, tmp_path, capsys
+):
+    folder = tmp_path / "bracket"
+    folder.mkdir()
+    path = tonemap(tmp_path, scene(), name, "--to", name[-4:].strip("."))
+    for k in (1, 2):
+        (folder / f"{k}{path.suffix}").write_bytes(path.read_bytes())
+    said = []
+    read_bracket(folder, [1, 2], note=said.append)
+    assert (
+        len(said) == 1 and "is coded for an HDR screen, by PQ or HLG, so no one curve describes it" in said[0]
+    )
+    assert describe_file(path)["processing"] == "is coded for an HDR screen, by PQ or HLG"
+
+
+def test_a_gain_map_is_named_where_its_file_is_described_and_a_plain_picture_says_nothing(tmp_path):
+    E = scene()
+    path = tonemap(tmp_path, E, "room.jpg", "--to", "ultrahdr")
+    assert "gain map" in describe_file(path)["processing"]
+    for name in ("plain.jpg", "plain.png"):
+        assert "processing" not in describe_file(tonemap(tmp_path, E, name))
+
+
+def test_a_gain_map_that_does_not_say_its_meaning_is_refused_with_what_to_do(tmp_path):
+    """Apple's: a second JPEG whose XMP names it, and no numbers."""
+    parts = []
+    for segments in (b"", b"http://ns.apple.com/HDRGainMap/1.0/"):
+        file = io.BytesIO()
+        extra = b"\xff\xe1" + (len(segments) + 2).to_bytes(2) + segments if segments else b""
+        Image.fromarray(np.full((16, 24, 3), 128, np.uint8)).save(file, "JPEG", extra=extra)
+        parts.append(file.getvalue())
+    (tmp_path / "apple.jpg").write_bytes(b"".join(parts))
+    with pytest.raises(
+        ValueError, match="apple.jpg: expected a JPEG with a gain map.*take a bracket, or RAW"
+    ):
+        radiance.read_radiance(tmp_path / "apple.jpg")

@@ -149,7 +149,7 @@ def _find(data: bytes) -> bytes:
         at = jpeg_end(data, start)
         if ISO in data[start:at] or b"hdrgm:GainMapMax" in data[start:at]:
             return data[start:at]
-    raise ValueError("no second JPEG says what its gains mean")
+    raise ValueError("no second JPEG says what its gains mean; Apple's do not: take a bracket, or RAW")
 
 
 def _meaning(part: bytes) -> dict[str, Any]:
