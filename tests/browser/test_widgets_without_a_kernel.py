@@ -5,7 +5,7 @@ import pytest
 from laboratory import PATIENCE, open_widget
 
 from hdrlab.io import web
-from hdrlab.show import widgets
+from hdrlab.show import plots, widgets
 
 
 def square(level=100):
@@ -52,6 +52,27 @@ def player(page):
 def tuner(page):
     open_widget(page, widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)))
     yield page
+    assert page.problems == []
+
+
+def shaded(k):
+    """Return what is like a photograph: no white paper."""
+    return np.add.outer(np.arange(40), np.arange(60)).astype(np.uint8) + np.uint8(k)
+
+
+@pytest.mark.parametrize(
+    ("draw", "ink"), [(lambda k: plots.response(np.arange(256) * (k + 1)), True), (shaded, False)]
+)
+def test_jupyterlabs_dark_theme_turns_a_plot_to_chalk_and_leaves_a_photograph(page, draw, ink):
+    open_widget(page, widgets.play(range(2), draw, alt="A picture"))
+    page.evaluate("document.body.dataset.jpThemeLight = 'false'")
+    page.get_by_role("slider").press("ArrowRight")
+    canvas = page.locator("canvas")
+    page.wait_for_function("document.querySelector('canvas').ariaLabel.endsWith('step 2')", timeout=PATIENCE)
+    look = "canvas => getComputedStyle(canvas).filter"
+    assert (canvas.evaluate(look) != "none") == ink
+    page.evaluate("document.body.dataset.jpThemeLight = 'true'")
+    assert canvas.evaluate(look) == "none"
     assert page.problems == []
 
 

@@ -641,6 +641,14 @@ def test_a_widget_reads_as_its_alt_text_where_nothing_can_be_drawn(name):
     assert data["text/plain"].startswith("A square")
 
 
+def test_a_saved_notebook_tells_plots_from_photographs_for_a_dark_page():
+    plot, photograph = widgets.play([1], curve, alt="A"), widgets.play([1], square, alt="A")
+    assert ["data-ink" in one._repr_mimebundle_()[0]["text/html"] for one in (plot, photograph)] == [
+        True,
+        False,
+    ]
+
+
 def test_a_large_comparison_adds_small_pictures_to_a_saved_notebook():
     large = np.zeros((1200, 1960, 3), np.uint8)
     data, _ = widgets.wipe(large, large, alt="Night")._repr_mimebundle_()
