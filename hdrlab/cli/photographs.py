@@ -18,7 +18,7 @@ FUSION = "the picture is an exposure fusion of the photographs"
 
 @common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help=f"Map to write: {common.SUFFIXES}.")
+@click.option("-o", "--out", required=True, type=common.OUT, help=f"Radiance map: {common.SUFFIXES}.")
 @click.option(
     "--times",
     metavar="exif|stated|estimate|FILE",

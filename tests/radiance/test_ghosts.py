@@ -127,6 +127,16 @@ def test_where_the_leader_is_clipped_a_frame_that_breaks_its_bound_does_not_join
     assert used[0, :, :14].all() and not used[0, :, 24:].any()
 
 
+def test_beside_a_light_of_great_variance_a_dark_place_that_differs_is_found():
+    dark, everywhere = np.full((40, 40, 1), 1e-3, np.float32), np.ones((40, 40, 1), bool)
+    V = np.full((40, 40, 1), 1e-12, np.float32)
+    V[:, :20, 0] = np.exp(np.random.default_rng(2).normal(0, 8, (40, 20)))
+    known = reference.Estimate(dark, V, everywhere, np.zeros_like(V), np.full_like(V, np.inf))
+    other = known._replace(E=np.where(np.arange(40)[:, None] < 20, dark, 3 * dark))
+    agree = reference.find_consistent(known, other, tau=0.05)
+    assert agree[:, :15].all() and not agree[:, 25:].any()
+
+
 # What becomes of a ghost
 
 

@@ -149,8 +149,7 @@ def _text(key: Key, names: dict[Key, str]) -> str:
     own = statements(key) if renamed != key.name else ()
     for inner in (within for one in own for within in ast.walk(one)):
         if isinstance(inner, ast.Name) and inner.id == key.name:
-            place = (inner.col_offset, inner.end_col_offset or 0, renamed)
-            edits.setdefault(inner.lineno, []).append(place)
+            edits.setdefault(inner.lineno, []).append((inner.col_offset, inner.end_col_offset or 0, renamed))
     texts = []
     for statement in statements(key):
         first = min([statement.lineno, *(one.lineno for one in getattr(statement, "decorator_list", ()))])

@@ -220,4 +220,5 @@ def note(found: Ghosts, names: Sequence[str]) -> str:
     per_frame = ", ".join(f"{names[j]} in {count}" for j, count in zip(numbers, counts, strict=True))
     count, share = len(found.references), 100 * np.mean(found.labels > 0)
     number = "one region" if count == 1 else f"{count} regions"
-    return f"something moved in {number}, {share:.1f} % of the pixels; reference photographs: {per_frame}"
+    text = f"something moved in {number}, {share:.1f} % of the pixels; reference photographs: {per_frame}"
+    return text if share < WIDESPREAD else f"{text}; so much is rather a matter of times or of alignment"

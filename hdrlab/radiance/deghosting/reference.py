@@ -67,7 +67,8 @@ def find_consistent(known: Estimate, other: Estimate, *, tau: float) -> Mask:
     E = np.where(both, known.E, 0)
     mean = _box_mean(E) / share
     D = np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
-    sigma = np.sqrt(_box_mean(np.where(both, known.V + other.V, 0))) / (INDEPENDENT**0.5 * share)
+    # a running mean rounds below 0, too
+    sigma = np.sqrt(np.maximum(_box_mean(np.where(both, known.V + other.V, 0)), 0) / INDEPENDENT) / share
     filled = np.where(both, E, mean)
     size = (BOX, BOX, 1)
     reach = (maximum_filter(filled, size) - minimum_filter(filled, size)) * np.float32(SHIFT / BOX)
