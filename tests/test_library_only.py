@@ -41,7 +41,7 @@ PARTS = {
     "hdrlab.io.radiance.write_radiance('a.hdr', [[1.0]])": "imagecodecs",
     "hdrlab.io.photos.read_photo('a.tif')": "tifffile",
     "hdrlab.io.photos.read_photo('deep.png')": "imagecodecs",
-    "hdrlab.io.web.encode_webp(np.zeros((2, 2)))": "imageio",
+    "hdrlab.io.sequence.write('a.gif', np.zeros((2, 2, 2), np.uint8))": "imageio",
     "hdrlab.core.filters.warp.sample(np.ones((9, 9)), np.eye(3), (9, 9))": "scikit-image",
     "hdrlab.scenes.chapel()": "OpenEXR",
     "import_module('hdrlab.show.plots')": "matplotlib",
@@ -51,7 +51,7 @@ EACH = f"""
 from importlib import import_module
 import numpy as np
 import hdrlab
-import hdrlab.io.photos, hdrlab.io.radiance, hdrlab.core.filters.warp, hdrlab.io.web
+import hdrlab.io.photos, hdrlab.io.radiance, hdrlab.core.filters.warp, hdrlab.io.sequence
 for part in {list(PARTS)!r}:
     try:
         print("nothing is missing", eval(part))
