@@ -9,12 +9,13 @@ costly   a cost above 0.1 stops; `missed` is the share of these without a warnin
 
 An ill that costs less may be warned of or not: what the camera and the pipeline make harmless needs no word.
 
-Two rows miss their hold, of 12 brackets each:
+Three rows miss their hold, of 12 brackets each:
 curve     5 of 5 costly ones are missed, and will be: a camera of another response, under times that differ
           by a twentieth of a stop or less, takes the same photographs. The maps predict their levels as well
           as the maps of the same photographs unbent do, to 1.1 to 1.9 levels in the median, at a spread of
           0.006 to 0.027 stops, and sound brackets come to 0.034
 parallax  1 of 7: the frames disagree in 1.2 % of the picture, and in 1.15 % of a real, still bracket's
+local     2 of 12: three frames, or three that are left, whose curve takes up most of what was done to them
 """
 
 from collections.abc import Mapping
