@@ -152,7 +152,7 @@ def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
     folders = {"notebooks", "reference", "_images", "_modules", "_static", "_widgets"}
     assert parts == folders | {"searchindex.js", "objects.inv", ".nojekyll"}
     assert {path.name for path in site.rglob(".*")} == {".nojekyll"}
-    kinds = [".html", ".js", ".css", ".svg", ".png", ".jpg", ".webp", ".inv"]
+    kinds = [".html", ".js", ".css", ".svg", ".png", ".jpg", ".jpeg", ".webp", ".inv"]
     assert {path.suffix for path in site.rglob("*") if path.is_file()} <= {*kinds, ""}
 
 
@@ -320,6 +320,17 @@ def test_the_pictures_of_a_page_are_files_that_are_fetched_as_they_come_into_vie
     height, width = decode_picture((page.parent / asked["src"]).read_bytes()).shape[:2]
     assert (asked["width"], asked["height"]) == (str(width), str(height)) and asked["alt"]
     assert "data:image" not in page.read_text("utf-8")
+
+
+def test_a_photograph_in_a_cells_html_is_a_file_to_the_byte(tmp_path):
+    """One with a gain map lights up only so."""
+    taken = web.encode_jpeg(np.full((8, 12), 90, np.uint8)) + b"and its gain map"
+    shown = {"text/html": f'<img alt="A room" src="{web.data_uri(taken, "jpeg")}">'}
+    output = nbformat.v4.new_output("display_data", data=shown)
+    cells = [nbformat.v4.new_code_cell("room", outputs=[output])]
+    live.set_apart(one := nbformat.v4.new_notebook(cells=cells), "room", tmp_path, "../apart")
+    assert (tmp_path / "room-p1.jpeg").read_bytes() == taken
+    assert 'src="../apart/room-p1.jpeg" width="12" height="8"' in one.cells[0].outputs[0]["data"]["text/html"]
 
 
 def test_photographs_that_are_compared_are_light_on_a_page_and_bitmaps_stay_as_they_are():

@@ -45,8 +45,8 @@ def formula(tex: str, *, inline: bool = True) -> str:
     svg.extend(drawn)
     for part in svg.iter():
         part.tag = part.tag.rpartition("}")[2]
-    spoken = ET.tostring(math, encoding="unicode")
-    return f'{ET.tostring(svg, encoding="unicode")}<span class="spoken">{spoken}</span>'
+    text = ET.tostring(svg, "unicode").replace(' fill="black"', "").replace("STIXTwoMath", "")  # as all are
+    return f'{text}<span class="spoken">{ET.tostring(math, "unicode")}</span>'
 
 
 def tree(tex: str, *, inline: bool) -> ET.Element:

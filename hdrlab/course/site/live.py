@@ -28,7 +28,7 @@ NOT_OWN = ("layout", "tabbable", "tooltip", "frame")  # traits of every widget, 
 PICTURES = ("stored", "frames", "picture", "pictures")  # where our widgets keep what they show
 LETTER, FIRST = 15, 0x3000  # bits of a letter, and the letter of 0: none of them means anything in a script
 BYTES = re.compile(r'{"base64": "([^"]*)"}')
-EMBEDDED = re.compile(r'src="data:image/webp;base64,([^"]+)"(?: data-ink)?')
+EMBEDDED = re.compile(r'src="data:image/(webp|jpeg);base64,([^"]+)"(?: data-ink)?')
 
 
 class Live(NamedTuple):
@@ -114,7 +114,7 @@ def set_apart(notebook: Any, name: str, folder: Path, address: str) -> None:
     number = count(1)
 
     def moved(embedded: re.Match[str]) -> str:
-        picture, file = base64.b64decode(embedded[1]), f"{name}-p{next(number)}.webp"
+        picture, file = base64.b64decode(embedded[2]), f"{name}-p{next(number)}.{embedded[1]}"
         write_changed(folder / file, picture)
         return f'src="{address}/{file}" {_look(picture)} loading="lazy"'
 
