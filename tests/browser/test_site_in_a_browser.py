@@ -13,7 +13,7 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
-from laboratory import PATIENCE, changed_by
+from laboratory import PATIENCE
 
 from hdrlab.course.site.pages import cache_of
 
@@ -83,6 +83,18 @@ def move(page, widget):
     slider = widget.get_by_role("slider").first
     at_end = slider.input_value() == slider.get_attribute("max")
     slider.press("Home" if at_end else "End")
+
+
+def changed_by(page, widget, move):
+    """Move a control, and wait until what one sees is another: from a folder no canvas can be read."""
+    canvas = widget.locator("canvas").first
+    before = canvas.screenshot()
+    move()
+    for _ in range(PATIENCE // 20):
+        if canvas.screenshot() != before:
+            return
+        page.wait_for_timeout(20)
+    raise AssertionError("the picture is as it was")
 
 
 def assert_it_fits(page, axe):
