@@ -153,8 +153,8 @@ def assemble_steps(
     if flare != "none":
         yield (state := remove_glare(state))
     left = (0.0, 0.0) if state.moving is not None or apart else (moved, bands)
-    state = assess(state, medians, contrary, *left)
-    yield state._replace(doubts=state.doubts[:1]) if apart else state  # all others follow from that one
+    found = assess(state, medians, contrary, *left)
+    yield found._replace(doubts=state.doubts) if apart else found  # what it says would follow from that
 
 
 def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:

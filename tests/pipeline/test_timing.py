@@ -6,7 +6,8 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
-from hdrlab.pipeline.timing import complete_times, estimate_relative_times, space_by_stops
+from hdrlab.pipeline import stages
+from hdrlab.pipeline.timing import complete_times, estimate_relative_times, refine_times, space_by_stops
 
 
 @pytest.fixture(scope="module")
@@ -85,3 +86,34 @@ def test_rough_times_are_corrected_unless_they_are_to_stay():
     found, stated = (pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated"))
     assert stated.bracket.times.tobytes() == rough.times.tobytes()
     assert found.spread < stated.spread and "times estimated" in found.notes[0]
+
+
+@pytest.fixture(scope="module")
+def mistaken():
+    """Five photographs of which all stated times but the ends' are wrong."""
+    room = scenes.room((150, 219))
+    times = camera.times_around(room, 5, stops=2)
+    return bracket(camera.shoot(room, times).images, times * [1, 2.2, 0.7, 1.3, 1], list("abcde"))
+
+
+def test_where_photographs_lie_apart_new_times_are_still_told_and_contradictions_which_follow_are_not(
+    mistaken, monkeypatch
+):
+    def lie_apart(*given, **named):
+        return aligned(*given, **named)._replace(doubts=("a and b do not lie on each other",))
+
+    aligned = stages.aligned
+    said = pipeline.assemble(mistaken, align="none").doubts
+    monkeypatch.setattr(stages, "aligned", lie_apart)
+    apart = pipeline.assemble(mistaken, align="none").doubts
+    assert [one[:31] for one in said] == [
+        "the estimated times depart from",
+        "the photographs contradict thei",
+    ]
+    assert apart == ("a and b do not lie on each other", said[0])
+
+
+def test_times_that_leave_no_two_photographs_to_compare_contradict_them_beyond_measure(mistaken):
+    (state, *_) = pipeline.assemble_steps(mistaken._replace(times=2.0 ** np.arange(5) / 64), align="none")
+    (said,) = refine_times(state, "auto", np.inf).doubts
+    assert said.startswith("the stated times contradict the pixels beyond measure, so they were not used")
