@@ -11,14 +11,14 @@ from hdrlab.cli import common
 from hdrlab.cli.terminal import visible
 from hdrlab.pipeline import catalogue
 
-BRIGHT = ("ultrahdr", "png", "avif", "jxl")
+TO = ["picture", "ultrahdr", "png", "avif", "jxl"]
 WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
 
 
 @common.command()
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Picture: .png, .jpg, .tif; .avif, .jxl.")
-@common.choice("--to", ["picture", *BRIGHT], help="All but picture light up on a bright screen, see below.")
+@common.choice("--to", TO, help="All but picture light up on a bright screen, see below.")
 @click.option("--headroom", default=8.0, help="Of a bright screen: the brightest light over white.")
 @common.choice("--primaries", ["bt2020", "p3"], help="Of png and avif, see below.")
 @common.operator("--operator")
@@ -56,13 +56,12 @@ def tonemap(
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
     from hdrlab.io import photos as files
+    from hdrlab.io import screens as codes
     from hdrlab.io.maps import ultrahdr
-    from hdrlab.io.screens import write
     from hdrlab.pipeline import screens
     from hdrlab.pipeline.pictures import find_operator
 
-    suffix = out.suffix.lower()[1:]
-    to = suffix if to == "picture" and suffix in ("avif", "jxl") else to
+    to = {".avif": "avif", ".jxl": "jxl"}.get(out.suffix.lower(), to) if to == "picture" else to
     E = common.read_map(source, clean)
     settings = dict(common.knob(one) for one in knobs)
     check_knobs("tonemap", find_operator(operator), settings)
@@ -72,10 +71,11 @@ def tonemap(
             ultrahdr.write_picture(out, made.picture, E, headroom=headroom)
         elif to == "picture":
             files.write_picture(out, made.picture)
+        elif to == "jxl":
+            codes.write_jxl(out, screens.light(made.picture, E))
         else:
-            hdr = screens.light(made.picture, E, headroom=float("inf") if to == "jxl" else headroom)
-            v = hdr if to == "jxl" else screens.signal(hdr, primaries=primaries)
-            write(out, to, v, primaries=primaries)
+            v = screens.signal(screens.light(made.picture, E, headroom=headroom), primaries=primaries)
+            (codes.write_png if to == "png" else codes.write_avif)(out, v, primaries=primaries)
     click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 

@@ -21,15 +21,13 @@ HEADER = 33  # bytes of a PNG before its second chunk
 QUALITY = 100  # of AVIF: off by half a code in the mean, by a code and a half at most; 99 by twice as much
 
 
-def write(path: str | Path, kind: str, values: ArrayLike, *, primaries: str = "bt2020") -> None:
-    r"""Write a picture as PNG of 16 bits, as AVIF of 10, or as JPEG XL of 32-bit floats, whole or not at all.
+def write_png(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> None:
+    r"""Write PQ's signal as PNG of 16 bits with a chunk cICP, whole or not at all.
 
     Parameters
     ----------
-    path : the file, whose suffix is its kind; what it held is replaced
-    kind : {"png", "avif", "jxl"}
-    values : (H, W, 3) PQ's signal of the channels of these primaries, 0 to 1; of a JPEG XL, which is without
-        loss, light of the primaries of sRGB, 1 = white
+    path : a .png file; what it held is replaced
+    v : (H, W, 3) signal of the channels of these primaries, 0 to 1
     primaries : {"bt2020", "p3"}, ITU-R BT.2020 or Display P3
 
     Raises
@@ -41,20 +39,66 @@ def write(path: str | Path, kind: str, values: ArrayLike, *, primaries: str = "b
     --------
     >>> import tempfile
     >>> file = Path(tempfile.mkdtemp()) / "dusk.png"
-    >>> write(file, "png", np.full((4, 6, 3), 0.58))
+    >>> write_png(file, np.full((4, 6, 3), 0.58))
     >>> file.read_bytes()[37:45]
     b'cICP\t\x10\x00\x01'
     """
-    files.require_suffix(path, (f".{kind}",), "a picture of this kind")
+    files.require_suffix(path, (".png",), "a picture of this kind")
+    chunk = b"cICP" + bytes((PRIMARIES[primaries][0], PQ, 0, 1))
+    chunk = struct.pack(">L", 4) + chunk + struct.pack(">L", zlib.crc32(chunk))
+    data = imagecodecs.png_encode(np.rint(65535 * np.asarray(v)).astype(np.uint16))
+    files.write(path, data[:HEADER] + chunk + data[HEADER:])
+
+
+def write_avif(path: str | Path, v: ArrayLike, *, primaries: str = "bt2020") -> None:
+    """Write PQ's signal as AVIF of 10 bits with a box nclx, whole or not at all.
+
+    Parameters
+    ----------
+    path : an .avif file; what it held is replaced
+    v : (H, W, 3) signal of the channels of these primaries, 0 to 1
+    primaries : {"bt2020", "p3"}, ITU-R BT.2020 or Display P3
+
+    Raises
+    ------
+    ValueError
+        For another suffix.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "dusk.avif"
+    >>> write_avif(file, np.full((4, 6, 3), 0.58))
+    >>> b"nclx" in file.read_bytes()
+    True
+    """
+    files.require_suffix(path, (".avif",), "a picture of this kind")
     colour, matrix = PRIMARIES[primaries]
-    codes = np.rint(np.asarray(values) * {"png": 65535, "avif": 1023}.get(kind, 0)).astype(np.uint16)
-    if kind == "jxl":
-        data = imagecodecs.jpegxl_encode(np.asarray(values, np.float32), lossless=True)
-    elif kind == "avif":
-        said = {"primaries": colour, "transfer": PQ, "matrix": matrix, "pixelformat": 1}  # 4:4:4
-        data = imagecodecs.avif_encode(codes, QUALITY, bitspersample=10, speed=6, **said)
-    else:
-        data, chunk = imagecodecs.png_encode(codes), b"cICP" + bytes((colour, PQ, 0, 1))
-        chunk = struct.pack(">L", 4) + chunk + struct.pack(">L", zlib.crc32(chunk))
-        data = data[:HEADER] + chunk + data[HEADER:]
-    files.write(path, data)
+    said = {"primaries": colour, "transfer": PQ, "matrix": matrix, "pixelformat": 1}  # 4:4:4
+    codes = np.rint(1023 * np.asarray(v)).astype(np.uint16)
+    files.write(path, imagecodecs.avif_encode(codes, QUALITY, bitspersample=10, speed=6, **said))
+
+
+def write_jxl(path: str | Path, E: ArrayLike) -> None:
+    """Write light as JPEG XL of 32-bit floats without loss, whole or not at all.
+
+    Parameters
+    ----------
+    path : a .jxl file; what it held is replaced
+    E : (H, W, 3) light with the primaries of sRGB, 1 = white
+
+    Raises
+    ------
+    ValueError
+        For another suffix.
+
+    Examples
+    --------
+    >>> import tempfile
+    >>> file = Path(tempfile.mkdtemp()) / "dusk.jxl"
+    >>> write_jxl(file, np.full((4, 6, 3), 2.5))
+    >>> float(imagecodecs.jpegxl_decode(file.read_bytes()).max())
+    2.5
+    """
+    files.require_suffix(path, (".jxl",), "a picture of this kind")
+    files.write(path, imagecodecs.jpegxl_encode(np.asarray(E, np.float32), lossless=True))

@@ -146,7 +146,7 @@ def test_a_png_without_to_is_a_picture_of_8_bits_as_before(tmp_path):
 def test_what_is_there_stays_where_the_codec_fails(tmp_path):
     (tmp_path / "room.png").write_bytes(b"before")
     with pytest.raises((ValueError, RuntimeError)):
-        files.write(tmp_path / "room.png", "png", np.zeros((4, 6, 7)))
+        files.write_png(tmp_path / "room.png", np.zeros((4, 6, 7)))
     assert (tmp_path / "room.png").read_bytes() == b"before"
 
 
