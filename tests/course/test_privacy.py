@@ -113,6 +113,14 @@ def test_a_colour_profile_is_kept():
     assert b"profile" * 30 in privacy.clean("a.jpg", FILES["gray.JPEG"]).data
 
 
+def test_nothing_hides_behind_a_segment_that_goes():
+    data = FILES["plain.jpg"]
+    at = data.index(b"\xff\xda")
+    at += 2 + int.from_bytes(data[at + 2 : at + 4])  # where coded pixels begin
+    with pytest.raises(ValueError, match="expected a marker of JPEG"):
+        privacy.clean("a.jpg", data[:at] + b"\xff\xfe\0\4hi" + b"at home" + data[at:])
+
+
 @pytest.mark.parametrize("name", FILES)
 def test_what_is_clean_stays_as_it_is(name):
     once = privacy.clean(name, FILES[name]).data

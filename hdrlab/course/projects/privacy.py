@@ -62,9 +62,9 @@ def _exif(block: bytes) -> tuple[bytes, set[str]]:
 
 
 def _jpeg(data: bytes) -> Cleaned:
-    out, removed, before = bytearray(b"\xff\xd8"), set(), 0
-    for marker, start, end in jpeg_parts(data):
-        body = data[start:end]
+    out, removed, marker = bytearray(b"\xff\xd8"), set(), 0
+    for here, start, end in jpeg_parts(data):
+        before, marker, body = marker, here, data[start:end]
         if 0xE0 <= marker <= 0xEF or marker == 0xFE:
             body, told = _application(marker, body)
             removed |= told
@@ -72,10 +72,8 @@ def _jpeg(data: bytes) -> Cleaned:
                 continue
         elif not marker and before != 0xDA and body.strip(b"\xff"):
             raise ValueError("expected a marker of JPEG, the file is damaged")
-        before = marker
         if marker:
-            length = b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2)
-            out += bytes((0xFF, marker)) + length
+            out += bytes((0xFF, marker)) + (b"" if marker == 0xD9 else struct.pack(">H", len(body) + 2))
         out += body
     if end < len(data):
         removed.add("what follows the picture")
