@@ -55,8 +55,8 @@ class Live(NamedTuple):
         if self.picture:
             source = f'src="{folder}/{self.name}.webp"'
             still = f'<img {source} alt="{escape(self.alt)}" {_look(self.picture)} loading="lazy">'
-        files = f'data-code="{folder}/{self.code}.js" data-from="{folder}/{self.name}.js"'
-        return f'<div class="live" data-name="{self.name}" {files}>{still}</div>'
+        scripts = f'data-code="{folder}/{self.code}.js" data-from="{folder}/{self.name}.js"'
+        return f'<div class="live" data-name="{self.name}" {scripts}>{still}</div>'
 
 
 def widgets(notebook: Any, name: str) -> Iterator[tuple[Any, Live]]:

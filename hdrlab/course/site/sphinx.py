@@ -15,7 +15,7 @@ HERE = Path(__file__).parent
 TABLE = re.compile(r"<table.*?</table>", re.DOTALL)
 NAME = re.compile(r'(?<=<span class="pre">)[\w.]+(?=</span>)')
 SAYING, SUMMARY = 40, 200  # letters that a page's description has at least, and at most
-GLYPH = re.compile(r'<symbol id="([^"]+)".*?</symbol>', re.DOTALL)
+GLYPH = re.compile(r"<symbol .*?</symbol>", re.DOTALL)
 # From a source to its place in the reference: viewcode names the module from which it came there first
 BACK = re.compile(r'((?<=id=")([\w.]+)">\s*<a class="viewcode-back" href="[^"#]*?([\w.]+)\.html)#[^"]*')
 SETTINGS: dict[str, Any] = tomllib.loads((HERE / "settings.toml").read_text("utf-8"))
@@ -40,7 +40,7 @@ def setup(app: Any) -> dict[str, Any]:
     app.connect("autodoc-process-docstring", _docstring, priority=400)  # numpydoc comes at 500
     app.connect("autodoc-skip-member", _skip)
     app.connect("missing-reference", _resolve)
-    app.connect("html-page-context", _breakable)
+    app.connect("html-page-context", _typeset)
     app.connect("html-page-context", _describe)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
 
@@ -96,7 +96,7 @@ def _describe(app: Any, page: str, template: str, context: dict[str, Any], doctr
             return
 
 
-def _breakable(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
+def _typeset(app: Any, page: str, template: str, context: dict[str, Any], doctree: Any) -> None:
     """Let a name in a table break after a dot or an underscore, and draw each letter of formulas once.
 
     A narrow column cuts a name nowhere else; a formula uses what one before it has drawn.
