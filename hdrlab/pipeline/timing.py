@@ -118,8 +118,8 @@ def refine_times(state: Assembly, response: Method, before: float) -> Assembly:
         relative = estimate_relative_times(state.bracket).times
         other, spread = correct_times(rising.bracket._replace(times=relative), response, None)
         if spread < WORTHLESS / 2:
-            by = f"by {before:.2f} stops" if before < np.inf else "beyond measure"
-            off = f"the stated times contradict the pixels {by}, so they were not used"
+            off = f"the stated times contradict the pixels by {before:.2f} stops, so they were not used"
+            off = off.replace("by inf stops", "beyond measure")
             state, found, doubts = rising, other, (f"{off}, but {describe_steps(relative)}",)
     notes = (*state.notes, exposure_times.note(found, state.bracket.names))
     state = state._replace(
