@@ -4,9 +4,9 @@
 # Due {due}. {total} points. {late}
 #
 # Four answers that are younger than the slides: a radiance map that knows how sure it is, a base layer
-# made of lines instead of neighbours, contrast lowered scale by scale with no base at all, and a code for
-# displays that are brighter than paper. Then questions of the lecture that no other sheet asks: a
-# sensor's gain, levels that two histograms bring together, how sure a level is, what a good pixel is,
+# made of lines instead of neighbours, contrast lowered scale by scale with no base at all, and for displays
+# that are brighter than paper a code and a map of gains. Then questions of the lecture that no other sheet
+# asks: a sensor's gain, levels that two histograms bring together, how sure a level is, what a good pixel is,
 # what a meter asks for and of whom, and where a surface is even. You write the heart of each.
 #
 # {choice}
@@ -20,6 +20,7 @@
 # | $l$ | $\ln$ luminance, `lL` | (H, W) |
 # | $I$, $p$, $q$ | guide, picture, and the picture smoothed | (H, W) |
 # | $F_D$ | luminance that a display shows, cd/m² | any |
+# | $G$ | gain, stops; of a map of gains, $g$ | (H, W, 3) |
 # | $S$, $V$ | signal in levels, and variance in levels², of pairs of photographs | (M,) |
 # | $h_A$, $h_B$; $T$ | histograms of two photographs; the level in $B$ of each level of $A$ | (n,) |
 # | $g$, $w$ | logarithm of each level's exposure, and its weight | (n,) |
@@ -196,8 +197,61 @@ pictures.picture(
     alt="The signal over the logarithm of luminance: PQ is nearly a line, gamma leaves the dark no codes",
 )
 
+# %% [markdown] about="gain_map"
+# ## 6 · One picture for every screen: the gain map ({points})
+#
+# A photograph does not know its screen. So ISO 21496-1 (2025) keeps two: a picture for any screen, `sdr`,
+# which an operator made, and a map of how much brighter the scene, `hdr`, ought to be. Both are light, and
+# 1 is the screen's white; `hdr` goes on beyond it. The gain is counted in stops,
+#
+# $$G = \log_2 \frac{\text{hdr} + k_\text{hdr}}{\text{sdr} + k_\text{sdr}},$$
+#
+# with small offsets `k` $= (k_\text{sdr}, k_\text{hdr})$, so that black has a gain. The map says where a gain
+# lies between the least and the largest that it can tell, `low` and `high`:
+#
+# $$g = \Bigl(\frac{G - \text{low}}{\text{high} - \text{low}}\Bigr)^\gamma,$$
+#
+# the quotient clipped to 0 ... 1 before it is raised to $\gamma$ = `gamma`, which is above 0.
+#
+# (`sdr`, `hdr` and $g$ have one shape, (H, W, 3) or another. `low` and `high` are numbers, or one for each
+# channel, (3,). Where an offset is 0, no check asks for black.)
+
+# %% task="gain_map"
+# Return g, 0 to 1, for the picture sdr and the scene hdr.
+
+# %% about="gain_map"
+sdr = np.clip(0.18 * room / np.exp(np.mean(np.log(L))), 0, None)
+hdr, sdr = np.minimum(sdr, 8), sdr / (1 + sdr)
+g = gain_map(sdr, hdr, 0.0, 3.2)
+pictures.picture(colour.to_8bit(g), alt="The gain map: bright in the window, the lamp and where sun falls")
+
+# %% [markdown] about="apply_gain"
+# ## 7 · What a brighter screen shows ({points})
+#
+# Who reads the map goes the way back. From $g$ comes the gain,
+#
+# $$G = \text{low} + (\text{high} - \text{low})\, g^{1 / \gamma}.$$
+#
+# A screen whose brightest light is as far above white as the map reaches takes all of it; another takes the
+# part $W$ of its stops, 0 to 1, and shows
+#
+# $$(\text{sdr} + k_\text{sdr})\; 2^{W G} - k_\text{hdr}.$$
+#
+# ($W$ is a number. `low`, `high` and `gamma` are numbers, or one for each channel, (3,); what is shown has
+# the shape of `sdr`.)
+
+# %% task="apply_gain"
+# Return the light, 1 = white, that a screen shows which takes the part W of the gain.
+
+# %% about="gain_map apply_gain"
+shown = [apply_gain(sdr, np.rint(255 * g) / 255, 0.0, 3.2, W=W) / 8**W for W in (0, 1 / 3, 2 / 3, 1)]
+pictures.picture(
+    colour.to_8bit(np.clip(np.hstack(shown), 0, 1)),
+    alt="The room on screens of 1, 2, 4 and 8 times white: the larger, the more is to be seen in the window",
+)
+
 # %% [markdown] about="line"
-# ## 6 · Photon transfer: a sensor's gain out of its noise ({points})
+# ## 8 · Photon transfer: a sensor's gain out of its noise ({points})
 #
 # Of an even wall pairs of photographs were taken, with more light from pair to pair; the first pair is
 # dark, with the lens cap on. $S$ is each pair's signal, in levels above the dark ($S_0 = 0$), and $V$ the
@@ -227,7 +281,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="brightness_transfer"
-# ## 7 · Two histograms instead of two aligned photographs ({points})
+# ## 9 · Two histograms instead of two aligned photographs ({points})
 #
 # The $k$-th darkest pixel of a photograph $A$ is the $k$-th darkest of $B$, whatever the camera's
 # response, if both show the same scene [(Grossberg and Nayar,
@@ -260,7 +314,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="snr"
-# ## 8 · How sure is a level? The signal over its noise ({points})
+# ## 10 · How sure is a level? The signal over its noise ({points})
 #
 # Let the noise in a photograph's levels have one size everywhere. Through the response $f = e^{g}$ it
 # enters the exposure by the slope $f'$, so the signal over the noise [(Mitsunaga and Nayar,
@@ -288,7 +342,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="weight"
-# ## 9 · What a good pixel is: the weights of exposure fusion ({points})
+# ## 11 · What a good pixel is: the weights of exposure fusion ({points})
 #
 # [Mertens, Kautz and Van Reeth (2007)](https://doi.org/10.1109/PG.2007.17) make no radiance map. They
 # blend the photographs themselves, by three measures of each pixel; $F$ is a photograph from 0 to 1, its
@@ -317,7 +371,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="optimum"
-# ## 10 · What a meter asks for ({points})
+# ## 12 · What a meter asks for ({points})
 #
 # A picture taken at the exposure value $\mathrm{EV}_\text{pre}$ has the reading $B_\text{pre}$, a
 # brightness above 0, up to 1; it should be $B_\text{opt}$, by default 0.18. The exposure value that brings it
@@ -329,7 +383,7 @@ pictures.picture(
 # Return EV_opt of numbers EV_pre, B_pre and B_opt.
 
 # %% [markdown] about="spot"
-# ## 11 · Whom does a spot meter ask? ({points})
+# ## 13 · Whom does a spot meter ask? ({points})
 #
 # It weights the pixels of a disc alike, and no others; all weights add up to 1. The middle of the disc is
 # `at`, how far down and how far right in parts of the picture (H, W): at row `at[0]` $H$ and column
@@ -352,7 +406,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="centre"
-# ## 12 · A meter that asks all, and the middle most ({points})
+# ## 14 · A meter that asks all, and the middle most ({points})
 #
 # A centre-weighted meter has no rim. A pixel's weight is a Gaussian, $\exp\bigl(-d^2 / (2 \sigma^2)\bigr)$,
 # of its distance $d$ from the middle `at`, measured in parts of the picture: in heights down, in widths to
@@ -372,7 +426,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="flat"
-# ## 13 · Is that patch flat? Ask chi-square ({points})
+# ## 15 · Is that patch flat? Ask chi-square ({points})
 #
 # Whoever calibrates with pixels takes those on even surfaces ([Mitsunaga and Nayar,
 # 1999](https://doi.org/10.1109/CVPR.1999.786966)). `A` (t, H, W) are $t$ frames of one exposure, where 1 is
@@ -406,7 +460,7 @@ pictures.picture(
 )
 
 # %% [markdown] about="solve_by_svd"
-# ## 14 · Least squares by the SVD ({points})
+# ## 16 · Least squares by the SVD ({points})
 #
 # Debevec and Malik's system $A x = b$ has more rows than unknowns; and if the row $g(n/2) = 0$ is left out,
 # not one answer but many, for a number that is added to all $g$ and all $\ln E$ changes no other row. The

@@ -23,6 +23,7 @@ from hdrlab.core.types import F64, ArrayLike
 MIN_BRIGHTNESS, MAX_BRIGHTNESS = 15 / 255, 240 / 255
 # Entries of a table: between two of them a response is straight to a millionth.
 TABLE_SIZE = 1024
+GRID = np.linspace(0, 1, TABLE_SIZE)
 
 
 class Blend(NamedTuple):

@@ -28,18 +28,10 @@ import numpy as np
 from scipy.interpolate import BSpline
 from scipy.optimize import nnls
 
-from hdrlab.calibration.blends import (
-    TABLE_SIZE,
-    Blend,
-    InverseResponse,
-    build_response,
-    rescale,
-    select_blends,
-)
+from hdrlab.calibration.blends import GRID, Blend, InverseResponse, build_response, rescale, select_blends
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64
 
-GRID = np.linspace(0, 1, TABLE_SIZE)
 # Of the mean slope: what is flatter can hardly be distinguished from a step.
 MIN_SLOPE = 1e-3
 
@@ -154,7 +146,7 @@ def join_steps(
     blends = rescale(select_blends(blends))
     if count < 6 or not smoothness >= 0 or max_iterations < 1:
         raise ValueError(f"expected {count=} >= 6, {smoothness=} >= 0 and {max_iterations=} >= 1")
-    p, v, before = np.concatenate([blend.M for blend in blends]), np.ones(TABLE_SIZE), GRID
+    p, v, before = np.concatenate([blend.M for blend in blends]), np.ones_like(GRID), GRID
     for _ in range(max_iterations):
         state = update(blends, p, v, count=count, smoothness=smoothness, offset=offset)
         yield state

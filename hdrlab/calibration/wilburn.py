@@ -22,19 +22,10 @@ import numpy as np
 from numpy.polynomial.polynomial import polyder, polyval
 from scipy.optimize import minimize
 
-from hdrlab.calibration.blends import (
-    TABLE_SIZE,
-    Blend,
-    InverseResponse,
-    build_response,
-    rescale,
-    select_blends,
-)
+from hdrlab.calibration.blends import GRID, Blend, InverseResponse, build_response, rescale, select_blends
 from hdrlab.core.steps import last
 from hdrlab.core.types import F64, ArrayLike
 
-# Places at which the slope must be positive.
-GRID = np.linspace(0, 1, 257)
 SIMPLEX = {"xatol": 1e-6, "fatol": 1e-12, "maxfev": 4000, "adaptive": True}
 
 
@@ -136,4 +127,4 @@ def join(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: floa
     a = last(join_steps(blends, degree=degree, runs=runs)).a
     usable = select_blends(blends)
     s, r = np.transpose([np.polyfit(blend.I, evaluate(blend.M, a), 1) for blend in rescale(usable)])
-    return build_response(usable, evaluate(np.linspace(0, 1, TABLE_SIZE), a), s, r, ends=ends)
+    return build_response(usable, evaluate(GRID, a), s, r, ends=ends)

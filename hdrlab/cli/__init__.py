@@ -9,25 +9,17 @@ import os
 import signal
 import sys
 from collections.abc import Sequence
+from importlib import import_module
 from io import TextIOWrapper
 
 import click
 
-from hdrlab.cli import (  # noqa: F401  # whose commands join the group when they are imported
-    curves,
-    exposures,
-    gallery,
-    grading,
-    lessons,
-    making,
-    maps,
-    photographs,
-    site,
-    submitting,
-    video,
-)
 from hdrlab.cli.common import main
 from hdrlab.cli.terminal import visible
+
+COMMANDS = ("curves", "exposures", "gallery", "grading", "lessons", "making", "maps", "photographs", "site")
+for room in (*COMMANDS, "submitting", "video"):  # whose commands join the group when they are imported
+    import_module(f"hdrlab.cli.{room}")
 
 
 def run(arguments: Sequence[str] | None = None) -> None:

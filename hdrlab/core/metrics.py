@@ -100,9 +100,7 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     E, truth = as_radiance(E).astype(np.float64), as_radiance(truth)
     well = np.asarray(well)
     if not (E.shape == truth.shape and E.shape[:2] == well.shape and well.dtype == bool):
-        raise ValueError(
-            f"expected maps of one shape, got {E.shape}, truth {truth.shape} and {describe(well)}"
-        )
+        raise ValueError(f"expected maps of one shape, got {E.shape}, {truth.shape}, {describe(well)}")
     ratio = E / np.where(truth > 0, truth, np.nan)
     median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
     if not median > 0:

@@ -89,9 +89,7 @@ def _one_of_each(paths: list[Path]) -> Selection:
 
     several = [max(group, key=rank) for group in each.values() if len(group) > 1]
     suffixes = ", ".join(sorted({path.suffix.lower() for path in several}))
-    notes = (
-        [f"{len(several)} photographs are there in several formats: {suffixes} is taken"] if several else []
-    )
+    notes = [f"{len(several)} photographs are there in several formats: {suffixes} is taken"] * bool(several)
     return [max(group, key=rank) for group in each.values()], notes
 
 

@@ -17,7 +17,7 @@ from PIL import Image
 from hdrlab.core.arrays import as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.types import Array, ArrayLike, Mask
+from hdrlab.core.types import Array, ArrayLike
 from hdrlab.io import raw
 from hdrlab.io.album import Paths, select, turn_alike
 from hdrlab.io.decode import Header, decode, look
@@ -110,7 +110,9 @@ def read_bracket(
     linear = headers[0].kind == "RAW"
     balance = raw.balance(headers[0].path) if linear else None
     images = np.empty((len(headers), *headers[0].shape), headers[0].dtype)
-    valid = _valid_like(images, mask)
+    if mask is not None and images.ndim != 4:
+        raise ValueError(f"expected RGB photographs for the mask colour {mask}, these are gray")
+    valid = None if mask is None else np.empty(images.shape[:3], bool)
 
     def fill(j: int) -> None:
         decode(headers[j], images[j], balance=balance)
@@ -187,11 +189,3 @@ def _short(header: Header) -> str:
     colour = "RGB" if len(header.shape) == 3 else "gray"
     bits = 8 * header.dtype.itemsize
     return f"{header.path.name} is {width} x {height}, {colour}, {bits} bits, {header.kind}"
-
-
-def _valid_like(images: Array, mask: tuple[int, int, int] | None) -> Mask | None:
-    if mask is None:
-        return None
-    if images.ndim != 4:
-        raise ValueError(f"expected RGB photographs for the mask colour {mask}, these are gray")
-    return np.empty(images.shape[:3], bool)

@@ -101,9 +101,7 @@ def invert_curves(exposure: ArrayLike, brightness: ArrayLike, *, n: int = 256) -
     """
     X, M = np.atleast_2d(np.asarray(exposure, np.float64)), np.atleast_2d(np.asarray(brightness, np.float64))
     if X.shape != M.shape or not np.all(np.isfinite([X, M])):
-        raise ValueError(
-            f"expected exposure and brightness (C, m), finite, got {describe(X)} and {describe(M)}"
-        )
+        raise ValueError(f"expected exposure and brightness (C, m), finite, got {describe(X)}, {describe(M)}")
     if np.any(np.diff([X, M]) < 0) or not np.all(M[:, 0] < M[:, -1]):
         raise ValueError("expected curves that rise, got one that falls or is flat")
     levels = level_brightness(n)

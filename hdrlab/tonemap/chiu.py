@@ -136,7 +136,7 @@ def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, 
     L = as_luminance(L)
     if not (headroom > 0 and choose_sigma(L, sigma) > 0 and passes >= 0):
         raise ValueError(
-            f"expected headroom > 0, sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
+            f"expected headroom and sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
     state = last(tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes))
     return np.clip(state.Ld, 0, 1)

@@ -64,6 +64,25 @@ def pq(FD):
     return quotient ** f32(78.84375)
 
 
+# %% task="gain_map"
+
+
+def gain_map(sdr, hdr, low, high, *, gamma=1.0, k=(1 / 1024, 1 / 1024)):
+    below, above = (np.asarray(one, f32) + f32(offset) for one, offset in zip((sdr, hdr), k, strict=True))
+    low, high = np.asarray(low, f32), np.asarray(high, f32)
+    part = (np.log2(above / below) - low) / (high - low)
+    return np.minimum(np.maximum(part, f32(0)), f32(1)) ** f32(gamma)
+
+
+# %% task="apply_gain"
+
+
+def apply_gain(sdr, g, low, high, *, W=1.0, gamma=1.0, k=(1 / 1024, 1 / 1024)):
+    low, high, gamma = np.asarray(low, f32), np.asarray(high, f32), np.asarray(gamma, f32)
+    gain = low + (high - low) * np.asarray(g, f32) ** (f32(1) / gamma)
+    return (np.asarray(sdr, f32) + f32(k[0])) * np.exp2(f32(W) * gain) - f32(k[1])
+
+
 # %% task="line"
 
 

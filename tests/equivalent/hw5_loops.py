@@ -86,6 +86,31 @@ def pq(FD):
     return v
 
 
+# %% task="gain_map"
+
+
+def gain_map(sdr, hdr, low, high, *, gamma=1.0, k=(1 / 1024, 1 / 1024)):
+    low, high = (np.broadcast_to(one, np.shape(sdr)) for one in (low, high))
+    g = np.zeros(np.shape(sdr))
+    for place in np.ndindex(g.shape):
+        gain = math.log2((float(hdr[place]) + k[1]) / (float(sdr[place]) + k[0]))
+        part = (gain - low[place]) / (high[place] - low[place])
+        g[place] = min(max(part, 0.0), 1.0) ** gamma
+    return g
+
+
+# %% task="apply_gain"
+
+
+def apply_gain(sdr, g, low, high, *, W=1.0, gamma=1.0, k=(1 / 1024, 1 / 1024)):
+    low, high, gamma = (np.broadcast_to(one, np.shape(sdr)) for one in (low, high, gamma))
+    light = np.zeros(np.shape(sdr))
+    for place in np.ndindex(light.shape):
+        gain = low[place] + (high[place] - low[place]) * float(g[place]) ** (1 / gamma[place])
+        light[place] = (float(sdr[place]) + k[0]) * 2.0 ** (W * gain) - k[1]
+    return light
+
+
 # %% task="line"
 
 

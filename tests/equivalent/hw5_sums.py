@@ -64,6 +64,24 @@ def pq(FD):
     return np.exp(128 * 2523 / 4096 * (np.log(top) - np.log(bottom)))
 
 
+# %% task="gain_map"
+
+
+def gain_map(sdr, hdr, low, high, *, gamma=1.0, k=(1 / 1024, 1 / 1024)):
+    with np.errstate(divide="ignore"):
+        stops = (np.log(hdr + k[1]) - np.log(sdr + k[0])) / np.log(2)
+    return (np.clip(stops, low, high) - low) ** gamma / (np.asarray(high) - low) ** gamma
+
+
+# %% task="apply_gain"
+
+
+def apply_gain(sdr, g, low, high, *, W=1.0, gamma=1.0, k=(1 / 1024, 1 / 1024)):
+    part = np.power(g, 1 / np.asarray(gamma, float))
+    full = 2.0 ** np.asarray(low) * (2.0 ** (np.asarray(high) - low)) ** part
+    return (sdr + k[0]) * full**W - k[1]
+
+
 # %% task="line"
 
 

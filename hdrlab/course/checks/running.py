@@ -74,11 +74,5 @@ def import_path() -> str:
 def _environment(folder: Path) -> dict[str, str]:
     """Return this process's environment but for what could change a score; its scratch is in the folder."""
     kept = {name: value for name, value in os.environ.items() if name not in UNWANTED}
-    own = {
-        "PYTHONPATH": import_path(),
-        "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1",
-        "PYTHONDONTWRITEBYTECODE": "1",
-        "OPENBLAS_NUM_THREADS": "1",
-        "TMPDIR": str(folder),
-    }
-    return {**kept, **own}
+    set_to_1 = ("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "PYTHONDONTWRITEBYTECODE", "OPENBLAS_NUM_THREADS")
+    return kept | dict.fromkeys(set_to_1, "1") | {"PYTHONPATH": import_path(), "TMPDIR": str(folder)}

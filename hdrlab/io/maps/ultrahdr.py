@@ -65,9 +65,7 @@ def read(path: str | Path) -> F32:
         part = _find(Path(path).read_bytes())
         return np.maximum(gainmap.apply_gain(sdr, _decode(header, part), **_meaning(part)), 0)
     except Exception as error:  # on damaged files the codecs raise what they like
-        raise ValueError(
-            f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.200})"
-        ) from None
+        raise ValueError(f"{path}: expected a JPEG with a gain map, ISO's or hdrgm ({error!s:.99})") from None
 
 
 def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroom: float = 8.0) -> None:

@@ -24,13 +24,7 @@ from scipy import ndimage
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_mask, as_stack, levels
 from hdrlab.core.types import F32, ArrayLike, Flags, Indices, Labels, Mask
-from hdrlab.radiance.deghosting import reference, regions
-from hdrlab.radiance.deghosting.deviation import (
-    Deviation,
-    find_clipped_elsewhere,
-    measure_deviation,
-    score_contradiction,
-)
+from hdrlab.radiance.deghosting import deviation, reference, regions
 from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality
 
@@ -75,17 +69,17 @@ class Ghosts(NamedTuple):
     score: F32
 
 
-def detect_motion(found: Deviation, *, tau: float, edge: float, margin: int) -> tuple[F32, Mask]:
+def detect_motion(found: deviation.Deviation, *, tau: float, edge: float, margin: int) -> tuple[F32, Mask]:
     """Return the score (H, W) and the mask (H, W) of what moved: see TAU and EDGE.
 
     Seeds have a score above 1. From them the mask grows over what contradicts half as much, edges counted for
     little, and then by the margin.
     """
-    score = score_contradiction(found, tau=tau, edge=edge)
+    score = deviation.score_contradiction(found, tau=tau, edge=edge)
     seed = regions.find_seeds(score)
     if not seed.any():
         return score, seed
-    weak = score_contradiction(found, tau=tau / 2, edge=edge / 5) > 1
+    weak = deviation.score_contradiction(found, tau=tau / 2, edge=edge / 5) > 1
     return score, regions.dilate(regions.grow(seed, weak, REACH * margin), margin)
 
 
@@ -189,9 +183,9 @@ def remove_ghosts(
     E, quality = merged.E.copy(), merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
     plain = merged.E.reshape(taken.images.shape[1:])
-    deviation = measure_deviation(taken, w)
-    deviation.v[find_clipped_elsewhere(taken, plain)] = np.inf  # no edge and no noise explains that
-    score, moved = detect_motion(deviation, tau=TAU, edge=EDGE, margin=margin)
+    found = deviation.measure_deviation(taken, w)
+    found.v[deviation.find_clipped_elsewhere(taken, plain)] = np.inf  # no edge and no noise explains that
+    score, moved = detect_motion(found, tau=TAU, edge=EDGE, margin=margin)
 
     def choose(labels: Labels) -> Indices:
         return best_exposures(taken, labels) if fixed is None else np.full(labels.max(), fixed)
