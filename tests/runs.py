@@ -13,18 +13,19 @@ from hdrlab.io.files import replacing
 
 HERE = Path(__file__).parent
 SENTENCES = HERE / "test_sentences.py"
-# behind the last cell of a notebook: what its names say of its sentences
+# behind the last cell of a notebook: what its names say of its sentences, and whether its sliders answer
 JUDGE = """import json as _json, sys as _sys
 _sys.path.append({here!r})
 import test_sentences as _sentences
-print(_json.dumps(_sentences.untrue({stem!r}, dict(globals()))))"""
+print(_json.dumps([_sentences.untrue({stem!r}, dict(globals())), _sentences.unanswered()]))"""
 
 
 class Ran(NamedTuple):
-    """A notebook that was run: its file with outputs, and its sentences that are not true, each with why."""
+    """A notebook that was run: its file with outputs, its untrue sentences and stuck sliders, with why."""
 
     executed: Path
     untrue: list[str]
+    unanswered: list[str]
 
 
 def run_once(path: Path, kept: Path) -> Ran:
@@ -40,16 +41,16 @@ def run_once(path: Path, kept: Path) -> Ran:
         / f"{hashlib.sha256(executed.name.encode() + SENTENCES.read_bytes()).hexdigest()}.json"
     )
     if not (executed.exists() and judged.exists()):
-        notebook, untrue = _run(path)
-        for file, text in ((judged, json.dumps(untrue)), (executed, nbformat.writes(notebook))):
+        notebook, said = _run(path)
+        for file, text in ((judged, json.dumps(said)), (executed, nbformat.writes(notebook))):
             file.parent.mkdir(parents=True, exist_ok=True)
             with replacing(file) as temporary:
                 temporary.write_text(text, encoding="utf8")
-    return Ran(executed, json.loads(judged.read_text(encoding="utf8")))
+    return Ran(executed, *json.loads(judged.read_text(encoding="utf8")))
 
 
-def _run(path: Path) -> tuple[nbformat.NotebookNode, list[str]]:
-    """Return a notebook with its outputs, and which of its sentences are untrue."""
+def _run(path: Path) -> tuple[nbformat.NotebookNode, list[list[str]]]:
+    """Return a notebook with its outputs, its untrue sentences, and the sliders that do not answer."""
     with TemporaryDirectory(prefix="run-") as folder:
         notebook = nbformat.read(path, as_version=4)
         notebook.cells.append(nbformat.v4.new_code_cell(JUDGE.format(here=str(HERE), stem=path.stem)))

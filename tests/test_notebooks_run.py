@@ -18,7 +18,7 @@ LONG = (
     ids=lambda path: path.stem,
 )
 def ran(request, executed):
-    """Both tests of a notebook come one after the other, and so with one worker."""
+    """All tests of a notebook come one after the other, and so with one worker."""
     return executed(request.param)
 
 
@@ -31,3 +31,7 @@ def test_every_cell_of_a_notebook_runs_and_none_complains(ran):
 
 def test_what_a_notebook_says_of_its_own_numbers_is_true(ran):
     assert ran.untrue == []
+
+
+def test_each_slider_answers_when_all_cells_have_run(ran):
+    assert ran.unanswered == []

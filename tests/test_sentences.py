@@ -13,10 +13,12 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from ipywidgets.widgets import widget
 from test_notebooks import NOTEBOOKS
 
 from hdrlab.capture import ranges
 from hdrlab.core import metrics
+from hdrlab.show.widgets import Tuner, tune
 
 
 def off(g, truth):
@@ -523,6 +525,19 @@ def untrue(stem, names):
     return found
 
 
+def unanswered():
+    """Return what the sliders of a notebook raise where they are moved after its last cell has run."""
+    found = []
+    for tuner in [one for one in widget._instances.values() if isinstance(one, Tuner)]:
+        for k, name in enumerate(tuner.names):
+            moved = [(at + (k == j)) % len(tuner.values[j]) for j, at in enumerate(tuner.at)]
+            try:
+                tuner._picture(moved)
+            except Exception as error:
+                found.append(f"{tuner.alt}, {name}: {error!r}")
+    return found
+
+
 @pytest.mark.parametrize("path", NOTEBOOKS, ids=lambda path: path.stem)
 def test_each_sentence_stands_in_its_notebook(path):
     text = " ".join(" ".join("".join(cell["source"]) for cell in cells_of(path)).split())
@@ -534,3 +549,12 @@ def test_a_sentence_that_its_numbers_do_not_bear_out_is_named_and_one_that_canno
     assert untrue("00_welcome", {"stops": 16.2}) == [] and untrue("00_welcome", {"stops": 15}) == [sentence]
     (said,) = untrue("00_welcome", {})
     assert said.startswith(f"{sentence}: AttributeError")
+
+
+def test_a_slider_whose_function_has_lost_a_name_since_is_told(monkeypatch):
+    monkeypatch.setattr(widget, "_instances", {})
+    names = {"level": 100}
+    tune(lambda a=0: np.full((4, 4), names["level"] + a, np.uint8), lambda x: x, alt="A square", a=[0, 1])
+    assert unanswered() == []
+    names.clear()
+    assert unanswered() == ["A square, a: KeyError('level')"]

@@ -159,6 +159,18 @@ def test_moving_a_slider_shows_the_picture_of_its_new_position():
     assert level_of(tuner.frame) == 200 and tuner.shown == [200] and tuner.answers == before + 1
 
 
+def test_function_and_drawing_are_computed_in_one_thread_each():
+    seen = []
+
+    def note(_):
+        seen.extend(pool["num_threads"] for pool in widgets.THREADS.info())
+        return square()
+
+    with widgets.THREADS.limit(limits=2):
+        widgets.tune(lambda level: note(level), note, alt="A square", level=[1, 2])
+    assert set(seen) == {1}
+
+
 def test_of_a_burst_of_moves_the_last_position_wins():
     tuner = widgets.tune(square, same, alt="A square", level=(0, 255))
     for level in (10, 250, 30, 80, 200, 60):
@@ -200,6 +212,13 @@ def test_words_are_thinned_out_last():
 
     tuner = widgets.tune(shade, same, alt="Gray", stored=20, colour=["red", "green", "blue"], level=(0, 9))
     assert {position[0] for position in tuner.stored_at} == {0, 1, 2} and len(tuner.stored_at) == 18
+
+
+def test_a_word_of_which_one_picture_is_stored_stays_a_slider():
+    tuner = widgets.tune(
+        lambda colour, a: square(), same, alt="Gray", stored=1, colour=["red", "blue"], a=[1, 2]
+    )
+    assert tuner.stored_at == [tuner.at] and len(tuner.stored) == 1
 
 
 def test_the_environment_says_how_many_pictures_are_stored(monkeypatch):

@@ -213,8 +213,7 @@ def tune(
 
     def picture(at: list[int]) -> web.Image:
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
-            found = f(**positions.values(grids, at))
-        return reuse.draw_reusing(draw, found, finish, kept)
+            return reuse.draw_reusing(draw, f(**positions.values(grids, at)), finish, kept)
 
     at = positions.start(f, grids)
     most = int(os.environ.get("HDRLAB_STORED", stored))

@@ -61,7 +61,7 @@ def beforehand(grids: Grids, at: list[int], most: int) -> list[list[int]]:
     """
     counts, words = list(map(len, grids.values())), [isinstance(each[0], str) for each in grids.values()]
     while math.prod(counts) > max(most, 1):
-        counts[max(range(len(counts)), key=lambda k: (counts[k] > 2, not words[k], counts[k]))] -= 1
+        counts[max(range(len(counts)), key=lambda k: (min(counts[k], 3), not words[k], counts[k]))] -= 1
     axes = [_even(len(each), count, k) for each, count, k in zip(grids.values(), counts, at, strict=True)]
     return sorted(map(list, itertools.product(*axes)), key=lambda position: position != at)
 
