@@ -9,8 +9,10 @@ import asyncio
 import logging
 import os
 import time
+import tomllib
 from logging.handlers import RotatingFileHandler
 from pathlib import Path
+from typing import Any
 
 import uvicorn
 from uvicorn.protocols.http.h11_impl import H11Protocol
@@ -18,13 +20,12 @@ from uvicorn.protocols.http.h11_impl import H11Protocol
 from hdrlab.course.gallery.web.app import Gallery, application
 from hdrlab.course.sandbox.inside.system import resource
 
+SERVER: dict[str, Any] = tomllib.loads(Path(__file__).with_name("server.toml").read_text("utf8"))
 CONNECTIONS = 2000
 # connections that the system hands over together, before the first of them can be refused
 BACKLOG = 256
 # descriptors for the database, pictures, the log, and whatever libraries open
 FILES = 64
-# bytes of a request's head
-HEADERS = 16_384
 # seconds for a request's head to arrive, and between two requests of a connection
 PATIENCE = 10.0
 # seconds for an answer to be taken
@@ -111,23 +112,10 @@ def serve(folder: str | Path, address: str, *, host: str, port: int, behind_prox
     """
     os.umask(0o077)
     keep_log(Path(folder))
-    config = uvicorn.Config(
-        application(Gallery(folder, address)),
-        host=host,
-        port=port,
-        http=limited(connection_limit()),  # over h11, which is strict about headers, and bounds them
-        ws="none",
-        access_log=False,
-        log_config=None,
-        log_level="warning",
-        server_header=False,
-        proxy_headers=behind_proxy,
-        forwarded_allow_ips="127.0.0.1",
-        h11_max_incomplete_event_size=HEADERS,
-        backlog=BACKLOG,
-        timeout_keep_alive=int(PATIENCE),
-        timeout_graceful_shutdown=5,
-    )
+    http = limited(connection_limit())  # over h11, which is strict about headers, and bounds them
+    own: dict[str, Any] = {"host": host, "port": port, "proxy_headers": behind_proxy}
+    app = application(Gallery(folder, address))
+    config = uvicorn.Config(app, http=http, backlog=BACKLOG, log_config=None, **own, **SERVER)
     uvicorn.Server(config).run()
 
 
