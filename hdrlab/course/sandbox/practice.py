@@ -14,13 +14,7 @@ from socket import socket
 
 from hdrlab.course.sandbox import running
 
-DOES_NOT_STOP = (
-    "reading any file that you can read: tests, solutions, this library, your own files",
-    "importing a package from a folder that the code adds to its path",
-    "removing any file that is yours",
-    "using the network",
-    "starting programs, and ending or watching your other processes, the grader among them",
-)
+DOES_NOT_STOP: list[str] = running.RULES["practice"]["does_not_stop"]
 # processes are not counted, for all of yours would be
 OWN_LIMITS = {name: most for name, most in running.LIMITS.items() if name != "NPROC"}
 

@@ -13,6 +13,7 @@ import math
 import socket
 import subprocess
 import time
+import tomllib
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -23,19 +24,8 @@ START = 60.0  # seconds in which a sandbox must have started, on a machine howev
 CLEAR = 10.0  # seconds in which a check must have been cleared away; else the sandbox is started anew
 SETTLE = 1.0  # seconds for a process to end that has closed its control
 SIGNALLED = 128  # and a signal's number: what a launcher ends with when a signal has ended its own
-LIMITS = {  # per process, named as in the module resource
-    "CPU": 60,  # seconds
-    "AS": 2 << 30,  # bytes of address space
-    "FSIZE": 0,  # bytes of a file: none can be written
-    "NPROC": 32,  # processes and threads
-    "NOFILE": 64,
-    "CORE": 0,
-}
-ENVIRONMENT = {
-    **dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1"),
-    "PYTHONHASHSEED": "0",  # regrading gives the same bytes
-    "LC_ALL": "C.UTF-8",
-}
+RULES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("rules.toml").read_text("utf8"))
+LIMITS, ENVIRONMENT = RULES["limits"], RULES["environment"]
 # no site-packages, no .pth, nothing from the folder it stands in
 FLAGS = ("-s", "-P", "-S", "-B", "-X", "utf8")
 PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside the others that it needs

@@ -15,15 +15,9 @@ from socket import socket
 
 from hdrlab.course.sandbox import descent, filters, users
 from hdrlab.course.sandbox.contents import PYTHON, Contents, contents
-from hdrlab.course.sandbox.running import ENVIRONMENT, Launched, Sandbox, Unavailable, command, start
+from hdrlab.course.sandbox.running import ENVIRONMENT, RULES, Launched, Sandbox, Unavailable, command, start
 
-WALLS = (
-    *("--unshare-user", "--unshare-pid", "--unshare-net", "--unshare-ipc", "--unshare-uts"),
-    *("--unshare-cgroup-try", "--disable-userns", "--cap-drop", "ALL"),
-    *("--as-pid-1", "--new-session", "--die-with-parent", "--clearenv"),
-    *("--uid", "1000", "--gid", "1000", "--hostname", "sandbox"),
-)
-NEEDED = ("--disable-userns", "--as-pid-1", "--clearenv", "--size", "--perms")  # since bubblewrap 0.8
+WALLS, NEEDED = RULES["strict"]["walls"], RULES["strict"]["needed"]
 
 
 def sandbox() -> Sandbox:
