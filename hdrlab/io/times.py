@@ -2,6 +2,7 @@
 
 import csv
 import re
+import tomllib
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
@@ -15,21 +16,8 @@ Times = Sequence[float] | NDArray[np.floating] | Mapping[str, float] | str | Pat
 
 # 0.5, 1/60, 0,5 and each of them with a unit, as `_tidy` writes them
 VALUE = re.compile(r"([\d.,]+(?:e[-+]?\d+)?)(?:/([\d.]+))?(s?)", re.IGNORECASE)
-# what a column holds, by its heading; the first that fits. A rate is 60, which may be 60 s or 1/60 s
-HEADINGS = {
-    "inverse": r"^1\s*/|inverse",
-    "iso": r"iso",
-    "rate": r"speed",
-    "seconds": r"time|second|exposure|shutter|^t$|^s$",
-    "f_number": r"^f\b|f[-_ /]?(number|stop)|aperture",
-    "file": r"file|name|image|photo|picture",
-}
-# the columns without a heading, by their count
-COLUMNS = {
-    2: ["file", "rate"],
-    4: ["file", "rate", "f_number", "iso"],
-    6: ["file", "", "inverse", "f_number", "gain", "filters"],
-}
+KNOWN = tomllib.loads(Path(__file__).with_name("times.toml").read_text("utf8"))
+HEADINGS, COLUMNS = KNOWN["headings"], KNOWN["columns"]
 # the least ISO speed, and more than any f-number
 LEAST_ISO = 50
 # of the brightness of the photographs with the times of a list: less decides nothing
@@ -186,7 +174,7 @@ def _heading(cells: list[str]) -> list[str] | None:
 
 def _named_cells(where: str, heading: list[str] | None, cells: list[str]) -> dict[str, str]:
     """Return the cells of a line by what they hold; of three, the last is found by its size."""
-    columns = heading or COLUMNS.get(len(cells), ["file", "rate", "f_number"])
+    columns = heading or COLUMNS.get(str(len(cells)), COLUMNS["3"])
     if len(columns) != len(cells):
         what = f"{len(heading)} columns" if heading else "a file name and its time, such as 1/60"
         raise ValueError(f"{where}: expected {what}, got {' '.join(cells):.80}")

@@ -7,6 +7,7 @@ come out of the project's folder, decoded and encoded again.
 import base64
 import json
 import re
+import tomllib
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -21,14 +22,7 @@ from hdrlab.course.wording import plain
 from hdrlab.io import photos, web
 from hdrlab.show.plots import figures
 
-ASKED = {  # what the assignment asks for -> what a heading about it says
-    "description": r"descri|overview|introduc|about|goal",
-    "what was learnt": r"learn|lesson",
-    "algorithm": r"algorithm|method|theory",
-    "implementation": r"implement|code|program",
-    "results": r"result",
-    "bells and whistles": r"bells|whistle|bonus|extra",
-}
+ASKED: dict[str, str] = tomllib.loads(Path(__file__).with_name("asked.toml").read_text("utf8"))
 MOST = 5_000_000  # bytes of words
 COLUMNS = 200  # of a table; lines with more are plain text
 SIDE = 1400  # pixels of a picture
