@@ -3,7 +3,6 @@
 Whatever a student wrote stays text in them: XML without control characters, cells that are no formula.
 """
 
-import json
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -19,34 +18,7 @@ def gradescope(result: results.Result) -> bytes:
 
     Of a hidden check, the outcome is shown when grades are published, and why it failed never is.
     """
-    head = [*result.problems]
-    if not result.for_credit:
-        head.append(f"For practice. {result.why_practice}")
-    whole = {
-        "score": result.score,
-        "output": "\n".join(head),
-        "output_format": "text",
-        "visibility": "visible",
-        "stdout_visibility": "hidden",
-        "tests": [_gradescope_test(one, result) for one in result.checks],
-    }
-    return (json.dumps(whole, indent=1) + "\n").encode()
-
-
-def _gradescope_test(check: results.Check, result: results.Result) -> dict[str, object]:
-    earned, whole = results.points((check,))
-    said = "" if check.hidden else check.message
-    if said and check.task in result.misconceptions:
-        said += f"\nIt looks as if: {result.misconceptions[check.task]}"
-    return {
-        "name": f"{check.task}: {check.promise}",
-        "score": earned,
-        "max_score": whole,
-        "status": "passed" if check.outcome == "holds" else "failed",
-        "output": said,
-        "output_format": "text",
-        "visibility": "after_published" if check.hidden else "visible",
-    }
+    return feedback.environment().get_template("gradescope.json").render(result=result).encode()
 
 
 def junit(result: results.Result) -> bytes:
