@@ -9,6 +9,7 @@ level, f; and a block W of weights, without which it refuses the file.
 
 import re
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
@@ -18,30 +19,26 @@ from hdrlab.core.weights import gaussian
 
 MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels
 BLOCK = re.compile(r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M)
-WEIGHTS = (
-    "# Weighting function\n# data layout: weight | camera output\n"
-    "# name: W\n# type: matrix\n# rows: {}\n# columns: 2\n"
-)
 
 
 def write_pfstools(path: Path, g: F64) -> None:
     """Write g as pfstools does, with 10 digits."""
-    columns = g.reshape(len(g), -1)
-    names = MATRICES[columns.shape[1]]
-    weights = [f" {w:.9e} {z:4d}\n" for z, w in enumerate(gaussian(len(g)).tolist())]
-    blocks = [*map(_block, names, columns.T), WEIGHTS.format(len(g)), *weights, "\n"]
-    path.write_text("".join(blocks), encoding="ascii")
+    columns, z = g.reshape(len(g), -1), np.arange(len(g))
+    about = "Camera response curve, channel {}\ndata layout: log10(response) | camera output | response"
+    with open(path, "w", encoding="ascii") as file:
+        for name, one in zip(MATRICES[columns.shape[1]], columns.T, strict=True):
+            table = np.column_stack([one / np.log(10), z, np.exp(one)])
+            _write_block(file, about.format(name), name, table)
+        table = np.column_stack([gaussian(len(g)), z])
+        _write_block(file, "Weighting function\ndata layout: weight | camera output", "W", table)
 
 
-def _block(name: str, g: F64) -> str:
-    """Return a channel as a block of Octave's text format; pfstools goes by the lines of rows and columns."""
-    head = (
-        f"# Camera response curve, channel {name}\n"
-        "# data layout: log10(response) | camera output | response\n"
-        f"# name: {name}\n# type: matrix\n# rows: {len(g)}\n# columns: 3\n"
-    )
-    lines = [f" {one / np.log(10):.9e} {z:4d} {np.exp(one):.9e}\n" for z, one in enumerate(g.tolist())]
-    return head + "".join(lines) + "\n"
+def _write_block(file: TextIO, about: str, name: str, table: F64) -> None:
+    """Write a block of Octave's text format; pfstools goes by the lines of rows and columns."""
+    rows, columns = table.shape
+    head = f"{about}\nname: {name}\ntype: matrix\nrows: {rows}\ncolumns: {columns}"
+    np.savetxt(file, table, [" %.9e", "%4d", "%.9e"][:columns], header=head)
+    file.write("\n")
 
 
 def read_pfstools(path: Path) -> F64:
