@@ -90,10 +90,9 @@ def _executor(course: "Course", asked: Any) -> "Executor":
         return processes.Processes(grader.result, asked.jobs)
     if asked.jobs is not None:
         raise ValueError("expected --jobs or --cluster: a cluster grades as many at a time as it has threads")
-    try:
-        from hdrlab.course.classroom.executors import cluster
-    except ImportError as error:
-        raise ValueError(f'expected {error.name}: pip install "hdrlab[cluster]"') from None
+    common.require("cluster", ["dask", "distributed"])
+    from hdrlab.course.classroom.executors import cluster
+
     return cluster.Cluster(asked.cluster, grader.result, grader.ready)
 
 

@@ -3,6 +3,7 @@
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -88,6 +89,12 @@ def no_tier(reason: str) -> ValueError:
     line = reason.strip().partition("\n")[0].rstrip(".")
     other = "" if "practice" in line else ". For practice alone, and not for credit: --tier practice"
     return ValueError(f"{line}; {helps}{other}")
+
+
+def require(extra: str, names: Iterable[str]) -> None:
+    """Raise a ValueError that says what to install, where modules of an extra are not there."""
+    if missing := [name for name in names if find_spec(name) is None]:
+        raise ValueError(f'expected {", ".join(missing)}: pip install "hdrlab[{extra}]"')
 
 
 def say(word: str, lines: Iterable[object]) -> None:

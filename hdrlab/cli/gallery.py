@@ -3,7 +3,6 @@
 import time
 from contextlib import closing
 from datetime import datetime
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -110,9 +109,7 @@ def links(
 @click.option("--behind-proxy", is_flag=True, help="A proxy on this machine ends TLS and names its clients.")
 def serve(folder: Path, host: str, port: int, address: str | None, behind_proxy: bool) -> None:
     """Serve the gallery of FOLDER until Ctrl-C. Ballots that were acknowledged are on the disk."""
-    missing = [name for name in NEEDS if find_spec(name) is None]
-    if missing:
-        raise ValueError(f'expected {", ".join(missing)}, which serve pages: pip install "hdrlab[class]"')
+    common.require("class", NEEDS)
     from hdrlab.course.gallery.web.serve import serve as run
 
     address = address or f"http://{host}:{port}"

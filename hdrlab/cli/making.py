@@ -25,13 +25,12 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Pat
     from hdrlab.course.material import handouts
     from hdrlab.course.site import execute
 
+    common.require("course", ["jupytext"])
     try:
         made = handouts.build_steps(plans.read(plan), sources, out, solutions, jobs=jobs)
         common.list_files(common.progress(made, "handouts"))
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None
-    except ImportError as error:
-        raise ValueError(f'expected {error.name}: pip install "hdrlab[course]"') from None
 
 
 @course.command()

@@ -1,7 +1,6 @@
 """The command that makes the course's site."""
 
 import os
-from importlib.util import find_spec
 from pathlib import Path
 
 import click
@@ -33,9 +32,7 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> Non
     Its pages need no server and nothing from elsewhere: open index.html, or put the folder on any web server.
     What has been run is kept beside it, in .NAME.cache, so that the next build runs only what has changed.
     """
-    missing = [name for name in NEEDS if find_spec(name) is None]
-    if missing:
-        raise ValueError(f'expected {", ".join(missing)}, which make the pages: pip install "hdrlab[site]"')
+    common.require("site", NEEDS)
     from hdrlab.cli.terminal import elapsed
     from hdrlab.course.material import materials
     from hdrlab.course.site import execute, pages
