@@ -7,13 +7,11 @@ several are not, and each is tried again alone.
 """
 
 import contextlib
-import hashlib
 import secrets
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from functools import cache
-from pathlib import Path
 from typing import Any, NamedTuple, Self
 
 import dask
@@ -22,7 +20,8 @@ from distributed import Client, Future, KilledWorker
 from distributed.comm import resolve_address
 
 import hdrlab
-from hdrlab.course import scratch
+from hdrlab.course import grading, scratch
+from hdrlab.course.checks.running import LIBRARY
 from hdrlab.course.classroom.executors import alone as process
 from hdrlab.course.classroom.executors.processes import LOOK, PATIENCE
 from hdrlab.course.classroom.journal import Ending, Piece
@@ -46,16 +45,14 @@ class Task(NamedTuple):
 
 
 def version() -> str:
-    """Return which hdrlab this is: its version, and a digest of its source."""
+    """Return which hdrlab this is: its version, and a digest of its source, its tables included."""
     return f"{hdrlab.__version__} ({_sources()})"
 
 
 @cache
 def _sources() -> str:
-    home, digest = Path(hdrlab.__file__).parent, hashlib.sha256()
-    for path in sorted(home.rglob("*.py")):
-        digest.update(path.relative_to(home).as_posix().encode() + path.read_bytes())
-    return digest.hexdigest()[:8]
+    files = sorted(one for one in LIBRARY.rglob("*.*") if one.suffix in (".py", ".toml"))
+    return grading.specification(files)[:8]
 
 
 def do(task: Task) -> bytes:
