@@ -11,7 +11,6 @@ import secrets
 import socket
 import time
 from collections.abc import Callable, Mapping, Sequence
-from types import TracebackType
 from typing import Any, NamedTuple, NoReturn, Self
 
 from hdrlab.course import wording
@@ -100,9 +99,7 @@ class Subject:
         self._running = Running(self._sandbox, self._modules, seconds)
         return self
 
-    def __exit__(
-        self, kind: type[BaseException] | None, error: BaseException | None, at: TracebackType | None
-    ) -> None:
+    def __exit__(self, *error: object) -> None:
         self._drop()
         if self._running is not None:
             self._running.close()

@@ -11,7 +11,6 @@ use_plan("hw2")   gets the points of each task, so that `check` knows them where
 """
 
 import json
-import shutil
 import tempfile
 import textwrap
 from collections.abc import Iterator, Mapping, Sequence
@@ -203,9 +202,9 @@ def _solved(made: Sequence[Handout], assignments: Path, solutions: Path, jobs: i
     far = {name: (assignments / plan).resolve().as_posix() for name, plan in near.items()}  # run elsewhere
     from hdrlab.course.site import execute
 
-    scratch = Path(tempfile.mkdtemp(prefix="hdrlab-solutions-"))
-    try:
-        texts = {one.homework: to_text(one.solution) for one in made}
+    texts = {one.homework: to_text(one.solution) for one in made}
+    with tempfile.TemporaryDirectory(prefix="hdrlab-solutions-", ignore_cleanup_errors=True) as folder:
+        scratch = Path(folder)
         sources = [
             write_text(scratch / f"{name}.ipynb", text.replace(near[name], far[name]))
             for name, text in texts.items()
@@ -214,8 +213,6 @@ def _solved(made: Sequence[Handout], assignments: Path, solutions: Path, jobs: i
             ran = json.loads(done.executed.read_text(encoding="utf8"))
             name = done.source.stem
             yield write_text(solutions / done.source.name, to_text(_tidy(ran)).replace(far[name], near[name]))
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
 
 
 def _tidy(ran: dict[str, Any]) -> dict[str, Any]:

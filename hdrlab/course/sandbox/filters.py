@@ -6,7 +6,7 @@ of which are read-only but /dev/null.
 """
 
 import errno
-import os
+import tempfile
 import tomllib
 from collections.abc import Iterable
 from functools import cache
@@ -40,7 +40,10 @@ def program(name: str) -> bytes:
     )
     if name == "check":
         _narrow(rules)
-    return _exported(rules)
+    with tempfile.TemporaryFile() as file:
+        rules.export_bpf(file)
+        file.seek(0)
+        return file.read()
 
 
 def _allow(rules: Any, names: Iterable[str]) -> None:
@@ -67,12 +70,3 @@ def _narrow(rules: Any) -> None:
         rules.add_rule(ALLOW, "fcntl", Arg(1, EQ, order))
     for order in (GET_TERMINAL, NONBLOCKING, CLOSE_ON_EXEC, KEEP_ON_EXEC):
         rules.add_rule(ALLOW, "ioctl", Arg(1, EQ, order))
-
-
-def _exported(rules: Any) -> bytes:
-    """Return a filter as bytes."""
-    ours, theirs = os.pipe()
-    with open(ours, "rb") as end:
-        with open(theirs, "wb") as begin:  # a few thousand bytes, which a pipe holds
-            rules.export_bpf(begin)
-        return end.read()
