@@ -54,11 +54,9 @@ def equivalent(names: Sequence[str], exposures: Sequence[Exposure]) -> list[floa
     ValueError
         Where a time is missing, or S or N is known of some photographs only.
     """
-    seconds = []
-    for name, exposure in zip(names, exposures, strict=True):
-        if exposure.seconds is None:
-            raise ValueError(f"{name}: expected an exposure time in its EXIF, there is none; {HINT}")
-        seconds.append(exposure.seconds)
+    if untimed := [name for name, one in zip(names, exposures, strict=True) if one.seconds is None]:
+        raise ValueError(f"{untimed[0]}: expected an exposure time in its EXIF, there is none; {HINT}")
+    seconds = [exposure.seconds for exposure in exposures if exposure.seconds is not None]
     stops = _alike(names, [exposure.f_number for exposure in exposures], "f-number")
     speeds = _alike(names, [exposure.iso for exposure in exposures], "ISO speed")
     return [t * (S / speeds[0]) * (stops[0] / N) ** 2 for t, S, N in zip(seconds, speeds, stops, strict=True)]

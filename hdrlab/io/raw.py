@@ -9,6 +9,7 @@ serves all. Once the camera's colours are mixed into those of sRGB, clipped ones
 pixel that is clipped in any colour is made white in all.
 """
 
+import re
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -25,6 +26,8 @@ from hdrlab.io.files import check_size
 SUFFIXES = frozenset({".cr2", ".cr3", ".nef", ".arw", ".dng", ".raf", ".rw2", ".orf", ".pef"})
 # of a clipped pixel
 WHITE_LEVEL = 65535
+# compression 52546 of a DNG, as an entry of TIFF says it [DNG 1.7.1]; LibRaw does not decode it
+JPEG_XL = re.compile(rb"\x03\x01\x03\0\x01\0\0\0\x42\xcd|\x01\x03\0\x03\0\0\0\x01\xcd\x42")
 # rows
 BAND_ROWS = 64
 
@@ -78,11 +81,12 @@ def to_srgb(camera: NDArray[np.uint16], matrix: F32) -> NDArray[np.uint16]:
 
 @contextmanager
 def _open(path: str | Path) -> Iterator[Any]:
-    with open(path, "rb"):  # a missing file is a FileNotFoundError here as elsewhere
-        pass
+    with open(path, "rb") as stream:  # a missing file is a FileNotFoundError here as elsewhere
+        packed = JPEG_XL.search(stream.read(1 << 18))
     try:
         with rawpy.imread(str(path)) as file:
             yield file
     except (rawpy.LibRawError, rawpy.NotSupportedError) as error:
         reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
+        reason = "it does not read JPEG XL, set the camera to lossless JPEG" if packed else reason
         raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None

@@ -201,9 +201,8 @@ def deghost(state: Assembly, way: str, w: Callable[[Table], Table], merge: Calla
 def remove_glare(state: Assembly) -> Assembly:
     """Return the Assembly without the light that the lens scattered."""
     found = lens.remove_glare(state.E)
-    return state._replace(
-        stage="flare", E=found.E, glare=found.region, notes=(*state.notes, lens.note(found))
-    )
+    notes = (*state.notes, lens.note(found))
+    return state._replace(stage="flare", E=found.E, glare=found.region, notes=notes)
 
 
 def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:

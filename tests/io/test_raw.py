@@ -1,5 +1,6 @@
 """RAW photographs, on a synthetic DNG whose radiance, white balance and clipping are known."""
 
+import struct
 import sys
 
 import numpy as np
@@ -143,3 +144,60 @@ def test_without_rawpy_the_error_says_what_to_install(tmp_path, monkeypatch):
     (tmp_path / "x.dng").write_bytes(b"II*\0")
     with pytest.raises(ValueError, match=r'pip install "hdrlab\[raw\]"'):
         read_photo(tmp_path / "x.dng")
+
+
+def linear_dng(path, values, **packed):
+    """Write camera colours (H, W, 3) above black, without a colour filter: a linear DNG."""
+    levels = np.clip(np.rint(values / BALANCE) + BLACK, 0, SATURATED).astype(np.uint16)
+    tags = [
+        (50706, "B", 4, (1, 4, 0, 0), True),
+        (50708, "s", 0, "Synthetic", True),
+        (50714, "H", 3, (BLACK,) * 3, True),
+        (50717, "H", 3, (SATURATED,) * 3, True),
+        (50721, "2i", 9, [n for value in SRGB for n in (round(value * 10000), 10000)], True),
+        (50728, "2I", 3, [n for value in BALANCE for n in (1000, round(value * 1000))], True),
+        (50778, "H", 1, 21, True),
+    ]
+    tifffile.imwrite(path, levels, photometric=34892, extratags=tags, metadata=None, **packed)
+    return path
+
+
+def test_a_linear_dng_has_no_mosaic_and_is_linear_too(tmp_path):
+    for value in 100, 400, 1600:
+        Z = read_photo(linear_dng(tmp_path / "x.dng", flat(value)))
+        assert Z.dtype == np.uint16 and Z.shape == (64, 96, 3)
+        assert middle(Z) == pytest.approx(unit(value), rel=0.02)
+
+
+def test_a_linear_dng_and_a_mosaic_of_one_scene_go_together(tmp_path):
+    dng(tmp_path / "a.dng", flat(400)), linear_dng(tmp_path / "b.dng", flat(100))
+    bracket = read_bracket([tmp_path / "a.dng", tmp_path / "b.dng"], {"a.dng": 1.0, "b.dng": 0.25})
+    assert bracket.linear and middle(bracket.images[1]) / middle(bracket.images[0]) == pytest.approx(
+        4, rel=0.03
+    )
+
+
+@pytest.mark.parametrize("order", ["<", ">"])
+def test_a_dng_of_jpeg_xl_is_refused_by_name_with_what_to_do(order, tmp_path):
+    if order == "<":
+        path = linear_dng(tmp_path / "pro.dng", flat(400), compression=52546, tile=(32, 32))
+        assert np.allclose(tifffile.imread(path), flat(400) / BALANCE + BLACK, atol=1)  # another reader's
+    else:  # no writer at hand: the number of the compression alone
+        path = linear_dng(tmp_path / "pro.dng", flat(400), byteorder=">")
+        none, packed = (struct.pack(">HHLH", 259, 3, 1, number) for number in (1, 52546))
+        assert path.read_bytes().count(none) == 1
+        path.write_bytes(path.read_bytes().replace(none, packed))
+    for read in (look, read_photo):
+        with pytest.raises(
+            ValueError, match=r"pro\.dng: .* JPEG XL, set the camera to lossless JPEG"
+        ) as refused:
+            read(path)
+        assert "\n" not in str(refused.value)
+
+
+def test_a_damaged_dng_that_is_not_of_jpeg_xl_is_not_said_to_be(tmp_path):
+    path = dng(tmp_path / "x.dng", flat(100))
+    path.write_bytes(path.read_bytes()[:400])
+    with pytest.raises(ValueError, match=r"x\.dng") as refused:
+        read_photo(path)
+    assert "JPEG XL" not in str(refused.value)
