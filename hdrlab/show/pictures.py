@@ -26,6 +26,7 @@ COLUMN = 640  # pixels of the page: a smaller picture is shown as wide
 FEW_CHANGED = 1 / 8  # of a photograph's pixels: where fewer change, they are kept without loss
 PAPER, MARGIN = 0.72, 0.93  # of a plot's pixels, and of those at its edges, how many are white at least
 DECADE = float(np.log10(2))  # of a stop
+SIGNS = dict(alpha="α", beta="β", delta="δ", epsilon="ε", sigma="σ", sigma_r="σᵣ", sigma_s="σₛ")
 
 
 class Picture(NamedTuple):
@@ -218,12 +219,14 @@ def in_words(name: str, value: object) -> str:
     --------
     >>> [in_words("samples", 3), in_words("read_noise", 5.0), in_words("q", 0.5), in_words("weight", "hat")]
     ['3 samples', 'read noise 5', 'q = 0.5', 'hat']
+    >>> [in_words("alpha", 2), in_words("sigma_r", 0.05)]
+    ['α = 2', 'σᵣ = 0.05']
     """
     words, said = name.replace("_", " "), short(value)
     if isinstance(value, str | bool):
         return said if isinstance(value, str) else f"{'with' if value else 'without'} {words}"
-    if len(name) <= 2:
-        return f"{name} = {said}"
+    if letter := SIGNS.get(name, name if len(name) <= 2 else ""):
+        return f"{letter} = {said}"
     if not name.endswith("s") or name.endswith(("ss", "us")):
         return f"{words} {said}"
     return f"{said} {words[:-1] if said == '1' else words}"

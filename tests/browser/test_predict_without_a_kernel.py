@@ -1,9 +1,11 @@
 """Predictions on a plain page: by pointer and by keys, skipped, answered before, and for a screen reader."""
 
+import imageio.v3 as iio
 import numpy as np
 import pytest
 from laboratory import open_widget
 
+from hdrlab.core.colour import decode_srgb
 from hdrlab.show.widgets import predict
 
 LEVELS = np.repeat(np.arange(192, dtype=np.uint8)[None], 120, axis=0)
@@ -66,7 +68,7 @@ def test_a_number_is_given_by_keys_and_told_how_far_it_is(ask):
 def test_a_curve_drawn_near_the_truth_is_near(ask):
     page = ask("curve")
     box = page.locator("canvas").bounding_box()
-    low, high = (1 - (y + 0.15) / 1.3 for y in (0, 1))  # the axes leave room
+    low, high = (1 - (y + 0.2) / 1.4 for y in (0, 1))  # the axes leave room
     page.mouse.move(box["x"] + 2, box["y"] + low * box["height"])
     page.mouse.down()
     for share in np.linspace(0, 1, 30):
@@ -84,8 +86,25 @@ def test_a_curve_is_drawn_by_keys_and_read_aloud(ask):
         page.keyboard.press(key)
     assert page.get_by_role("status").first.inner_text() == "level 0.125: light 0.5"
     show(page)
-    assert [round(y, 3) for y in given(page) if y is not None] == [0.532, 0.532, 0.5]
+    assert [round(y, 3) for y in given(page) if y is not None] == [0.535, 0.535, 0.5]
     assert "and the true one" in page.get_by_role("img").get_attribute("aria-label")
+
+
+def luminances(page, places):
+    """Return the relative luminance of some pixels of the canvas, as the screen shows them."""
+    picture = iio.imread(page.locator("canvas").screenshot())[..., :3] / 255
+    height, width = picture.shape[:2]
+    pixels = np.array([picture[int(y * height), int(x * width)] for x, y in places])
+    return decode_srgb(pixels) @ [0.2126, 0.7152, 0.0722]
+
+
+def test_the_field_of_a_curve_is_dark_where_jupyterlab_is_and_both_curves_stand_out(ask):
+    page = ask("curve", given=[1.0] * 17, done=True)
+    places = [(0.3, 0.05), (0.5, 0.2 / 1.4), (0.7, 1 - 0.9 / 1.4)]  # the field, yours at 1, the truth
+    assert luminances(page, places)[0] == 1
+    page.evaluate("document.body.dataset.jpThemeLight = 'false'")
+    field, *lines = luminances(page, places)
+    assert field < 0.01 and all((line + 0.05) / (field + 0.05) > 3 for line in lines)
 
 
 @pytest.mark.parametrize(("across", "told"), [(0.99, "Yes."), (0.5, "You were 90 pixels away.")])

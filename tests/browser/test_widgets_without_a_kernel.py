@@ -5,7 +5,7 @@ import pytest
 from laboratory import PATIENCE, open_widget
 
 from hdrlab.io import web
-from hdrlab.show import plots, widgets
+from hdrlab.show import pictures, plots, widgets
 
 
 def square(level=100):
@@ -74,6 +74,25 @@ def test_jupyterlabs_dark_theme_turns_a_plot_to_chalk_and_leaves_a_photograph(pa
     page.evaluate("document.body.dataset.jpThemeLight = 'true'")
     assert canvas.evaluate(look) == "none"
     assert page.problems == []
+
+
+@pytest.mark.parametrize(
+    ("draw", "rows"),
+    [
+        (shaded, {720: [4], 660: [2, 2], 400: [2, 2], 300: [1, 1, 1, 1]}),
+        (
+            lambda k: plots.response(np.arange(256) * (k + 1)),
+            {1320: [4], 960: [2, 2], 700: [2, 2], 400: [1] * 4},
+        ),
+    ],
+)
+def test_four_pictures_of_a_strip_stand_in_one_row_or_two_by_two(page, draw, rows):
+    page.set_content(pictures.strip(lambda k: k, draw, alt="A picture", k=range(4))._repr_html_())
+    tops = "[...document.images].map((image) => Math.round(image.getBoundingClientRect().top))"
+    for width, expected in rows.items():
+        page.set_viewport_size({"width": width + 16, "height": 900})  # a body has a margin of 8
+        found = page.evaluate(tops)
+        assert [found.count(top) for top in sorted(set(found))] == expected, width
 
 
 def test_arrow_keys_move_through_the_steps_and_reach_nobody_else(player):

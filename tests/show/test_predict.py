@@ -32,6 +32,20 @@ def test_a_curve_is_asked_on_axes_that_leave_room_and_thinned_to_what_a_page_can
     assert len(xs) == 257 and np.allclose(ys, np.sqrt(xs))
 
 
+@pytest.mark.parametrize(
+    ("y", "ends"),
+    [
+        ([0, 0.243], [-0.04, 0.28]),
+        ([-3, 40], [-8, 46]),
+        ([1e6, 9e6], [200_000, 9_800_000]),
+        ([5, 5], [4.8, 5.2]),
+    ],
+)
+def test_the_ends_of_a_curves_scale_are_round_numbers_beyond_the_curve(y, ends):
+    low, high = predict.curve("Draw it.", [0, 1], y, names=("x", "y")).scale[2:]
+    assert [low, high] == pytest.approx(ends) and low < min(y) <= max(y) < high
+
+
 @pytest.mark.parametrize("size", [(40, 120), (1200, 1950), (7, 5)])
 def test_the_mask_of_a_place_is_as_large_as_its_picture_and_loses_no_pixel(size):
     mask = np.zeros(size, bool)

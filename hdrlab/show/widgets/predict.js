@@ -94,6 +94,7 @@ const KINDS = {
     const { frame, canvas, context } = stage(root, help);
     [canvas.width, canvas.height] = [1280, 720];
     canvas.style.width = "640px"; // sharp on screens with two pixels for one
+    canvas.toggleAttribute("data-ink", true);
     element(root, "div", { className: "hdrlab-axis", textContent: `→ ${across}, ${digits(left)} to ${digits(right)}` });
     const tell = teller(root);
     const mine = new Array(HANDLES).fill(null);

@@ -117,7 +117,7 @@ def number(
 def curve(
     question: str, x: ArrayLike, y: ArrayLike, *, names: tuple[str, str], because: str = ""
 ) -> Prediction:
-    """Return a question that is answered by drawing: y over x, on axes a little larger than the truth.
+    """Return a question that is answered by drawing: y over x, on axes a little larger, with round ends.
 
     Parameters
     ----------
@@ -136,15 +136,16 @@ def curve(
     Examples
     --------
     >>> curve("Draw it.", [0, 1], [0, 2], names=("level", "light")).scale
-    [0.0, 1.0, -0.3, 2.3]
+    [0.0, 1.0, -0.2, 2.2]
     """
     x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
-    drawn = x.shape == y.shape and x.ndim == 1 and len(x) > 1
-    if not drawn or not np.all(np.diff(x) > 0) or not np.isfinite(y).all():
+    if x.shape != y.shape or x.ndim != 1 or len(x) < 2 or np.any(np.diff(x) <= 0) or not np.isfinite(y).all():
         raise ValueError(f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}")
     few = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int))
-    room = 0.15 * (np.ptp(y) or 1.0)
-    scale = [float(x[0]), float(x[-1]), float(y.min() - room), float(y.max() + room)]
+    room = 0.1 * (np.ptp(y) or 1.0)
+    step = 2 * 10.0 ** np.floor(np.log10(room))
+    low, high = step * np.floor((y.min() - room) / step), step * np.ceil((y.max() + room) / step)
+    scale = [float(x[0]), float(x[-1]), float(low), float(high)]
     parts = {"scale": scale, "labels": list(names), "alts": [f"Axes: {names[1]} over {names[0]}"]}
     return ask("curve", question, [x[few].tolist(), y[few].tolist()], "", because, **parts)
 
