@@ -4,6 +4,7 @@ Letters as in `tonemap.reinhard`. All is float32, and a pixel beyond all measure
 """
 
 from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -58,13 +59,6 @@ def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold:
 
 
 automatic_key = with_parts(__name__, reinhard.automatic_key, log_average=log_average)
-tonemap = with_parts(
-    __name__,
-    reinhard.tonemap,
-    as_light=as_luminance,
-    automatic_key=automatic_key,
-    scale_to_key=scale_to_key,
-    white_point=white_point,
-    display=display,
-    local_adaptation=local_adaptation,
-)
+_parts: dict[str, Any] = {"as_light": as_luminance, "automatic_key": automatic_key, "display": display}
+_parts |= {"scale_to_key": scale_to_key, "white_point": white_point, "local_adaptation": local_adaptation}
+tonemap = with_parts(__name__, reinhard.tonemap, **_parts)
