@@ -9,6 +9,7 @@ import re
 import textwrap
 import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import accumulate
 from typing import NamedTuple
 
 from hdrlab.course.code import names
@@ -164,7 +165,8 @@ def _statements(cell: Cell, first: int) -> list[Statement]:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # of odd escapes, which are the student's own business
         body = ast.parse(text).body
-    lines = text.encode().split(b"\n")  # as the parser counts them: a form feed ends no line
+    data = text.encode()  # whose bytes and lines the parser counts: a form feed ends no line
+    starts = [0, *accumulate(len(line) + 1 for line in data.split(b"\n"))]
     found: list[Statement] = []
     for node in body:
         binds = frozenset(names.bound(node))
@@ -176,19 +178,11 @@ def _statements(cell: Cell, first: int) -> list[Statement]:
         if hasattr(node, "body"):  # a loop's own variable is nothing from another cell
             needs -= binds
         head = frozenset(use.node.id for one in names.head(node) for use in names.free(one))
-        text, place = _part(lines, start, node), first + len(found)
+        begin = starts[start - 1] + (node.col_offset if start == node.lineno else 0)
+        end = starts[(node.end_lineno or start) - 1] + (node.end_col_offset or 0)
+        text, place = data[begin:end].decode(), first + len(found)
         found.append(Statement(place, text, binds | changes, needs | changes, head, cell))
     return found
-
-
-def _part(lines: Sequence[bytes], start: int, node: ast.stmt) -> str:
-    """Return the text of a statement; of two on one line, separated by a semicolon, its own part."""
-    last, end = node.end_lineno or node.lineno, node.end_col_offset  # counted in bytes of UTF-8
-    begin = node.col_offset if start == node.lineno else 0
-    if start == last:
-        return lines[start - 1][begin:end].decode()
-    inner = lines[start : last - 1]
-    return b"\n".join([lines[start - 1][begin:], *inner, lines[last - 1][:end]]).decode()
 
 
 def _shallow(node: ast.AST) -> Iterable[ast.AST]:
