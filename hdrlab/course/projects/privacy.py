@@ -121,9 +121,8 @@ def _tiff(data: bytes, *, raw: bool) -> Cleaned:
     gone |= set() if raw else {exif.NOTES}
     at = exif.first(data)
     seen: set[int] = set()
-    removed = exif.list_personal_data(data) - (
-        {"notes of the maker", "a small picture"} if raw else {"a small picture"}
-    )
+    left = {"notes of the maker", "a small picture"} if raw else {"a small picture"}
+    removed = exif.list_personal_data(data) - left
     while at and at not in seen and len(seen) < 64:
         seen.add(at)
         entries, following = exif.directory(data, at, sign)

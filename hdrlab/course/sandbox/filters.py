@@ -35,9 +35,8 @@ def program(name: str) -> bytes:
     except (ImportError, RuntimeError) as error:
         raise Unavailable(f"the filter of system calls needs pyseccomp and libseccomp: {error}") from None
     rules = pyseccomp.SyscallFilter(pyseccomp.ERRNO(errno.EPERM))
-    _allow(
-        rules, [*CALLS["computing"], *CALLS["reading"], *(CALLS["tending"] if name == "supervisor" else ())]
-    )
+    more = CALLS["tending"] if name == "supervisor" else []
+    _allow(rules, [*CALLS["computing"], *CALLS["reading"], *more])
     if name == "check":
         _narrow(rules)
     with tempfile.TemporaryFile() as file:
