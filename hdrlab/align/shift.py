@@ -31,9 +31,7 @@ def crop(offsets: ArrayLike, shape: tuple[int, ...]) -> tuple[slice, slice]:
     first = np.maximum(moved.max(axis=0), 0)
     end = np.minimum(moved.min(axis=0), 0) + shape[:2]
     if np.any(first >= end):
-        raise ValueError(
-            f"expected images that overlap, got offsets {moved.tolist()} for images of {shape[:2]} pixels"
-        )
+        raise ValueError(f"expected images that overlap, got offsets {moved.tolist()} for {shape[:2]} pixels")
     return slice(int(first[0]), int(end[0])), slice(int(first[1]), int(end[1]))
 
 

@@ -85,9 +85,7 @@ def plan(
 @common.command()
 @click.argument("photo", type=common.FILE)
 @common.choice("--mode", MODES, "centre", help="Whom the meter asks.")
-@click.option(
-    "--at", metavar="DOWN,RIGHT", default="0.5,0.5", help="Place of the spot, in parts of the picture."
-)
+@click.option("--at", metavar="DOWN,RIGHT", default="0.5,0.5", help="The spot, in parts of the picture.")
 def meter(photo: Path, mode: str, at: str) -> None:
     """Read PHOTO as a camera's meter would, and say how it should have been exposed.
 

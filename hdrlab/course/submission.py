@@ -61,9 +61,7 @@ def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] 
             break
         except alone.Failed as error:
             if error.own:
-                what = (
-                    f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, which no homework does"
-                )
+                what = f"takes more than {limits['CPU']} s or {MEMORY >> 20} MB to read, as no homework does"
                 return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
             if tried == TRIES or not error.killed:
                 raise ValueError(f"it could not be read: {error}") from None

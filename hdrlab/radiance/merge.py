@@ -209,9 +209,7 @@ def as_tables(
     n, channels = levels(stack), stack[0, 0, 0].size
     weights, curves = as_table(hat(n) if w is None else w, n), as_response(g, n, channels)
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
-        raise ValueError(
-            f"expected weights (n,) that are not negative and not all 0, got shape {weights.shape}"
-        )
+        raise ValueError(f"expected weights (n,), not negative and not all 0, got shape {weights.shape}")
     if method not in METHODS:
         raise ValueError(f"expected a method out of {', '.join(METHODS)}, got {method!r}")
     if not 0 < top <= 1:

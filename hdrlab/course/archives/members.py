@@ -55,9 +55,7 @@ def check_names(names: Sequence[str], limits: Limits = LIMITS) -> list[PurePosix
         for part in [*list(path.parents)[:-1], path]:
             key, is_file = unicodedata.normalize("NFC", str(part)).casefold(), part == path
             if key in kinds and (is_file or kinds[key]):
-                raise Refused(
-                    f"{quote_name(str(path))} is there twice, or differs from another by case alone"
-                )
+                raise Refused(f"{quote_name(str(path))} is there twice, or differs from another by case")
             kinds[key] = is_file
     return paths
 
@@ -94,7 +92,7 @@ def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:
         raise Refused(f"its files claim {total} bytes together, expected at most {limits.total}")
     if total > (1 << 20) and total > limits.ratio * packed:
         raise Refused(
-            f"it unpacks to {total // max(packed, 1)} times its size, expected at most {limits.ratio}"
+            f"it unpacks to {total // (packed or 1)} times its size, expected at most {limits.ratio}"
         )
 
 

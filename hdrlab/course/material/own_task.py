@@ -34,9 +34,7 @@ def write(folder: Path, task: str, homework: str) -> Iterator[Path]:
         if not (name.isidentifier() and name.islower()) or keyword.iskeyword(name):
             raise ValueError(f"expected a name of small letters, digits and _, got {name!r}")
     if (folder / f"{task}.py").exists() or task == homework:
-        raise ValueError(
-            f"expected the name of a new task, got {task!r}: change {folder / task}.py, or choose another"
-        )
+        raise ValueError(f"expected a new task, got {task!r}: change {folder / task}.py, or choose another")
     for template in sorted(TEMPLATES.rglob("*.txt")):
         name, text = template.relative_to(TEMPLATES).as_posix(), template.read_text(encoding="utf8")
         name, text = (one.replace("TASK", task).replace("HOMEWORK", homework) for one in (name, text))

@@ -48,9 +48,7 @@ def clean(name: str | Path, data: bytes) -> Cleaned:
             return _tiff(data, raw=suffix in TIFF_LIKE)
     except (struct.error, IndexError, ValueError) as error:
         raise ValueError(f"{name}: expected a picture, it is cut short or damaged ({error})") from None
-    raise ValueError(
-        f"{name}: expected a JPEG, PNG, TIFF, DNG, NEF, ARW, CR2 or PEF file, others cannot be cleaned"
-    )
+    raise ValueError(f"{name}: expected JPEG, PNG, TIFF, DNG, NEF, ARW, CR2 or PEF, others cannot be cleaned")
 
 
 def _exif(block: bytes) -> tuple[bytes, set[str]]:

@@ -127,9 +127,7 @@ class Running:
                 return self._begin()
             self.close()  # it was ended from outside, or cannot end what it began
             self._start()
-        raise Unavailable(
-            f"the {self.sandbox.tier} sandbox was ended from outside, and once more when it began anew"
-        )
+        raise Unavailable(f"the {self.sandbox.tier} sandbox was ended from outside, twice")
 
     def _begin(self) -> socket.socket:
         """Clear the last check away, begin another, and return its link."""
