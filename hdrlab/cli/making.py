@@ -58,9 +58,8 @@ def export(
     if gradescope is not None:
         secret, note = secret_of(secret_file)
         click.echo(note, nl=bool(note), err=True)
-        common.list_files(
-            to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret)
-        )
+        made = to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret)
+        common.list_files(made)
 
 
 @course.command("new-task")

@@ -1,5 +1,6 @@
 """Commands that begin with photographs."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -165,11 +166,9 @@ def _find_list(paths: list[Path]) -> Path | None:
     from hdrlab.io.times import bracket_times
 
     for file in sorted([*paths[0].parent.glob("*.csv"), *paths[0].parent.glob("*.txt")]):
-        try:
+        with suppress(ValueError):
             bracket_times([path.name for path in paths], [Exposure()], file)
-        except ValueError:
-            continue
-        return file
+            return file
     return None
 
 

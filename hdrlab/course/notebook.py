@@ -102,10 +102,8 @@ def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:
     for homework in homeworks.values():
         if name in [task.id for task in homework.tasks]:
             return homework, [name]
-    tasks = [task.id for homework in homeworks.values() for task in homework.tasks]
-    raise ValueError(
-        f"expected a homework ({', '.join(homeworks)}) or a task ({', '.join(tasks)}), got {name!r}"
-    )
+    tasks = ", ".join(task.id for homework in homeworks.values() for task in homework.tasks)
+    raise ValueError(f"expected a homework ({', '.join(homeworks)}) or a task ({tasks}), got {name!r}")
 
 
 def _history() -> Sequence[closure.Cell]:

@@ -181,10 +181,8 @@ def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
             T[0], T[-1] = 0, len(f_inv) - 1
             z, known = np.arange(len(f_inv)), np.flatnonzero(np.isfinite(T))
             matched = np.interp(np.interp(z, known, T[known]), z, f_inv)
-            return [
-                np.stack([x / light.local_mean(x) for x in X])
-                for X in light.pair(bright, dark, f_inv, matched)
-            ]
+            pair = light.pair(bright, dark, f_inv, matched)
+            return [np.stack([x / light.local_mean(x) for x in X]) for X in pair]
         k = light.exposure_ratio(dark, bright, np.log(f_inv))
         if seconds is not None:
             k = seconds[fixed] / seconds[moving]

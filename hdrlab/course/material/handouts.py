@@ -177,9 +177,8 @@ def build_steps(
     for name, homework in plan.homeworks.items():
         source = sources / f"{name}.py"
         if not source.is_file():
-            raise ValueError(
-                f"expected the prose of {name} in {source}; it is in a clone of hdrlab, in solutions/"
-            )
+            where = "it is in a clone of hdrlab, in solutions/"
+            raise ValueError(f"expected the prose of {name} in {source}; {where}")
         made.append(handout(source.read_text(encoding="utf8"), homework, lateness(plan)))
     for one in made:
         yield write_text(assignments / f"{one.homework}.ipynb", to_text(one.assignment))

@@ -95,10 +95,8 @@ def _foreign(project: Project) -> list[str]:
         for top in dict.fromkeys(one.split(".")[0] for one in sorted(names.modules(path.read_bytes()))):
             if top not in here and top not in sys.stdlib_module_names and find_spec(top) is None:
                 missing.setdefault(top, project.name(path))
-    return [
-        f"{name} imports {top}, which is neither in the folder nor installed."
-        for top, name in missing.items()
-    ]
+    why = "which is neither in the folder nor installed"
+    return [f"{name} imports {top}, {why}." for top, name in missing.items()]
 
 
 def _report(project: Project) -> str:

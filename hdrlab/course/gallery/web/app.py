@@ -101,10 +101,8 @@ class Gallery(Front):
         if id not in hung:
             raise Refusal(404, HINTS[404])
         at = order.index(id)
-        before, after = order[at - 1], order[(at + 1) % len(order)]
-        return self.page(
-            "look.html", shown=[hung[id]], place=at + 1, count=len(order), before=before, after=after
-        )
+        near: dict[str, Any] = {"before": order[at - 1], "after": order[(at + 1) % len(order)]}
+        return self.page("look.html", shown=[hung[id]], place=at + 1, count=len(order), **near)
 
     async def compare(self, request: Request) -> Response:
         """Show two artifacts beside each other."""
@@ -128,9 +126,8 @@ class Gallery(Front):
         self.voter(request)
         set_up, hung = store.settings(self.db), store.artifacts(self.db)
         if set_up.is_open(self.clock()):
-            raise Refusal(
-                403, f"The results are shown when the vote has closed: {store.format_time(set_up.closes)}."
-            )
+            closes = store.format_time(set_up.closes)
+            raise Refusal(403, f"The results are shown when the vote has closed: {closes}.")
         cast = [one for one in ballots.every(self.db).values() if one]
         authors: dict[str, list[str]] = {}
         for voter in store.voters(self.db):

@@ -110,9 +110,8 @@ def fork(control: socket.socket, begin: Callable[[socket.socket], object]) -> in
 def children() -> list[int]:
     """Return the processes whose parent is this one, as far as the system tells."""
     with contextlib.suppress(OSError):  # there may be no /proc, or a fence before it
-        return [
-            one for one in map(int, filter(str.isdigit, os.listdir("/proc"))) if parent_of(one) == os.getpid()
-        ]
+        numbers = map(int, filter(str.isdigit, os.listdir("/proc")))
+        return [one for one in numbers if parent_of(one) == os.getpid()]
     return []
 
 
