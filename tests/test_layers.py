@@ -22,7 +22,7 @@ BELOW["__init__"] = set()
 
 ONLY_IN = {  # package -> rooms
     **dict.fromkeys(
-        ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "exifread", "pillow"],
+        ["PIL", "imageio", "tifffile", "imagecodecs", "OpenEXR", "Imath", "rawpy", "gphoto2", "pillow"],
         {"io"},
     ),
     **dict.fromkeys(["matplotlib", "ipywidgets", "anywidget", "traitlets"], {"show"}),

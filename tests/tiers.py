@@ -75,6 +75,8 @@ TIERS = {
     ),
     "papers": (
         "tests/test_papers.py",
+        "tests/io/test_tethered.py::test_a_bracket_is_taken",
+        "tests/io/test_tethered.py::test_a_run_that_is_stopped",
         "tests/align/test_cerman.py::test_frames_in_another_order",
         "tests/align/test_cerman.py::test_gray_and_colour",
         "tests/align/test_cerman.py::test_shift_and_rotation",

@@ -12,6 +12,8 @@ A dial says 1/60 and the shutter opens for 1/64 s: the series is one of powers o
 rounded so that people can say them. Times taken from names are wrong by up to 7 %, and a calibration sees it.
 """
 
+from collections.abc import Iterable
+from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -87,6 +89,23 @@ def true_time(nominal: float) -> float:
     dial = shutter_series(3)
     marked = np.array([seconds(name) for name in dial.names])
     return float(dial.values[np.argmin(np.abs(np.log(marked / nominal)))])
+
+
+def read_dial(names: Iterable[str]) -> Dial:
+    """Return the shutter times among the settings of a camera, and their true seconds.
+
+    Examples
+    --------
+    >>> dial = read_dial(["bulb", "1/60", "0.25s"])
+    >>> dial.names, dial.values.tolist()
+    (('1/60', '0.25s'), [0.015625, 0.25])
+    """
+    marked = dict[str, float]()
+    for name in names:
+        with suppress(ValueError):
+            marked[name] = seconds(name)
+    true = [(t, true_time(t)) for t in marked.values()]
+    return Dial(tuple(marked), np.array([T if abs(np.log2(T / t)) < 1 / 6 else t for t, T in true]))
 
 
 def ev(F: Real, T: Real, *, S: Real = 100.0) -> Real:

@@ -23,6 +23,7 @@ import math
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 from hdrlab.capture import exposure
@@ -120,6 +121,33 @@ def plan(
     times = np.exp2(first + step * np.arange(count(reach, usable, usable - step)))
     holds = np.stack([fills / times * 2.0**-usable, fills / times], axis=1).astype(np.float64)
     return Plan(tuple(_name(t, dial) for t in times), times, holds, step)
+
+
+def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.intp]:
+    """Return which of a camera's times (K,) are nearest to T 2^(j stops), j = -(n - 1) / 2, ..., (n - 1) / 2.
+
+    Where the camera's times end on one side, all move to the other.
+
+    Raises
+    ------
+    ValueError
+        Where two of the photographs would have the same time.
+
+    Examples
+    --------
+    >>> around(1 / 60, exposure.shutter_series().values, 3, 2.0).tolist()
+    [13, 11, 9]
+    """
+    known = np.log2(times)
+    wanted = np.log2(middle) + stops * (np.arange(frames) - (frames - 1) / 2)
+    wanted += max(known.min() - wanted[0], 0) + min(known.max() - wanted[-1], 0)
+    chosen = np.abs(known[:, None] - wanted).argmin(axis=0)
+    if len(set(chosen)) < frames:
+        raise ValueError(
+            f"expected {frames} times, {stops:g} EV apart, the camera has {len(times)} over "
+            f"{np.ptp(known):.1f} EV; ask for fewer photographs, or for another distance"
+        )
+    return chosen
 
 
 def squared_snr(L: ArrayLike, times: F64, speeds: F64, camera: Model) -> F64:

@@ -11,15 +11,15 @@ import sys
 from collections.abc import Sequence
 from importlib import import_module
 from io import TextIOWrapper
+from pkgutil import iter_modules
 
 import click
 
 from hdrlab.cli.common import main
 from hdrlab.cli.terminal import visible
 
-COMMANDS = ("curves", "exposures", "gallery", "grading", "lessons", "making", "maps", "photographs", "site")
-for room in (*COMMANDS, "submitting", "video"):  # whose commands join the group when they are imported
-    import_module(f"hdrlab.cli.{room}")
+for module in iter_modules(__path__):  # whose commands join the group when they are imported
+    import_module(f"{__name__}.{module.name}")
 
 
 def run(arguments: Sequence[str] | None = None) -> None:
@@ -39,11 +39,11 @@ def run(arguments: Sequence[str] | None = None) -> None:
         said, code = error.format_message(), error.exit_code
     except OSError as error:
         said, code = f"{error.filename}: {error.strerror}" if error.filename else str(error), 2
+    except (ValueError, MemoryError) as error:
+        said, code = str(error) or type(error).__name__, 2
     except (RuntimeError, ImportError) as error:  # wrap what rises while a class, or a module of C, is made
         if not isinstance(error.__cause__, KeyboardInterrupt):
             raise
         said, code = "interrupted", 130
-    except (ValueError, MemoryError) as error:
-        said, code = str(error) or type(error).__name__, 2
     click.echo(f"hdrlab: {visible(said)}", err=True)
     sys.exit(code)

@@ -1,7 +1,6 @@
 """The command that begins with a film."""
 
 from collections.abc import Iterator
-from fractions import Fraction
 from itertools import chain, islice
 from pathlib import Path
 from typing import Any
@@ -55,11 +54,10 @@ def video(
 
 def seconds(text: str) -> list[float]:
     """Return times, separated by commas, as seconds; each may be a fraction."""
-    try:
-        found = [float(Fraction(one.strip())) for one in text.split(",")]
-    except (ValueError, ZeroDivisionError):
-        raise ValueError(f"--times: expected seconds such as 1/1000,1/60, got {text!r}") from None
-    if len(set(found)) < 2 or min(found) <= 0:
+    from hdrlab.capture import exposure
+
+    found = [exposure.seconds(one) for one in text.split(",")]
+    if len(set(found)) < 2:
         raise ValueError(f"--times: expected at least two exposures of a turn, got {text!r}")
     return found
 

@@ -99,3 +99,9 @@ def test_irradiance_goes_down_by_a_stop_where_the_aperture_does():
     assert exposure.irradiance(5.0, 8 * np.sqrt(2)) == pytest.approx(exposure.irradiance(5.0, 8) / 2)
     with pytest.raises(ValueError, match="f-number"):
         exposure.irradiance(1.0, 0)
+
+
+def test_a_camera_s_times_are_true_where_the_dial_has_them_and_as_they_are_beyond_it():
+    dial = exposure.read_dial(["30", "1/60", "0.0166s", "time", "1/16000", "x 200"])
+    assert dial.names == ("30", "1/60", "0.0166s", "1/16000")
+    assert dial.values.tolist() == [32, 1 / 64, 1 / 64, 1 / 16000]

@@ -123,3 +123,23 @@ def test_the_ratio_of_a_plan_is_that_of_the_mean_by_inverse_variance():
 def test_by_noise_what_means_nothing_is_refused(maker, snr):
     with pytest.raises(ValueError, match="expected"):
         planning.plan_by_noise(0.1, 1000, snr, maker)
+
+
+def test_a_bracket_around_a_time_takes_the_nearest_that_the_camera_has():
+    dial = exposure.read_dial(["bulb", "1/30", "1/125", "1/60", "1/15", "0.25s", "1/4000"])
+    chosen = planning.around(1 / 60, dial.values, 3, 2.0)
+    assert [dial.names[j] for j in chosen] == ["1/125", "1/60", "1/15"]
+
+
+def test_a_bracket_that_the_camera_s_times_do_not_hold_on_one_side_moves_to_the_other():
+    times = 2.0 ** np.arange(-10, 1)
+    assert np.log2(times[planning.around(0.5, times, 4, 2.0)]).tolist() == [-6, -4, -2, 0]
+    assert np.log2(times[planning.around(0.001, times, 4, 2.0)]).tolist() == [-10, -8, -6, -4]
+
+
+@pytest.mark.parametrize(("frames", "stops"), [(6, 2.5), (12, 1), (5, 0.4)])
+def test_a_bracket_in_which_two_times_would_be_one_is_refused(frames, stops):
+    with pytest.raises(
+        ValueError, match=f"expected {frames} times, {stops:g} EV apart, the camera has 11 over"
+    ):
+        planning.around(0.1, 2.0 ** np.arange(-10, 1), frames, stops)

@@ -1,0 +1,205 @@
+"""A camera on a cable: libgphoto2's virtual one, which hands out the photograph in its folder."""
+
+import io
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab.capture import exposure
+from hdrlab.cli import common, run
+from hdrlab.core.colour import encode_srgb
+from hdrlab.io import radiance, tethered
+
+gphoto2 = pytest.importorskip("gphoto2", reason="the extra `camera` is not installed")
+SIZE = 60_000  # bytes of each file: the virtual camera believes that the file in its folder stays as it is
+TRUTH = np.geomspace(0.2, 2000, 96 * 64, dtype=np.float32).reshape(64, 96)
+SLOW = """
+import sys, time
+from hdrlab.cli import common, run
+from hdrlab.io import tethered
+take = tethered.Camera.photograph
+def photograph(*given):
+    time.sleep(.5)
+    return take(*given)
+tethered.Camera.photograph = photograph
+run(sys.argv[1:])
+"""
+
+
+def jpeg(seconds):
+    """Return a photograph of TRUTH as a file, with bytes behind its end up to SIZE."""
+    Z = np.rint(255 * encode_srgb(np.clip(TRUTH * seconds, 0, 1))).astype(np.uint8)
+    Image.fromarray(np.dstack([Z] * 3)).save(file := io.BytesIO(), "JPEG", quality=95)
+    return file.getvalue().ljust(SIZE, b"\0")
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """The folder in which the virtual camera finds what it photographs."""
+    made = tmp_path / "camera"
+    made.mkdir()
+    (made / "scene.jpg").write_bytes(jpeg(0.01))
+    monkeypatch.setenv("VCAMERADIR", str(made))
+    monkeypatch.setenv("HOME", str(tmp_path))  # where it keeps its settings
+    monkeypatch.setenv("IOLIBS", str(Path(gphoto2.__file__).parent / "libgphoto2/vusb"))
+    return made
+
+
+@pytest.fixture
+def lens(folder, monkeypatch):
+    """Let the camera see the scene at the time that it is told; return the times of its photographs."""
+    seen, take = [], tethered.Camera.photograph
+
+    def photograph(self, time, path):
+        seen.append(exposure.seconds(time))
+        (folder / "new").write_bytes(jpeg(exposure.seconds(time)))
+        os.replace(folder / "new", folder / "scene.jpg")
+        return take(self, time, path)
+
+    monkeypatch.setattr(tethered.Camera, "photograph", photograph)
+    return seen
+
+
+def shoot(*arguments):
+    """Run `hdrlab shoot`, and return its exit code."""
+    with pytest.raises(SystemExit) as ended:
+        run(["shoot", *map(str, arguments)])
+    return ended.value.code or 0
+
+
+def names(path):
+    return sorted(one.name for one in path.iterdir())
+
+
+def test_a_bracket_is_taken_around_the_metered_time_and_becomes_a_map_of_the_scene(lens, tmp_path, capsys):
+    room, E = tmp_path / "room", tmp_path / "room.hdr"
+    assert shoot("-o", room, "--frames", 5, "--stops", 2.5, "--assemble", E) == 0
+    assert lens == [0.0001, 0.0025, 0.01, 0.05, 1.0]
+    assert names(room) == [*(f"{j:02d}.jpg" for j in range(1, 6)), "exposures.csv"]
+    found = radiance.read_radiance(E)[..., 1]
+    held = (TRUTH * min(lens) < 0.9) & (TRUTH * max(lens) > 0.02)
+    off = np.log2(found / TRUTH)[held]
+    assert held.mean() > 0.5 and np.percentile(abs(off - np.median(off)), 95) < 0.2
+    said = capsys.readouterr()
+    assert "room.hdr: 96 x 64" in said.out and "autofocus is Off until the end, it was On" in said.err
+
+
+def test_the_list_of_times_says_what_the_shutter_did(lens, tmp_path):
+    assert shoot("-o", tmp_path / "room", "--frames", 3) == 0
+    rows = (tmp_path / "room/exposures.csv").read_text().split("\n")
+    assert rows[0] == "file,exposure_time_s" and rows[-1] == "" and len(rows) == 5
+    for row, nominal in zip(rows[1:-1], lens, strict=True):
+        assert float(row.split(",")[1]) == pytest.approx(exposure.true_time(nominal), rel=1e-5)
+
+
+def test_what_was_changed_is_put_back_at_the_end(folder, tmp_path):
+    def settings(camera):
+        return [camera._setting(one).get_value() for one in ("autofocus", "shutterspeed", "f-number")]
+
+    restore, found = tethered.Camera.restore, []
+
+    def noted(camera):
+        found.append(settings(camera))
+        restore(camera)
+        found.append(settings(camera))
+
+    with mock.patch.object(tethered.Camera, "restore", noted), tethered.connected() as camera:
+        before = settings(camera)
+        assert camera.fix() == ["autofocus is Off until the end, it was On"]
+        assert camera.fix() == []
+        camera.photograph("0.1000s", tmp_path / "a")
+    assert found == [["Off", "0.1000s", "f/2.8"], before]
+
+
+def test_what_the_camera_does_not_let_be_set_is_to_be_fixed_by_hand(folder):
+    refusing = mock.Mock(side_effect=gphoto2.GPhoto2Error(-1))
+    with tethered.connected() as camera:
+        camera._device = mock.Mock(wraps=camera._device, set_single_config=refusing)
+        assert camera.fix() == ["autofocus is On: fix it on the camera, or the photographs will differ"]
+
+
+def test_a_cable_that_is_pulled_out_leaves_what_was_taken(folder, lens, tmp_path, capsys):
+    change = tethered.Camera._set
+
+    def pulled(self, name, value):
+        if len(lens) == 3:
+            shutil.rmtree(folder, ignore_errors=True)
+        return change(self, name, value)
+
+    with mock.patch.object(tethered.Camera, "_set", pulled):
+        assert shoot("-o", tmp_path / "room", "--frames", 4, "--assemble", tmp_path / "room.hdr") == 2
+    assert names(tmp_path / "room") == ["01.jpg", "02.jpg", "exposures.csv"]
+    assert (tmp_path / "room/exposures.csv").read_text().count("\n") == 3
+    assert not (tmp_path / "room.hdr").exists()
+    (last,) = [line for line in capsys.readouterr().err.splitlines() if line.startswith("hdrlab: ")]
+    assert "no camera answers: it may be asleep, its card full, or the cable out" in last
+
+
+@pytest.mark.parametrize(
+    ("code", "meaning"),
+    [(-105, "connect one by USB"), (-115, "card is full"), (-53, "another program"), (-7, "asleep")],
+)
+def test_an_error_of_the_camera_says_what_to_look_at(folder, tmp_path, code, meaning):
+    with tethered.connected() as camera:
+        broken = mock.Mock(wraps=camera._device)
+        broken.capture.side_effect = gphoto2.GPhoto2Error(code)
+        camera._device = broken
+        with pytest.raises(ValueError, match=f"no camera answers: .*{meaning}"):
+            camera.photograph("0.1000s", tmp_path / "a")
+    assert names(tmp_path) == ["camera"]
+
+
+def test_without_a_camera_one_line_says_so(tmp_path, monkeypatch, capsys):
+    missing = mock.Mock(init=mock.Mock(side_effect=gphoto2.GPhoto2Error(-105)))
+    monkeypatch.setattr(gphoto2, "Camera", lambda: missing)
+    assert shoot("-o", tmp_path / "room") == 2
+    assert "connect one by USB" in capsys.readouterr().err and not (tmp_path / "room").exists()
+
+
+def test_without_the_extra_it_is_named(tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(common, "find_spec", lambda name: None)
+    assert shoot("-o", tmp_path / "room") == 2
+    assert 'pip install "hdrlab[camera]"' in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("arguments", "why"),
+    [
+        (["--frames", "9", "--stops", "1"], "9 times, 1 EV apart"),
+        (["--assemble", "map.txt"], "expected a radiance file"),
+    ],
+)
+def test_what_cannot_be_is_refused_before_the_first_photograph(
+    folder, lens, tmp_path, capsys, arguments, why
+):
+    assert shoot("-o", tmp_path / "room", *arguments) == 2
+    assert why in capsys.readouterr().err and lens == [] and not (tmp_path / "room").exists()
+
+
+def test_a_folder_that_holds_something_is_not_written_to(folder, lens, tmp_path, capsys):
+    assert shoot("-o", folder) == 2
+    assert "new or empty" in capsys.readouterr().err and lens == [] and names(folder) == ["scene.jpg"]
+
+
+@pytest.mark.parametrize(("sent", "code"), [(signal.SIGINT, 130), (signal.SIGKILL, -signal.SIGKILL)])
+def test_a_run_that_is_stopped_keeps_whole_photographs_and_their_times(folder, tmp_path, sent, code):
+    room = tmp_path / "room"
+    process = subprocess.Popen([sys.executable, "-c", SLOW, "shoot", "-o", str(room), "--frames", "6"])
+    until = time.monotonic() + 120
+    while not (room / "02.jpg").exists() and time.monotonic() < until:
+        time.sleep(0.02)
+    process.send_signal(sent)
+    assert process.wait(timeout=120) == code
+    taken = [one for one in names(room) if one.endswith(".jpg") and not one.startswith(".")]
+    assert 2 <= len(taken) < 6 and all((room / one).stat().st_size == SIZE for one in taken)
+    listed = (room / "exposures.csv").read_text().splitlines()[1:]
+    assert [row.split(",")[0] for row in listed] == taken[: len(listed)] and len(listed) >= len(taken) - 1
