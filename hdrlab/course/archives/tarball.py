@@ -14,7 +14,8 @@ from typing import IO, Any
 from hdrlab.course.archives import members
 from hdrlab.course.archives.members import PIECE, Limits, Member, Refused, quote_name
 
-OPENERS: dict[str, Any] = {".gz": gzip.open, ".bz2": bz2.open, ".xz": lzma.open}
+# by the first bytes of an archive
+OPENERS: dict[bytes, Any] = {b"\x1f\x8b": gzip.open, b"BZh": bz2.open, b"\xfd7zXZ\0": lzma.open}
 HEADER = 1 << 16  # bytes of a header of tar: a long name, and not a bomb
 PAX = b"xgX"  # types of headers that change what follows: of a member, of all, and Solaris' of a member
 
@@ -46,11 +47,10 @@ def _inflate(archive: Path, target: IO[bytes], packed: int, limits: Limits) -> N
     """Write the archive without its compression, up to what the limits allow."""
     with open(archive, "rb") as file:
         magic = file.read(6)
-    kinds = {b"\x1f\x8b": ".gz", b"BZh": ".bz2", b"\xfd7zXZ\0": ".xz"}
-    kind = next((kind for start, kind in kinds.items() if magic.startswith(start)), "")
+    opener = next((one for start, one in OPENERS.items() if magic.startswith(start)), open)
     most = limits.total + limits.members * 2 * tarfile.BLOCKSIZE + tarfile.RECORDSIZE
-    most = min(most, max(limits.ratio * packed, 1 << 20)) if kind else most
-    with OPENERS.get(kind, open)(archive, "rb") as source:
+    most = min(most, max(limits.ratio * packed, 1 << 20)) if opener is not open else most
+    with opener(archive, "rb") as source:
         while piece := source.read(PIECE):
             if target.tell() + len(piece) > most:
                 raise Refused(f"it unpacks to more than {most} bytes, or {limits.ratio} times its size")
