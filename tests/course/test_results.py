@@ -155,12 +155,11 @@ def test_junit_is_xml_whatever_was_written(hostile):
 
 
 def test_no_cell_of_the_table_is_a_formula(hostile):
-    table = gradebook.table(
-        [hostile._replace(student='=HYPERLINK("http://x")'), hostile._replace(student="ada")]
-    )
-    rows = list(csv.DictReader(io.StringIO(table)))
-    assert [row["score"] for row in rows] == ["0.3333", "0.3333"] and "gsolve" in rows[0]
-    assert not any(cell.startswith(("=", "+", "@", "\t")) for row in rows for cell in row.values())
+    for student in ('=HYPERLINK("http://x")', "ada"):
+        table = gradebook.table(hostile._replace(student=student))
+        (row,) = csv.DictReader(io.StringIO(table))
+        assert row["score"] == "0.3333" and "gsolve" in row
+        assert not any(cell.startswith(("=", "+", "@", "\t")) for cell in row.values())
 
 
 def test_a_page_holds_hostile_text_as_text(hostile):
@@ -216,7 +215,7 @@ def test_where_tasks_are_to_be_chosen_no_more_counts_than_the_sheet_is_worth(ear
     assert (result.score, result.max_score) == (score, 80)
     assert json.loads(gradebook.gradescope(result))["score"] == score
     assert f"hw4: {score} of 80 points" in feedback.text(result)
-    (row,) = csv.DictReader(io.StringIO(gradebook.table([result])))
+    (row,) = csv.DictReader(io.StringIO(gradebook.table(result)))
     assert (float(row["score"]), float(row["max_score"]), float(row["task1"])) == (score, 80, earned[1])
     assert results.from_json(results.to_json(result)) == result
 

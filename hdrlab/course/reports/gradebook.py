@@ -3,7 +3,6 @@
 Whatever a student wrote stays text in them: XML without control characters, cells that are no formula.
 """
 
-from collections.abc import Iterable
 from pathlib import Path
 
 from hdrlab.course.reports import feedback, results, sheets
@@ -26,15 +25,18 @@ def junit(result: results.Result) -> bytes:
     return feedback.environment().get_template("junit.xml").render(result=result).encode()
 
 
-def table(graded: Iterable[results.Result]) -> str:
-    """Return Results as CSV, a row for each: who, what, and the points of each task."""
-    each = list(graded)
-    tasks = list(dict.fromkeys(task for one in each for task in one.tasks))
-    rows: list[list[sheets.Cell]] = []
-    for one in each:
-        earned = [results.points(one.of(task))[0] if one.of(task) else None for task in tasks]
-        rows.append([one.student, one.homework, one.tier, one.score, one.max_score, *earned])
-    return sheets.csv_text([*COLUMNS, *tasks], rows)
+def table(result: results.Result) -> str:
+    """Return a Result as CSV, a header and a row: who, what, and the points of each task."""
+    earned = [results.points(result.of(task))[0] for task in result.tasks]
+    row: list[sheets.Cell] = [
+        result.student,
+        result.homework,
+        result.tier,
+        result.score,
+        result.max_score,
+        *earned,
+    ]
+    return sheets.csv_text([*COLUMNS, *result.tasks], [row])
 
 
 def write_results(folder: Path, result: results.Result, shown: bytes | None = None) -> list[Path]:
@@ -47,7 +49,7 @@ def write_results(folder: Path, result: results.Result, shown: bytes | None = No
     contents = {
         "gradescope.json": gradescope(result),
         "junit.xml": junit(result),
-        "result.csv": table([result]).encode(),
+        "result.csv": table(result).encode(),
         "feedback.html": feedback.page(result).encode(),
         "result.json": results.to_json(result) if shown is None else shown,
     }
