@@ -6,7 +6,6 @@ the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 from hdrlab.course import grading
 from hdrlab.course import plan as plans
@@ -60,6 +59,8 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     RuntimeError
         Outside of a notebook; there, `hdrlab check FILE` does the same.
     """
+    from IPython.display import HTML, DisplayHandle
+
     homework, tasks = find_tasks(name)
     sources, _ = closure.closed(_history(), tasks, handouts.given_cells(homework.name))
     missing = tuple(
@@ -70,11 +71,12 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
     steps = grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE)
-    shown = _show(feedback.bar(0, 1, f"{name}, checking", "of its promises"), None)
+    shown = DisplayHandle()
+    shown.display(HTML(feedback.bar(0, 1, f"{name}, checking", "of its promises")))
     for done, result in enumerate(steps, 1):  # the last one always comes
         asked = len(result.checks)
-        _show(feedback.bar(min(done, asked), asked, f"{name}, checking", "promises"), shown)
-    _show("", shown)
+        shown.update(HTML(feedback.bar(min(done, asked), asked, f"{name}, checking", "promises")))
+    shown.update(HTML(""))
     for task in tasks:
         _latest[task] = result._replace(checks=result.of(task), problems=())
     return Feedback(result, homework)
@@ -115,13 +117,3 @@ def _history() -> Sequence[closure.Cell]:
         raise RuntimeError("check works in a notebook; at a terminal, use: hdrlab check FILE")
     entered: list[str] = shell.history_manager.input_hist_raw  # type: ignore[union-attr]
     return [closure.Cell(text, where=f"input {n}") for n, text in enumerate(entered) if text.strip()]
-
-
-def _show(html: str, shown: Any) -> Any:
-    """Show something below the cell, or in the place of what was shown."""
-    from IPython.display import HTML, display
-
-    if shown is None:
-        return display(HTML(html), display_id=True)
-    shown.update(HTML(html))
-    return shown

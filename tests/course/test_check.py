@@ -2,6 +2,8 @@
 
 import re
 
+from IPython.display import DisplayHandle
+
 from hdrlab.course import notebook
 from hdrlab.course.code.closure import Cell
 
@@ -16,7 +18,8 @@ def hat(n=256):
 def test_a_bar_grows_while_the_promises_of_a_task_are_checked_and_goes_at_the_end(monkeypatch):
     shown = []
     monkeypatch.setattr(notebook, "_history", lambda: [Cell(RIGHT)])
-    monkeypatch.setattr(notebook, "_show", lambda html, handle: shown.append(html))
+    for way in ("display", "update"):
+        monkeypatch.setattr(DisplayHandle, way, lambda handle, html: shown.append(html.data))
     monkeypatch.setattr(notebook, "_plan", {})
     monkeypatch.setattr(notebook, "_latest", {})
     notebook.use_plan("hw2", hat=20)
