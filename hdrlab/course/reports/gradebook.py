@@ -28,14 +28,7 @@ def junit(result: results.Result) -> bytes:
 def table(result: results.Result) -> str:
     """Return a Result as CSV, a header and a row: who, what, and the points of each task."""
     earned = [results.points(result.of(task))[0] for task in result.tasks]
-    row: list[sheets.Cell] = [
-        result.student,
-        result.homework,
-        result.tier,
-        result.score,
-        result.max_score,
-        *earned,
-    ]
+    row = [*(getattr(result, name) for name in COLUMNS), *earned]
     return sheets.csv_text([*COLUMNS, *result.tasks], [row])
 
 
