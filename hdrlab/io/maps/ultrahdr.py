@@ -9,6 +9,7 @@ telephones had it before. Apple's own gain maps are others, and are not read.
 import io
 import re
 import struct
+import warnings
 from pathlib import Path
 from typing import Any
 
@@ -180,7 +181,8 @@ def _from_xmp(part: bytes) -> Array:
 def _decode(header: Header, part: bytes) -> F32:
     """Return the gain map, upright and of the picture's size and channels."""
     height, width = header.shape[:2] if header.orientation < 5 else header.shape[1::-1]
-    with Image.open(io.BytesIO(part), formats=("JPEG",)) as image:
+    # of what Pillow thinks odd in a gain map's own EXIF nobody is to be told
+    with warnings.catch_warnings(action="ignore"), Image.open(io.BytesIO(part), formats=("JPEG",)) as image:
         least = image.height * image.width // BEST_COMPRESSION_RATIO
         files.check_size(header.path, *image.size[::-1], least, available=len(part))
         g = image.convert("L" if len(header.shape) == 2 else "RGB").resize((width, height))

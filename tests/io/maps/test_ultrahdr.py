@@ -238,6 +238,15 @@ def test_a_number_of_thousands_of_letters_is_refused_in_a_few_words(lamp):
     assert 200 < len(str(refused.value)) < 400 + len(str(path))
 
 
+@pytest.mark.parametrize("odd", [b"MPF\0MM\0*\0\0\0\x08\0\x05", b"Exif\0\0II*\0\x08\0\0\0\xff\0"])
+def test_what_is_odd_in_the_gain_maps_own_header_is_not_told_and_changes_nothing(odd, lamp):
+    path, *_ = lamp
+    before, data = ultrahdr.read(path), path.read_bytes()
+    at = data.index(b"\xff\xd8\xff", ultrahdr.jpeg_end(data)) + 2
+    path.write_bytes(data[:at] + ultrahdr._segment(b"\xe2" if odd[:1] == b"M" else b"\xe1", odd) + data[at:])
+    assert np.array_equal(ultrahdr.read(path), before)  # and no warning, which is an error here
+
+
 def test_a_file_cut_short_anywhere_is_refused_by_name(lamp):
     path, *_ = lamp
     data = path.read_bytes()

@@ -1,0 +1,246 @@
+"""The table of formats on the site's page on photographs: each cell, by other writers and readers."""
+
+import io
+import re
+import tempfile
+from pathlib import Path
+
+import cv2
+import imagecodecs
+import numpy as np
+import pytest
+import tifffile
+from PIL import Image
+
+import hdrlab
+from hdrlab.cli import run
+from hdrlab.io import photos, radiance
+
+PAGE = Path(hdrlab.__file__).parent / "course/site/pages/photographs.md"
+RGB = np.random.default_rng(0).integers(30, 220, (4, 6, 3), np.uint8).repeat(8, axis=0).repeat(8, axis=1)
+DEEP = RGB.astype(np.uint16) * 257
+E = (RGB / np.float32(64)) ** 2
+NO_PHOTOGRAPH = r": expected a photograph \(TIFF, JPEG, PNG, WEBP, AVIF, HEIF\), got b"
+NO_MAP = r": expected a radiance file \(\.hdr, .*\), got \."
+
+
+def pillow(form, mode="RGB", image=RGB, **knobs):
+    Image.fromarray(image).convert(mode).save(file := io.BytesIO(), form, **knobs)
+    return file.getvalue()
+
+
+def tiff(image, **knobs):
+    tifffile.imwrite(file := io.BytesIO(), image, photometric="rgb", **knobs)
+    return file.getvalue()
+
+
+def glass():
+    return np.dstack([RGB, RGB[..., :1] // 2])
+
+
+def heic(mode="RGB", image=RGB):
+    module = pytest.importorskip("pillow_heif", reason="HEIC needs the extra `heic`")
+    module.from_bytes(mode, RGB.shape[1::-1], image.tobytes()).save(file := io.BytesIO(), quality=-1)
+    return file.getvalue()
+
+
+def avif(bits):
+    codes = RGB.astype(np.uint16) << (bits - 8)
+    return imagecodecs.avif_encode(codes if bits > 8 else RGB, bitspersample=bits, pixelformat="444")
+
+
+def gains():
+    """Return an Ultra HDR picture as libultrahdr writes it."""
+    light = np.dstack([E, np.ones_like(E[..., :1])]).astype(np.float16)
+    return imagecodecs.ultrahdr_encode(light)
+
+
+def apples():
+    """Return two JPEGs, of which the second is named as Apple names its gains, and no more."""
+    named = b"http://ns.apple.com/HDRGainMap/1.0/"
+    return pillow("JPEG") + pillow("JPEG", extra=b"\xff\xe1" + (len(named) + 2).to_bytes(2) + named)
+
+
+def raw(**knobs):
+    """Return a DNG: camera colours without a mosaic."""
+    pytest.importorskip("rawpy", reason="RAW photographs need the extra `raw`")
+    matrix = [n for one in np.eye(3, dtype=int).ravel().tolist() for n in (one, 1)]
+    tags = [
+        (50706, "B", 4, (1, 4, 0, 0), True),
+        (50714, "H", 3, (0,) * 3, True),
+        (50708, "s", 0, "Ours", True),
+    ]
+    tags += [(50717, "H", 3, (65535,) * 3, True), (50721, "2i", 9, matrix, True)]
+    tags += [(50728, "2I", 3, (1,) * 6, True), (50778, "H", 1, 21, True)]
+    file = io.BytesIO()
+    tifffile.imwrite(file, DEEP, photometric=34892, extratags=tags, metadata=None, **knobs)
+    return file.getvalue()
+
+
+def pfm():
+    return b"PF\n48 32\n-1.0\n" + E[::-1].astype("<f4").tobytes()
+
+
+def opencv(suffix):
+    return cv2.imencode(suffix, np.ascontiguousarray(E[..., ::-1]))[1].tobytes()
+
+
+def exr():
+    """Return an OpenEXR file by its own library."""
+    OpenEXR = pytest.importorskip("OpenEXR", reason="OpenEXR is not installed")
+    header = {"type": OpenEXR.scanlineimage, "compression": OpenEXR.ZIP_COMPRESSION}
+    with tempfile.TemporaryDirectory() as folder, OpenEXR.File(header, {"RGB": E}) as file:
+        file.write(f"{folder}/theirs.exr")
+        return Path(folder, "theirs.exr").read_bytes()
+
+
+# a row of the table: files by other writers, each with what it is as a photograph and as a map: a dtype, or
+# the words with which it is refused
+FILES = {
+    "JPEG, also `.jfif`, and with a film behind it": [
+        ("a.jpg", lambda: pillow("JPEG"), "uint8", "a JPEG with a gain map"),
+        ("a.jfif", lambda: pillow("JPEG"), "uint8", NO_MAP),
+        ("film.jpg", lambda: pillow("JPEG") + bytes(4) + b"ftypmp42" + bytes(99), "uint8", "with a gain map"),
+        ("ink.jpg", lambda: pillow("JPEG", "CMYK"), "expected gray or RGB of 8 or 16 bits, got CMYK", None),
+    ],
+    "Ultra HDR, a JPEG with a gain map": [
+        ("a.jpg", gains, "uint8", "float32"),
+        ("apple.jpg", apples, "uint8", "take a bracket, or RAW"),
+    ],
+    "PNG": [
+        ("a.png", lambda: pillow("PNG"), "uint8", NO_MAP),
+        ("deep.png", lambda: imagecodecs.png_encode(DEEP), "uint16", NO_MAP),
+        (
+            "few.png",
+            lambda: pillow("PNG", "P"),
+            "expected gray or RGB of 8 or 16 bits, got a palette",
+            NO_MAP,
+        ),
+        (
+            "glass.png",
+            lambda: pillow("PNG", "RGBA", glass()),
+            "got an alpha channel with transparent pixels",
+            NO_MAP,
+        ),
+    ],
+    "TIFF": [
+        ("a.tif", lambda: tiff(RGB), "uint8", "expected gray or RGB of floating-point samples"),
+        ("deep.tiff", lambda: tiff(DEEP), "uint16", "expected gray or RGB of floating-point samples"),
+        ("light.tif", lambda: tiff(E), "expected gray or RGB of 8 or 16 bits, got 3 x float32", "float32"),
+    ],
+    "WebP": [("a.webp", lambda: pillow("WEBP"), "uint8", NO_MAP)],
+    "AVIF": [
+        ("a.avif", lambda: pillow("AVIF"), "uint8", NO_MAP),
+        ("ten.avif", lambda: avif(10), "uint16", NO_MAP),
+        ("twelve.avif", lambda: avif(12), "uint16", NO_MAP),
+    ],
+    "JPEG XL": [
+        ("a.jxl", lambda: imagecodecs.jpegxl_encode(RGB), NO_PHOTOGRAPH, NO_MAP),
+        ("light.jxl", lambda: imagecodecs.jpegxl_encode(E), NO_PHOTOGRAPH, NO_MAP),
+    ],
+    "HEIC": [
+        ("a.heic", heic, "uint8", NO_MAP),
+        ("deep.heic", lambda: heic("RGB;16", DEEP), "uint16", NO_MAP),
+    ],
+    "RAW, DNG": [
+        ("linear.dng", raw, "uint16", NO_MAP),
+        ("packed.dng", lambda: raw(compression=52546, tile=(32, 48)), "does not read JPEG XL, set", NO_MAP),
+    ],
+    "RGBE (`.hdr`), OpenEXR, PFM": [
+        ("a.hdr", lambda: opencv(".hdr"), NO_PHOTOGRAPH, "float32"),
+        ("a.exr", exr, NO_PHOTOGRAPH, "float32"),
+        ("a.pfm", pfm, NO_PHOTOGRAPH, "float32"),
+    ],
+}
+EACH = [pytest.param(row, *file, id=f"{row[:8]}-{file[0]}") for row, files in FILES.items() for file in files]
+
+
+def table():
+    """Return the cells of each row of the page's table, by what stands in the first."""
+    section = PAGE.read_text("utf-8").split("## What is read and written\n\n")[1].split("\n\n")[0]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in section.splitlines()]
+    assert rows[0] == ["format", "as a photograph of a bracket", "as a radiance map", "written"]
+    return {row[0]: row[1:] for row in rows[2:]}
+
+
+def test_every_row_has_files_here_and_each_that_says_no_has_none_that_is_read():
+    assert list(table()) == list(FILES)
+    for row, (photograph, light, _) in table().items():
+        dtypes = [{one for _, _, *said in FILES[row] for one in said[k : k + 1]} for k in (0, 1)]
+        assert bool({"uint8", "uint16"} & dtypes[0]) == (photograph != "no"), row
+        assert ("float32" in dtypes[1]) == (light != "no"), row
+
+
+@pytest.mark.parametrize(("row", "name", "make", "photograph", "light"), EACH)
+def test_another_programs_file_is_read_as_the_table_says_or_refused_by_name(
+    row, name, make, photograph, light, tmp_path
+):
+    path = tmp_path / name
+    path.write_bytes(make())
+    if photograph in ("uint8", "uint16"):
+        Z = photos.read_photo(path)
+        assert Z.dtype == photograph and Z.shape == RGB.shape
+        if row not in ("Ultra HDR, a JPEG with a gain map", "RAW, DNG"):  # there levels are others'
+            assert np.abs(Z / np.iinfo(Z.dtype).max - RGB / 255).mean() < 0.03
+    else:
+        with pytest.raises(ValueError, match=f"{re.escape(name)}.*{photograph}") as refused:
+            photos.read_photo(path)
+        assert "\n" not in str(refused.value)
+    if light == "float32":
+        came = radiance.read_radiance(path)
+        assert came.dtype == light and came.shape == E.shape
+        apart = np.log2((came + 1e-3) / (E + 1e-3))
+        assert (
+            np.ptp(np.quantile(apart, [0.05, 0.95])) < 0.15
+        )  # stops, after its unit: RGBE and 8 bits of gain
+    elif light is not None:
+        with pytest.raises(ValueError, match=f"{re.escape(name)}.*{light}") as refused:
+            radiance.read_radiance(path)
+        assert "\n" not in str(refused.value)
+
+
+WRITTEN = {
+    "JPEG, also `.jfif`, and with a film behind it": [("a.jpg", [], lambda data: Image.open(data))],
+    "Ultra HDR, a JPEG with a gain map": [
+        ("a.jpg", ["--to", "ultrahdr"], lambda data: imagecodecs.ultrahdr_decode(data.read()))
+    ],
+    "PNG": [
+        ("a.png", [], lambda data: Image.open(data)),
+        ("pq.png", ["--to", "png"], lambda data: imagecodecs.png_decode(data.read())),
+    ],
+    "TIFF": [("a.tif", [], tifffile.imread), ("map.tif", None, tifffile.imread)],
+    "AVIF": [("a.avif", [], lambda data: imagecodecs.avif_decode(data.read()))],
+    "JPEG XL": [("a.jxl", [], lambda data: imagecodecs.jpegxl_decode(data.read()))],
+    "RGBE (`.hdr`), OpenEXR, PFM": [
+        ("map.hdr", None, lambda data: cv2.imdecode(np.frombuffer(data.read(), np.uint8), -1)),
+        ("map.pfm", None, lambda data: cv2.imdecode(np.frombuffer(data.read(), np.uint8), -1)),
+    ],
+}
+
+
+def test_what_the_table_says_is_written_is_written_here_and_nothing_else():
+    assert {row for row, (*_, written) in table().items() if written != "no"} == set(WRITTEN)
+    assert not {".webp", ".heic", ".jxl", ".dng"} & ({*photos.PICTURES} | {*radiance.SUFFIXES})
+
+
+@pytest.mark.parametrize(
+    ("name", "options", "decode"),
+    [pytest.param(*one, id=f"{row[:8]}-{one[0]}") for row, many in WRITTEN.items() for one in many],
+)
+def test_what_is_written_another_program_reads(name, options, decode, tmp_path):
+    if options is None:
+        radiance.write_radiance(tmp_path / name, E)
+    else:
+        radiance.write_radiance(tmp_path / "from.exr", E)
+        with pytest.raises(SystemExit) as ended:
+            run(["tonemap", str(tmp_path / "from.exr"), "-o", str(tmp_path / name), *options])
+        assert not ended.value.code
+    came = np.asarray(decode(io.BytesIO((tmp_path / name).read_bytes())))
+    assert came.shape[:2] == E.shape[:2] and came.shape[2] in (3, 4) and np.ptp(came[..., :3]) > 0
+
+
+@pytest.mark.parametrize("suffix", [".webp", ".heic", ".jfif"])
+def test_a_picture_of_a_kind_that_is_not_written_is_refused_in_one_line(suffix, tmp_path):
+    with pytest.raises(ValueError, match=rf"a\{suffix}: expected a picture file \(.*\), got \{suffix}"):
+        photos.write_picture(tmp_path / f"a{suffix}", RGB)
+    assert not list(tmp_path.iterdir())
