@@ -37,13 +37,15 @@ class Picture(NamedTuple):
     captions: tuple[str, ...]
     scales: tuple[figures.Scale, ...] = ()  # of the colours, below the pictures: in stops and in decades
     density: int = 1  # pixels of a frame along a pixel of the page
+    areas: tuple[list[list[float]], ...] = ()  # of each frame, what `pictured` says
 
     def __repr__(self) -> str:
         return "; ".join(self.alts)
 
     def _repr_html_(self) -> str:
         images = [web.decode_picture(one) for one in self.frames]
-        told = (self.alts, self.captions, images, map(is_ink, images))
+        areas: Iterable[list[list[float]]] = self.areas or [[] for _ in images]
+        told = (self.alts, self.captions, images, map(is_ink, images), areas)
         each = zip(map(web.data_uri, self.frames), *told, strict=True)
         return _template().render(each=list(each), scales=self.scales, density=self.density, column=COLUMN)
 
@@ -55,7 +57,8 @@ def _template() -> jinja2.Template:
 
 def picture(drawn: object, *, alt: str, caption: str = "") -> Picture:
     """Return `drawn` as a Picture, for the last line of a notebook's cell."""
-    return Picture((encode(drawn, SHARP),), (require_alt(alt),), (caption,), density=_density(drawn))
+    frame, density, areas = encode(drawn, SHARP), _density(drawn), (pictured(drawn),)
+    return Picture((frame,), (require_alt(alt),), (caption,), density=density, areas=areas)
 
 
 def radiance(E: ArrayLike, *, alt: str) -> Picture:
@@ -121,10 +124,11 @@ def strip(
     if not each:
         raise ValueError(f"expected at least one value for {name}, got none")
     drawn = (draw(f(**{name: value})) for value in each)
-    frames, densities = zip(*((encode(one, SHARP), _density(one)) for one in drawn), strict=True)
+    each_one = ((encode(one, SHARP), _density(one), pictured(one)) for one in drawn)
+    frames, densities, areas = zip(*each_one, strict=True)
     captions = tuple(in_words(name, value) for value in each)
     alts = tuple(f"{require_alt(alt)}, {caption}" for caption in captions)
-    return Picture(frames, alts, captions, density=max(densities))
+    return Picture(frames, alts, captions, density=max(densities), areas=areas)
 
 
 def encode(drawn: object, density: int = 1) -> bytes:
@@ -191,13 +195,14 @@ def render(drawn: object, density: int = 1) -> NDArray[np.uint8]:
     raise ValueError(f"expected draw to return a uint8 picture (H, W[, 3]), an Axes or a Figure, got {came}")
 
 
-def pictured(drawn: object) -> tuple[float, float, float, float]:
-    """Return left, top, width and height of the first Axes of what was rendered, as shares of the picture."""
-    figure = getattr(drawn, "figure", None)
-    if figure is None or not figure.axes:
-        return 0.0, 0.0, 1.0, 1.0
-    box = figure.axes[0].get_position()
-    return box.x0, 1 - box.y1, box.width, box.height
+def pictured(drawn: object) -> list[list[float]]:
+    """Return left, top, width and height, as shares of what was rendered, of its Axes that hold pictures.
+
+    Where none does, those of its first Axes; none for a picture. A dark page leaves them their colours.
+    """
+    axes = getattr(getattr(drawn, "figure", None), "axes", [])
+    boxes = [ax.get_position() for ax in [ax for ax in axes if ax.images] or axes[:1]]
+    return [[box.x0, 1 - box.y1, box.width, box.height] for box in boxes]
 
 
 def require_alt(alt: str) -> str:

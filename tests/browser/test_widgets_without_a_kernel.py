@@ -1,11 +1,13 @@
 """The widgets' scripts on a plain page: no kernel answers, and no server is asked for anything."""
 
+import imageio.v3 as iio
 import numpy as np
 import pytest
 from laboratory import PATIENCE, open_widget
 
 from hdrlab.io import web
 from hdrlab.show import pictures, plots, widgets
+from hdrlab.show.plots import tones
 
 
 def square(level=100):
@@ -52,6 +54,38 @@ def player(page):
 def tuner(page):
     open_widget(page, widgets.tune(square, lambda picture: picture, alt="A square", stored=3, level=(0, 200)))
     yield page
+    assert page.problems == []
+
+
+def mapped(k):
+    """Return a map above its scale, on white paper."""
+    return tones.maps({"": np.indices((40, 60))[1] + k}, label="columns", span=(0, 60))
+
+
+def screenshot(page, selector):
+    return iio.imread(page.locator(selector).first.screenshot())[..., :3].astype(int)
+
+
+@pytest.mark.parametrize("live", [True, False])
+def test_a_dark_page_turns_the_paper_around_a_map_to_chalk_and_leaves_the_map_its_colours(page, live):
+    widget = widgets.play(range(2), mapped, alt="A map")
+    open_widget(page, widget)
+    if not live:  # a strip, beside a widget, which brings the style
+        strip = pictures.strip(mapped, lambda figure: figure, alt="A map", k=[0])
+        page.evaluate("html => document.body.insertAdjacentHTML('beforeend', html)", strip._repr_html_())
+    look = "canvas" if live else "figure img"
+    by_day = screenshot(page, look)
+    page.evaluate("document.body.dataset.jpThemeLight = 'false'")
+    by_night = screenshot(page, look)
+    height, width = by_day.shape[:2]
+    (left, top, wide, high), scale = widget.areas
+    inside = np.s_[
+        int((top + 0.02) * height) : int((top + high - 0.02) * height), int(0.1 * width) : int(0.9 * width)
+    ]
+    below = np.s_[int((scale[1] + scale[3] + 0.02) * height) : int(0.98 * height)]
+    assert np.array_equal(by_day[inside], by_night[inside])
+    assert by_day[below].max() == 255 and by_day[below].min() < 40
+    assert np.median(by_night[below]) < 30 and by_night[below].max() > 200
     assert page.problems == []
 
 

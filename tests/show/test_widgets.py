@@ -307,7 +307,7 @@ def test_a_press_means_a_place_of_the_picture_and_not_of_the_title_above_it():
     tuner = widgets.tune(
         dotted, draw, alt="A place", point=("down", "right"), down=(0.0, 1.0), right=(0.0, 1.0)
     )
-    assert np.allclose(tuner.area, [0.1, 0.25, 0.8, 0.5]) and tuner.point == ["down", "right"]
+    assert np.allclose(tuner.areas[0], [0.1, 0.25, 0.8, 0.5]) and tuner.point == ["down", "right"]
 
 
 @pytest.mark.parametrize("point", [("level",), ("level", "level", "level"), ("level", "none")])

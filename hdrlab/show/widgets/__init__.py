@@ -60,10 +60,11 @@ class Player(Widget):
     alts = traitlets.List(traitlets.Unicode()).tag(sync=True)
     name = traitlets.Unicode("step").tag(sync=True)
     index = traitlets.Int(0).tag(sync=True)
+    areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # what `pictured` says
 
     def still(self) -> Picture:
         """Return the first frame."""
-        return Picture(tuple(self.frames[:1]), tuple(self.alts[:1]), ("",))
+        return Picture(tuple(self.frames[:1]), tuple(self.alts[:1]), ("",), areas=(self.areas,))
 
 
 def play(
@@ -99,13 +100,19 @@ def play(
     >>> player.alts[1]
     'A square, ever lighter, step 2'
     """
-    frames, alts, kept = [], [], reuse.Kept()
+    frames, alts, kept, areas = [], [], reuse.Kept(), list[list[float]]()
+
+    def finish(drawn: object) -> bytes:
+        frame = encode(drawn)
+        areas[:] = pictured(drawn)
+        return frame
+
     for k, state in enumerate(islice(states, MOST + 1)):
-        frames.append(reuse.draw_reusing(draw, state, encode, kept))
+        frames.append(reuse.draw_reusing(draw, state, finish, kept))
         alts.append(require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}")
     if not 0 < len(frames) <= MOST:
         raise ValueError(f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}")
-    return Player(frames=frames, alts=alts, name=name)
+    return Player(frames=frames, alts=alts, name=name, areas=areas)
 
 
 class Tuner(Widget):
@@ -124,7 +131,7 @@ class Tuner(Widget):
     stored_at = traitlets.List(traitlets.List(traitlets.Int())).tag(sync=True)
     stored = traitlets.List(traitlets.Bytes()).tag(sync=True)  # WebP; each is painted over the first
     point = traitlets.List(traitlets.Unicode()).tag(sync=True)  # the two sliders that a press moves
-    area = traitlets.List(traitlets.Float()).tag(sync=True)  # left, top, width, height of what is pressed
+    areas = traitlets.List(traitlets.List(traitlets.Float())).tag(sync=True)  # what `pictured` says
 
     def __init__(self, picture: Callable[[list[int]], web.Image], grids: positions.Grids, **traits: Any):
         self._picture, self._grids = picture, grids
@@ -139,7 +146,7 @@ class Tuner(Widget):
 
     def still(self) -> Picture:
         """Return the picture of where the sliders start."""
-        return Picture(tuple(self.stored[:1]), (self.alt,), ("",))
+        return Picture(tuple(self.stored[:1]), (self.alt,), ("",), areas=(self.areas,))
 
     def _answer(self, _: object) -> None:
         """Show the picture of where the sliders stand now: of a burst of moves the last one wins."""
@@ -204,11 +211,11 @@ def tune(
     if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
         raise ValueError(f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}")
 
-    kept, area = reuse.Kept(), [0.0, 0.0, 1.0, 1.0]
+    kept, areas = reuse.Kept(), list[list[float]]()
 
     def finish(drawn: object) -> web.Image:
         image = render(drawn)
-        area[:] = pictured(drawn)
+        areas[:] = pictured(drawn)
         return image
 
     def picture(at: list[int]) -> web.Image:
@@ -223,5 +230,5 @@ def tune(
         with suppress(Exception):  # what a student's function refuses is told when it is asked for
             frames.append(encode_change(picture(position), first))
             stored_at.append(position)
-    told = {"point": list(point or ()), "area": area, "frame": web.encode_frame(first)}
+    told = {"point": list(point or ()), "areas": areas, "frame": web.encode_frame(first)}
     return Tuner(picture, grids, at=at, shown=at, alt=alt, stored_at=stored_at, stored=frames, **told)

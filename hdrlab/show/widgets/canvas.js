@@ -49,8 +49,17 @@ function isInk(pixels) {
   return share(white) > 0.72 && share(white.filter(edge)) > 0.93;
 }
 
-function picture(parent) {
-  const canvas = element(parent, "canvas", { role: "img", "aria-label": "" });
+// The paper around pictures, which a dark page turns about: all but these areas (left, top, width, height).
+function paperAround(areas) {
+  const corners = ([x, y, w, h]) => [[x, y], [x + w, y], [x + w, y + h], [x, y + h], [x, y], [0, 0]];
+  const path = [...corners([0, 0, 1, 1]), ...areas.flatMap(corners)];
+  return `polygon(evenodd, ${path.map((point) => point.map((share) => `${100 * share}%`).join(" ")).join(", ")})`;
+}
+
+function picture(parent, areas = []) {
+  const sheet = element(parent, "div", { className: "hdrlab-sheet" });
+  const canvas = element(sheet, "canvas", { role: "img", "aria-label": "" });
+  if (areas.length) element(sheet, "i", { className: "hdrlab-paper" }).style.clipPath = paperAround(areas);
   let [asked, inked] = [0, null];
   function paint(pixels, alt) {
     const [width, height] = [pixels.displayWidth ?? pixels.width, pixels.displayHeight ?? pixels.height];

@@ -8,7 +8,7 @@ function render({ model, el }) {
   const frames = model.get("frames").map((bytes) => decode(bytes, "image/webp"));
   frames.forEach((waiting, i) => waiting.then((bitmap) => (frames[i] = bitmap)));
 
-  const view = picture(root);
+  const view = picture(root, model.get("areas"));
   const controls = element(root, "div", { className: "hdrlab-controls" });
   const button = element(controls, "button", { type: "button", textContent: "Play" });
   const bar = slider(controls, name, count);

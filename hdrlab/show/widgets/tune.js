@@ -36,7 +36,7 @@ function opened(bytes) {
 function render({ model, el }) {
   const root = start(el, "tune");
   const [names, values] = [model.get("names"), model.get("values")];
-  const view = picture(root);
+  const view = picture(root, model.get("areas"));
   const note = element(root, "p", { className: "hdrlab-note", role: "status" });
   const controls = element(root, "div", { className: "hdrlab-controls" });
   const bars = names.map((name, k) => slider(controls, name, values[k].length));
@@ -107,7 +107,7 @@ function render({ model, el }) {
   // A press on the picture, or a drag, moves two sliders at once: down and right, as shares of the pictured area.
   function point(event) {
     if (event.type === "pointermove" && !event.buttons) return;
-    const [left, top, width, height] = model.get("area");
+    const [left, top, width, height] = model.get("areas")[0] ?? [0, 0, 1, 1];
     const [across, down] = place(event, view.canvas);
     const shares = [(down - top) / height, (across - left) / width];
     model.get("point").forEach((name, axis) => {
