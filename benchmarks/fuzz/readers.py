@@ -10,7 +10,6 @@ from PIL.Image import DecompressionBombError
 
 from benchmarks.fuzz import course_seeds, seeds
 from benchmarks.measure import ROOT
-from hdrlab.cli.describe import describe_file
 from hdrlab.course import plan, submission
 from hdrlab.course.archives import unpack
 from hdrlab.course.classroom import handins, marks, roster
@@ -19,6 +18,7 @@ from hdrlab.course.projects import exif, privacy, project, words
 from hdrlab.course.reports import results
 from hdrlab.io import photos, radiance, response_files, sequence, times, web
 from hdrlab.io.maps import exr, layers
+from hdrlab.show.describe import describe_file
 
 # damaged files that are there already
 DAMAGED = ROOT.parent / "shared" / "data" / "damaged"

@@ -134,7 +134,7 @@ def convert(source: Path, target: Path, half: bool, clean: bool) -> None:
 @click.argument("files", nargs=-1, required=True, type=common.FILE)
 def info(files: tuple[Path, ...]) -> None:
     """Say what FILES are: radiance maps or photographs, their size, values and exposure."""
-    from hdrlab.cli.describe import describe_file
+    from hdrlab.show.describe import describe_file
 
     for file in files:
         said = describe_file(file)

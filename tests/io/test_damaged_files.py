@@ -11,10 +11,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from PIL import Image
 
-from hdrlab.cli.describe import describe_file
 from hdrlab.io.maps import rgbe
 from hdrlab.io.photos import read_photo
 from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
+from hdrlab.show.describe import describe_file
 
 RGB = np.random.default_rng(0).integers(0, 256, (12, 17, 3), np.uint8)
 RGB[:, 5:12] = 90

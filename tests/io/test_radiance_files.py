@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from hdrlab.cli.describe import describe_file
 from hdrlab.io.maps import exr, pfm
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import SUFFIXES, read_radiance, write_radiance
+from hdrlab.show.describe import describe_file
 
 E = np.exp2(np.random.default_rng(0).integers(-20, 20, (7, 9, 3))).astype(np.float32)  # RGBE keeps one power
 

@@ -11,12 +11,12 @@ from PIL import Image
 
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
-from hdrlab.cli.describe import describe_file
 from hdrlab.core import colour
 from hdrlab.io import radiance
 from hdrlab.io import screens as files
 from hdrlab.io.photos import read_bracket
 from hdrlab.pipeline import screens
+from hdrlab.show.describe import describe_file
 
 PLACES = ("chapel", "workshop", "street")
 

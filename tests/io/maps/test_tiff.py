@@ -5,10 +5,10 @@ import numpy as np
 import pytest
 import tifffile
 
-from hdrlab.cli.describe import describe_file
 from hdrlab.io.maps import tiff
 from hdrlab.io.photos import write_picture
 from hdrlab.io.radiance import read_radiance, write_radiance
+from hdrlab.show.describe import describe_file
 
 RNG = np.random.default_rng(0)
 RGB = np.exp(4 * RNG.standard_normal((13, 17, 3))).astype(np.float32)
