@@ -59,9 +59,8 @@ def plan(
         raise ValueError("expected LOW and HIGH in cd/m^2, or --map FILE")
     made = planning.plan(low, high, per_stop=3 if thirds else 1, **camera)
     scene = np.log2(high / low)
-    click.echo(
-        f"scene: {low:.3g} to {high:.3g} cd/m^2, {scene:.1f} stops; one photograph holds {camera['usable']:g}"
-    )
+    held = f"one photograph holds {camera['usable']:g}"
+    click.echo(f"scene: {low:.3g} to {high:.3g} cd/m^2, {scene:.1f} stops; {held}")
     count = len(made.times)
     shots = "1 photograph" if count == 1 else f"{count} photographs, {made.step:.3g} stops apart"
     click.echo(f"{shots}, f/{camera['aperture']:g}, ISO {camera['iso']:g}:")
@@ -137,9 +136,8 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     Z = to_256(photos.read_photo(photo))
     found = battiato.correct(Z, by=by, find_skin=skin.FINDERS[way], target=target)
     photos.write_picture(out, found.picture)
-    click.echo(
-        f"what matters: {found.by}, {found.relevant.mean():.0%} of the picture, mean level {found.before:.0f}"
-    )
+    part = f"{found.relevant.mean():.0%} of the picture"
+    click.echo(f"what matters: {found.by}, {part}, mean level {found.before:.0f}")
     decision = f"{found.delta:+.1f} stops: mean level {found.after:.0f}" if found.delta else "left as it is"
     click.echo(f"{out}: {decision}")
 

@@ -125,9 +125,8 @@ def assemble(
         if report:
             from hdrlab.show.pages.report import write_report
 
-            write_report(
-                report, assembly, rendered, recipe={"response": response} | methods | {"tonemap": settings}
-            )
+            recipe = {"response": response} | methods | {"tonemap": settings}
+            write_report(report, assembly, rendered, recipe=recipe)
     click.echo(f"{out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
     if strict and assembly.doubts:
         click.get_current_context().exit(3)

@@ -53,9 +53,8 @@ def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> Non
         made = pages.build(out, in_order, handouts, {"commands.md": _commands()}, address=address)
     common.say("note", made.complaints)
     fresh = sum(one.fresh for one in done)
-    click.echo(
-        f"{made.front}: {made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks; run now: {fresh}"
-    )
+    counts = f"{made.pages} pages, {made.widgets} widgets, {len(chosen)} notebooks"
+    click.echo(f"{made.front}: {counts}; run now: {fresh}")
 
 
 def _commands() -> str:

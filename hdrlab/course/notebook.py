@@ -63,9 +63,8 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
 
     homework, tasks = find_tasks(name)
     sources, _ = closure.closed(_history(), tasks, handouts.given_cells(homework.name))
-    missing = tuple(
-        f"{task} is not there yet: run the cell that defines it" for task in tasks if task not in sources
-    )
+    absent = [task for task in tasks if task not in sources]
+    missing = tuple(f"{task} is not there yet: run the cell that defines it" for task in absent)
     read = Submission(sources, missing, "", tuple(imported(sources.values())))
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:

@@ -130,9 +130,8 @@ def _judged(one: ByHand) -> str:
 def lateness(plan: Plan) -> str:
     """Return what being late costs, in words."""
     free, cost = plan.late.free_days, plan.late.points_a_day
-    return (
-        f"Of late days you have {free:g} in the whole course; each further one costs {cost:g} of the points."
-    )
+    beyond = f"each further one costs {cost:g} of the points"
+    return f"Of late days you have {free:g} in the whole course; {beyond}."
 
 
 def _markdown(text: str) -> dict[str, Any]:

@@ -227,10 +227,8 @@ class Cluster:
 
     def _lost(self, gone: set[str], only: "Future[Any] | None" = None) -> list[Ending]:
         """Return the endings of pieces whose worker is gone: one that was alone there is to blame."""
-        company = self._busy()
-        lost = [
-            (one, *which) for one, which in self._running.items() if which[1] in gone and only in (None, one)
-        ]
+        company, each = self._busy(), self._running.items()
+        lost = [(one, *which) for one, which in each if which[1] in gone and only in (None, one)]
         with self._talking():
             self._client.cancel([one for one, *_ in lost], force=True)
         for one, *_ in lost:

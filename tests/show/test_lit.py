@@ -1,0 +1,36 @@
+"""A picture for HDR screens on a page: the file as it is, a switch, and words for other screens."""
+
+import numpy as np
+import pytest
+
+from hdrlab.io import screens, web
+from hdrlab.show.lit import Lit
+
+
+@pytest.fixture
+def file(tmp_path):
+    path = tmp_path / "dusk.png"
+    screens.write_png(path, np.full((4, 6, 3), 0.58))
+    return path
+
+
+def test_the_file_stands_in_the_page_byte_for_byte_with_its_alt_text(file):
+    html = Lit(file, "A wall at dusk")._repr_html_()
+    assert f'alt="A wall at dusk" src="{web.data_uri(file.read_bytes(), "png")}"' in html
+    assert "data:image/png;base64," in html
+
+
+def test_as_text_it_is_its_alt_text(file):
+    assert repr(Lit(file, "A wall at dusk")) == "A wall at dusk"
+
+
+def test_a_picture_that_says_nothing_is_refused(file):
+    with pytest.raises(ValueError, match="expected an alt text"):
+        Lit(file, " ")._repr_html_()
+
+
+def test_a_switch_holds_it_at_white_and_words_say_whether_the_screen_has_more(file):
+    html = Lit(file, "A wall at dusk")._repr_html_()
+    assert '<label><input type="checkbox" checked> All the light' in html
+    assert ":has(input:checked) img { dynamic-range-limit: no-limit; }" in html
+    assert "@media (dynamic-range: high)" in html and "no light beyond white" in html
