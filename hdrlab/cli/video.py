@@ -56,7 +56,10 @@ def seconds(text: str) -> list[float]:
     """Return times, separated by commas, as seconds; each may be a fraction."""
     from hdrlab.capture import exposure
 
-    found = [exposure.seconds(one) for one in text.split(",")]
+    try:
+        found = [exposure.seconds(one) for one in text.split(",")]
+    except ValueError:
+        raise ValueError(f"--times: expected seconds such as 1/1000,1/60, got {text!r}") from None
     if len(set(found)) < 2:
         raise ValueError(f"--times: expected at least two exposures of a turn, got {text!r}")
     return found

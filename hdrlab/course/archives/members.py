@@ -91,9 +91,8 @@ def check_sizes(members: Sequence[Member], packed: int, limits: Limits) -> None:
     if total > limits.total:
         raise Refused(f"its files claim {total} bytes together, expected at most {limits.total}")
     if total > (1 << 20) and total > limits.ratio * packed:
-        raise Refused(
-            f"it unpacks to {total // (packed or 1)} times its size, expected at most {limits.ratio}"
-        )
+        times = total // (packed or 1)
+        raise Refused(f"it unpacks to {times} times its size, expected at most {limits.ratio}")
 
 
 def write(source: IO[bytes], place: Path, size: int) -> None:

@@ -231,9 +231,8 @@ def plain(text: str) -> str:
         ast.parse(text)
         return text  # such lines stand in a string
     except names.BROKEN:
-        return "\n".join(
-            re.sub(r"[^ \t].*", "pass", one, count=1) if _is_notebooks(one) else one for one in lines
-        )
+        blank = [re.sub(r"[^ \t].*", "pass", one, count=1) if _is_notebooks(one) else one for one in lines]
+        return "\n".join(blank)
 
 
 def _is_notebooks(line: str) -> bool:

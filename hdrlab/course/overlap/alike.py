@@ -138,6 +138,5 @@ def pieces(text: str, places: np.ndarray) -> tuple[Piece, ...]:
 def _visible(text: str) -> str:
     """Return a text in which what has no shape, or turns the direction of others, is a mark of its own."""
     hidden = {"Cc", "Cf", "Cs", "Co", "Cn"}
-    return "".join(
-        "\ufffd" if unicodedata.category(one) in hidden and one not in "\n\t" else one for one in text
-    )
+    odd = {one for one in set(text) - set("\n\t") if unicodedata.category(one) in hidden}
+    return "".join("\ufffd" if one in odd else one for one in text)
