@@ -71,9 +71,10 @@ def address():
 def graded(address, home, work=errands.grade, **knobs):
     """Grade the class of a folder, and return what was done and what the results are."""
     folder = home / "results"
-    done, rest = journal.parted(folder, errands.pieces(home / "class"))
-    with cluster.Cluster(address, work, **knobs) as executor:
-        done += journal.done_steps(rest, executor, folder)
+    with journal.lock_folder(folder):
+        done, rest = journal.parted(folder, errands.pieces(home / "class"))
+        with cluster.Cluster(address, work, **knobs) as executor:
+            done += journal.done_steps(rest, executor, folder)
     return done, contents(folder)
 
 
