@@ -143,10 +143,8 @@ def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.i
     wanted += max(known.min() - wanted[0], 0) + min(known.max() - wanted[-1], 0)
     chosen = np.abs(known[:, None] - wanted).argmin(axis=0)
     if len(set(chosen)) < frames:
-        raise ValueError(
-            f"expected {frames} times, {stops:g} EV apart, the camera has {len(times)} over "
-            f"{np.ptp(known):.1f} EV; ask for fewer photographs, or for another distance"
-        )
+        has = f"{len(times)} over {np.ptp(known):.1f} stops"
+        raise ValueError(f"expected {frames} times {stops:g} stops apart, the camera has {has}; take fewer")
     return chosen
 
 

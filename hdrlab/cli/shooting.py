@@ -29,10 +29,11 @@ def shoot(ctx: click.Context, out: Path, frames: int, stops: float, map_: Path |
     if map_:
         radiance.format_of(map_)  # an unknown suffix is better known before the work than after it
     with tethered.connected() as camera:
+        common.say("note", camera.fix("light"))
         metered, names = camera.shutter()
         dial = exposure.read_dial(names)
         chosen = planning.around(exposure.seconds(metered), dial.values, frames, stops)
-        common.say("note", camera.fix())
+        common.say("note", camera.fix("mode"))
         out.mkdir(exist_ok=True)
         lines = ["file,exposure_time_s"]
         for j in common.progress(chosen, "taking", frames):

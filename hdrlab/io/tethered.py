@@ -1,8 +1,9 @@
 """A camera on a cable, through libgphoto2: its settings, and photographs that arrive as they are taken.
 
     with tethered.connected() as camera:
-        camera.fix()
+        camera.fix("light")
         name, names = camera.shutter()
+        camera.fix("mode")
         camera.photograph(names[3], Path("room/1"))
 
 What is automatic differs between the photographs of a bracket, so it is fixed first; when the block ends,
@@ -19,7 +20,7 @@ from hdrlab.core.optional import gphoto2
 from hdrlab.io.files import replacing
 
 SPELLINGS = tomllib.loads(Path(__file__).with_name("tethered.toml").read_text("utf8"))
-SHUTTER, FIXED, CHOSEN, ERRORS = (SPELLINGS[one] for one in ("shutter", "fixed", "chosen", "errors"))
+SHUTTER, CHOSEN, ERRORS = SPELLINGS["shutter"], SPELLINGS["chosen"], SPELLINGS["errors"]
 # milliseconds in which a second file of a photograph, such as RAW beside JPEG, begins to arrive
 LATER = 300
 
@@ -49,8 +50,7 @@ class Camera:
     """A camera that is connected."""
 
     def __init__(self, device: Any) -> None:
-        self._device = device
-        self._before: dict[str, str] = {}
+        self._device, self._before = device, dict[str, str]()
 
     def shutter(self) -> tuple[str, list[str]]:
         """Return the shutter time that is set, and all that can be, as the camera spells them.
@@ -62,12 +62,15 @@ class Camera:
             raise ValueError("the camera does not tell its shutter times: set it to M or A (Av)")
         return setting.get_value(), _choices(setting)
 
-    def fix(self) -> list[str]:
-        """Fix mode, focus, ISO and white balance, and return what was changed, or has to be by hand."""
+    def fix(self, part: str) -> list[str]:
+        """Fix what is automatic, and return in words what was changed, or has to be by hand.
+
+        First "light", which is ISO, focus and white balance: the meter's time depends on ISO. Then, when the
+        shutter has been read, the "mode".
+        """
         notes = []
-        for name, fixed in FIXED.items():
-            setting = self._setting(name)
-            if setting is None:
+        for name, fixed in SPELLINGS[part].items():
+            if (setting := self._setting(name)) is None:
                 continue
             value = setting.get_value()
             if value in fixed or (name in CHOSEN and "auto" not in value.lower()):
@@ -92,8 +95,11 @@ class Camera:
             raise ValueError(f"the camera does not take the shutter time {time}: turn its dial to M")
         with _told():
             places = [self._device.capture(gphoto2.GP_CAPTURE_IMAGE)]
-            while (event := self._device.wait_for_event(LATER))[0] != gphoto2.GP_EVENT_TIMEOUT:
-                places += [event[1]] * (event[0] == gphoto2.GP_EVENT_FILE_ADDED)
+            for _ in range(100):  # some cameras never fall silent
+                kind, what = self._device.wait_for_event(LATER)
+                if kind == gphoto2.GP_EVENT_TIMEOUT:
+                    break
+                places += [what] * (kind == gphoto2.GP_EVENT_FILE_ADDED)
             return [self._download(place, path) for place in places]
 
     def restore(self) -> None:

@@ -140,6 +140,6 @@ def test_a_bracket_that_the_camera_s_times_do_not_hold_on_one_side_moves_to_the_
 @pytest.mark.parametrize(("frames", "stops"), [(6, 2.5), (12, 1), (5, 0.4)])
 def test_a_bracket_in_which_two_times_would_be_one_is_refused(frames, stops):
     with pytest.raises(
-        ValueError, match=f"expected {frames} times, {stops:g} EV apart, the camera has 11 over"
+        ValueError, match=f"expected {frames} times {stops:g} stops apart, the camera has 11 over"
     ):
         planning.around(0.1, 2.0 ** np.arange(-10, 1), frames, stops)

@@ -126,8 +126,8 @@ def test_what_was_changed_is_put_back_at_the_end(folder, tmp_path):
 
     with mock.patch.object(tethered.Camera, "restore", noted), tethered.connected() as camera:
         before = settings(camera)
-        assert camera.fix() == ["autofocus is Off until the end, it was On"]
-        assert camera.fix() == []
+        assert camera.fix("light") == ["autofocus is Off until the end, it was On"]
+        assert camera.fix("light") == []
         camera.photograph("0.1000s", tmp_path / "a")
     assert found == [["Off", "0.1000s", "f/2.8"], before]
 
@@ -136,7 +136,78 @@ def test_what_the_camera_does_not_let_be_set_is_to_be_fixed_by_hand(folder):
     refusing = mock.Mock(side_effect=gphoto2.GPhoto2Error(-1))
     with tethered.connected() as camera:
         camera._device = mock.Mock(wraps=camera._device, set_single_config=refusing)
-        assert camera.fix() == ["autofocus is On: fix it on the camera, or the photographs will differ"]
+        assert camera.fix("light") == [
+            "autofocus is On: fix it on the camera, or the photographs will differ"
+        ]
+
+
+class Automatic:
+    """A camera in mode A with automatic ISO, whose meter says 1/60 then and 1/4 at ISO 100.
+
+    It makes two files of a photograph, and never falls silent.
+    """
+
+    SETTINGS = {
+        "expprogram": ("A", "M"),
+        "iso": ("Auto", "100"),
+        "shutterspeed": ("1/60", "1", "1/4", "1/15"),
+    }
+
+    def __init__(self):
+        self.now = {name: choices[0] for name, choices in self.SETTINGS.items()}
+        self.taken, self.exit, self.init = [], mock.Mock(), mock.Mock()
+
+    def get_single_config(self, name):
+        if name not in self.now:
+            raise gphoto2.GPhoto2Error(-2)
+        metered = name == "shutterspeed" and self.now["expprogram"] == "A" and self.now["iso"] == "100"
+        setting, choices = mock.Mock(), self.SETTINGS[name]
+        setting.get_name.return_value, setting.count_choices.return_value = name, len(choices)
+        setting.get_choice = choices.__getitem__
+        setting.get_value.return_value = "1/4" if metered else self.now[name]
+        setting.set_value = lambda value: setattr(setting.get_value, "return_value", value)
+        return setting
+
+    def set_single_config(self, name, setting):
+        self.now[name] = setting.get_value()
+
+    def capture(self, kind):
+        self.taken.append(dict(self.now))
+        self.raw = iter([(gphoto2.GP_EVENT_FILE_ADDED, place("IMG_1.NEF"))])
+        return place("IMG_1.JPG")
+
+    def wait_for_event(self, patience):
+        return next(self.raw, (gphoto2.GP_EVENT_UNKNOWN, None))
+
+    def file_get(self, folder, name, kind):
+        return mock.Mock(save=lambda path: Path(path).write_text(name))
+
+
+def place(name):
+    found = mock.Mock(folder="/")
+    found.name = name
+    return found
+
+
+def test_the_meter_is_read_at_the_iso_of_the_photographs_and_all_is_put_back(tmp_path, monkeypatch, capsys):
+    camera = Automatic()
+    monkeypatch.setattr(gphoto2, "Camera", lambda: camera)
+    assert shoot("-o", tmp_path / "room", "--frames", 3) == 0
+    assert [one["shutterspeed"] for one in camera.taken] == ["1/15", "1/4", "1"]
+    assert {(one["expprogram"], one["iso"]) for one in camera.taken} == {("M", "100")}
+    assert (camera.now["expprogram"], camera.now["iso"]) == ("A", "Auto")
+    said = capsys.readouterr().err
+    assert "iso is 100 until the end, it was Auto" in said and "expprogram is M until the end" in said
+
+
+def test_all_files_of_a_photograph_arrive_also_from_a_camera_that_never_falls_silent(tmp_path, monkeypatch):
+    monkeypatch.setattr(gphoto2, "Camera", Automatic)
+    with tethered.connected() as camera:
+        files = camera.photograph("1/4", tmp_path / "01")
+    assert [(one.name, one.read_text()) for one in files] == [
+        ("01.jpg", "IMG_1.JPG"),
+        ("01.nef", "IMG_1.NEF"),
+    ]
 
 
 def test_a_cable_that_is_pulled_out_leaves_what_was_taken(folder, tmp_path):
@@ -181,7 +252,7 @@ def test_without_the_extra_it_is_named(tmp_path, monkeypatch, capsys):
 @pytest.mark.parametrize(
     ("arguments", "why"),
     [
-        (["--frames", "9", "--stops", "1"], "9 times, 1 EV apart"),
+        (["--frames", "9", "--stops", "1"], "9 times 1 stops apart"),
         (["--assemble", "map.txt"], "expected a radiance file"),
     ],
 )
