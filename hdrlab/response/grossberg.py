@@ -76,7 +76,7 @@ def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
     that no row constrains take the value of the nearest one that is.
     """
     if not np.any(found.weight > 0) or not 0 < smoothness < np.inf:
-        raise ValueError(f"expected levels measured well in two exposures and {smoothness=} to be positive")
+        raise ValueError(f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}")
     z = np.arange(len(w))
     data = found.weight[:, None] * (interpolate_levels(found.T, len(w)) - np.eye(len(w))[found.m])
     penalty = second_differences(w, smoothness)

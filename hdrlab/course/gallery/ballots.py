@@ -29,8 +29,8 @@ def cast(db: sqlite3.Connection, voter: str, chosen: Iterable[str], now: float) 
         db.executemany("INSERT INTO votes VALUES (?, ?)", [(voter, one) for one in chosen])
     except sqlite3.IntegrityError as error:
         db.execute("ROLLBACK TO ballot")
-        reasons = {"own team": "Nobody votes for the own team."}
-        reasons["too many"] = f"A ballot has {set_up.marks} votes."
+        many = f"A ballot has {set_up.marks} votes."
+        reasons = {"own team": "Nobody votes for the own team.", "too many": many}
         raise NotAccepted(reasons.get(str(error), "There is no such artifact.")) from None
     finally:
         db.execute("RELEASE ballot")

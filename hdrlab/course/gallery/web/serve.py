@@ -112,10 +112,10 @@ def serve(folder: str | Path, address: str, *, host: str, port: int, behind_prox
     """
     os.umask(0o077)
     keep_log(Path(folder))
-    http = limited(connection_limit())  # over h11, which is strict about headers, and bounds them
-    own: dict[str, Any] = {"host": host, "port": port, "proxy_headers": behind_proxy}
+    h11 = limited(connection_limit())  # which is strict about headers, and bounds them
+    own: dict[str, Any] = {"host": host, "port": port, "proxy_headers": behind_proxy, "backlog": BACKLOG}
     app = application(Gallery(folder, address))
-    config = uvicorn.Config(app, http=http, backlog=BACKLOG, log_config=None, **own, **SERVER)
+    config = uvicorn.Config(app, http=h11, log_config=None, timeout_keep_alive=int(PATIENCE), **own, **SERVER)
     uvicorn.Server(config).run()
 
 
