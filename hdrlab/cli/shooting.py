@@ -16,9 +16,9 @@ from hdrlab.cli import common, photographs
 def shoot(ctx: click.Context, out: Path, frames: int, stops: float, map_: Path | None) -> None:
     """Take a bracket with the camera on the USB cable.
 
-    The middle time is what the camera shows: in A (Av), what its meter says, in M, what you have set. The
-    others are those of its times that lie nearest. Mode, focus, ISO and white balance are fixed, and put back
-    at the end; the aperture stays. Each photograph is in the folder as soon as it is taken, with its time in
+    Focus, ISO and white balance are fixed, and put back at the end; the aperture stays. The middle time is
+    what the camera then shows: in A (Av) what its meter says, in M what you have set. The others are those of
+    its times that lie nearest. Each photograph is in the folder as soon as it is taken, with its time in
     exposures.csv. This wants the extra `camera`, which is for Linux and macOS.
     """
     from hdrlab.capture import exposure, planning
