@@ -77,24 +77,13 @@ def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterat
             await _run(source, kept, cache)
         return Done(source, kept, True)
 
-    async def begin() -> set[asyncio.Task[Done]]:
-        return {asyncio.create_task(one(*each)) for each in waiting}
-
-    async def end(tasks: set[asyncio.Task[Done]]) -> None:
-        for task in tasks:
-            task.cancel()
-        await asyncio.gather(*tasks, return_exceptions=True)
-
     free = asyncio.Semaphore(jobs)
-    with asyncio.Runner() as runner:
-        tasks = runner.run(begin())
-        try:
-            while tasks:
-                done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
-                for task in done:
-                    yield task.result()
-        finally:  # an error, or Ctrl-C: no kernel outlives it
-            runner.run(end(tasks))
+    with asyncio.Runner() as runner:  # after an error, or Ctrl-C, it cancels what runs: no kernel outlives it
+        tasks = {runner.get_loop().create_task(one(*each)) for each in waiting}
+        while tasks:
+            done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
+            for task in done:
+                yield task.result()
 
 
 async def _run(source: Path, kept: Path, cache: Path) -> None:
