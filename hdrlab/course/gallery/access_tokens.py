@@ -1,8 +1,11 @@
 """Who bears which token: personal links, which open a session once, and sessions."""
 
 import sqlite3
+from typing import Literal
 
 from hdrlab.course.gallery import store, tokens
+
+Kind = Literal["session", "link"]  # of a token, and the column of its handle
 
 
 def new_link(db: sqlite3.Connection, voter: str) -> str:
@@ -26,15 +29,12 @@ def spend(db: sqlite3.Connection, text: str) -> tuple[store.Voter, str] | None:
     return voter, session.text
 
 
-def whose(db: sqlite3.Connection, text: str, kind: str = "session") -> store.Voter | None:
+def whose(db: sqlite3.Connection, text: str, kind: Kind = "session") -> store.Voter | None:
     """Return the voter of a session's or a link's token, or None."""
     shown = tokens.read(text)
     if shown is None:
         return None
-    query = {
-        "session": "SELECT id, name, team, session_digest FROM voters WHERE session = ?",
-        "link": "SELECT id, name, team, link_digest FROM voters WHERE link = ?",
-    }[kind]
+    query = f"SELECT id, name, team, {kind}_digest FROM voters WHERE {kind} = ?"  # a column, nobody's text
     row = db.execute(query, (shown.handle,)).fetchone()
     proven = tokens.proves(shown, row[3] if row else None)
     return store.Voter(*row[:3]) if row and proven else None

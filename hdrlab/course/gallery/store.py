@@ -118,13 +118,9 @@ def writing(folder: str | Path) -> Iterator[sqlite3.Connection]:
 @contextmanager
 def transaction(db: sqlite3.Connection) -> Iterator[None]:
     """Take all that the block writes, or nothing."""
-    db.execute("BEGIN IMMEDIATE")
-    try:
+    with db:
+        db.execute("BEGIN IMMEDIATE")
         yield
-    except BaseException:
-        db.execute("ROLLBACK")
-        raise
-    db.execute("COMMIT")
 
 
 def settings(db: sqlite3.Connection) -> Settings:
