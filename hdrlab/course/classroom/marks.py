@@ -9,7 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from hdrlab.course.classroom.handins import Handin
-from hdrlab.course.classroom.late import Handed, accounts, lateness
+from hdrlab.course.classroom.late import Account, Handed, accounts, lateness
 from hdrlab.course.classroom.late import what_if as late_days
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
@@ -66,17 +66,14 @@ def marks(
     mine = {bill.student: bill for bill in bills if bill.project == homework.name}
     rows = []
     for id, name, team, _ in course.roster.students:
-        who, of, remark = (id, name, team, homework.name), homework.points, remarks.get(team, "")
-        if id not in mine:
-            grace = left.get(id, late.free_days)
-            note = "; ".join(filter(None, ("not handed in", remark)))
-            rows.append(Mark(*who, "", 0, 0, 0.0, of, 0.0, 0.0, grace, note))
-            continue
-        bill, work = mine[id], points.get(team, 0.0)
-        note = "; ".join(filter(None, ("" if team in points else NOT_GRADED, handins[team].note, remark)))
-        received = handins[team].received.isoformat(timespec="minutes")
-        paid, score, grace = bill.penalty, bill.score, bill.left
-        rows.append(Mark(*who, received, bill.late, bill.excused, work, of, paid, score, grace, note))
+        bill = mine.get(id, Account(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days)))
+        received, work, notes = "", 0.0, ["not handed in"]
+        if id in mine:
+            received, work = handins[team].received.isoformat(timespec="minutes"), points.get(team, 0.0)
+            notes = ["" if team in points else NOT_GRADED, handins[team].note]
+        note = "; ".join(filter(None, (*notes, remarks.get(team, ""))))
+        earned = (work, homework.points, bill.penalty, bill.score, bill.left, note)
+        rows.append(Mark(id, name, team, homework.name, received, bill.late, bill.excused, *earned))
     return rows
 
 
