@@ -26,6 +26,7 @@ SETTLE = 1.0  # seconds for a process to end that has closed its control
 SIGNALLED = 128  # and a signal's number: what a launcher ends with when a signal has ended its own
 RULES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("rules.toml").read_text("utf8"))
 LIMITS, ENVIRONMENT = RULES["limits"], RULES["environment"]
+ORDERED = ("credit", "program", "alone", "forks", "limits")  # what the supervisor is told of its sandbox
 # no site-packages, no .pth, nothing from the folder it stands in
 FLAGS = ("-s", "-P", "-S", "-B", "-X", "utf8")
 PROGRAM = Path(channel.__file__).with_name("supervisor.py")  # beside the others that it needs
@@ -95,15 +96,8 @@ class Running:
                 raise
         self._ready, self._checks = False, 0  # how many checks it has begun
         self._busy = False  # with one that is not cleared away
-        order = {
-            "modules": self.modules,
-            "alone": self.sandbox.alone,
-            "forks": self.sandbox.forks,
-            "credit": self.sandbox.credit,
-            "limits": self.sandbox.limits,
-            "filter": self.sandbox.program,
-            "scratch": self._launched.scratch,
-        }
+        order = {name: getattr(self.sandbox, name) for name in ORDERED}
+        order |= {"modules": self.modules, "scratch": self._launched.scratch}
         with contextlib.suppress(OSError):  # it has ended already: `wait` says why
             channel.send(self._control, "order", order)
 

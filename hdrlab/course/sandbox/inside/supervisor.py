@@ -43,8 +43,8 @@ def begin(link: socket.socket, order: dict[str, Any]) -> None:
     """Become the process of a check: limited, filtered, and with nothing but its link."""
     system, channel = importlib.import_module("system"), importlib.import_module("channel")
     system.limit(order["limits"], order["credit"])
-    if order["filter"]:
-        system.restrict(order["filter"])
+    if order["program"]:
+        system.restrict(order["program"])
     importlib.import_module("worker").serve(link, channel)
 
 
