@@ -34,6 +34,8 @@ from hdrlab.course.wording import lines
 WHOLE = 240.0  # seconds for all checks of a homework: its calls have 200, see `subject`
 MESSAGE, SAID = 2000, 4000  # characters of what is told of a check
 STRICT = Conditions()
+VERSIONS = {one.__name__: one.__version__ for one in (hdrlab, np, scipy)}
+VERSIONS["python"] = platform.python_version()
 SILENT = {"outcome": "no answer", "message": "This check was not answered", "said": ""}
 
 
@@ -139,12 +141,7 @@ def _result(
         submission=read.hash,
         specification=specification(files),
         seed=_seed_id(homework, conditions),
-        versions={
-            "hdrlab": hdrlab.__version__,
-            "numpy": np.__version__,
-            "scipy": scipy.__version__,
-            "python": platform.python_version(),
-        },
+        versions=VERSIONS,
         at_most=homework.at_most,
     )
 

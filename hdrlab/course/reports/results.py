@@ -10,6 +10,7 @@ from typing import Any, Literal, NamedTuple
 
 VERSION = 1
 CREDIT = ("strict", "container")  # tiers that count
+DERIVED = ("for_credit", "score", "max_score")  # what the JSON says beside a Result's fields
 # what a team's copy holds, and nothing else: of the whole, of a check, of a hidden one
 TEAM_SEES = (
     *("version", "student", "homework", "title", "tier", "for_credit", "score", "max_score", "problems"),
@@ -134,14 +135,8 @@ def to_json(result: Result) -> bytes:
     >>> from_json(to_json(result)) == result
     True
     """
-    whole = {
-        "version": VERSION,
-        **result._asdict(),
-        "for_credit": result.for_credit,
-        "score": result.score,
-        "max_score": result.max_score,
-        "checks": [_check_to_json(one) for one in result.checks],
-    }
+    whole = {"version": VERSION, **result._asdict(), **{name: getattr(result, name) for name in DERIVED}}
+    whole["checks"] = [_check_to_json(one) for one in result.checks]
     return (json.dumps(whole, indent=1, ensure_ascii=True) + "\n").encode()
 
 
