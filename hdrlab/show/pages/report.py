@@ -15,7 +15,7 @@ from hdrlab.core.arrays import describe
 from hdrlab.core.metrics import Truth
 from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly
-from hdrlab.show.pages import sections
+from hdrlab.show.pages import sections, wording
 from hdrlab.show.pages.templates import render_page
 from hdrlab.show.plots import figures
 
@@ -79,6 +79,7 @@ def _page(
     return render_page(
         Path(__file__).parent,
         PAGE,
+        wording=wording,
         notes=notes,
         doubts=doubts,
         picture=figures.photograph(picture, 1600, seen),

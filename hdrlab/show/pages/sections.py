@@ -20,7 +20,6 @@ from hdrlab.io.web import Image
 from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
 from hdrlab.show.pages import wording
-from hdrlab.show.pages.wording import stops as in_stops
 from hdrlab.show.plots import figures
 
 
@@ -31,7 +30,7 @@ def facts(E: Array, quality: Flags, medians: F64) -> list[tuple[str, str]]:
     return [
         (f"{high - low:.1f} stops", f"of luminance, or {(high - low) * np.log10(2):.1f} decades"),
         (wording.share(quality == Quality.MEASURED), "of the pixels measured by at least one frame"),
-        (in_stops(spread), f"between what the frames say of the same light: {wording.verdict(spread)}"),
+        (wording.stops(spread), f"between what the frames say of the same light: {wording.verdict(spread)}"),
     ]
 
 
@@ -73,17 +72,9 @@ def radiance(E: Array) -> dict[str, Any]:
 
 def known(quality: Flags, picture: Image) -> dict[str, Any]:
     """Return how many pixels are known in which way, and where those stand that were not measured."""
-    rows = [
-        {
-            "kind": kind,
-            "meaning": meaning,
-            "count": f"{np.count_nonzero(quality == flag):,}",
-            "share": wording.share(quality == flag),
-            "colour": figures.KNOWN.get(flag),
-        }
-        for flag, (kind, meaning) in wording.KINDS.items()
-        if flag == Quality.MEASURED or np.any(quality == flag)
-    ]
+    masks = {flag: quality == flag for flag in wording.KINDS}
+    met = [flag for flag, mask in masks.items() if flag == Quality.MEASURED or mask.any()]
+    rows = [(*wording.KINDS[flag], figures.KNOWN.get(flag), masks[flag]) for flag in met]
     if len(rows) == 1:
         return {"rows": rows, "picture": None}
     alt = "The picture in pale gray, with dots where a pixel was not measured"
@@ -125,22 +116,10 @@ def agreement(photographs: Bracket, medians: F64) -> dict[str, Any]:
     shared &= shared.sum(axis=0) >= 2
     spread, found = consistency.measure_spread(medians), consistency.measure_deviations(medians)
     counts = shared.any(axis=1).sum(axis=1).tolist()
-    bars = np.nan_to_num(found)  # none, for a frame of which nothing is known
+    known, bars = np.isfinite(found), np.nan_to_num(found)  # none, for a frame of which nothing is known
+    columns = (photographs.names, map(plots.seconds, photographs.times), counts, known, bars)
     widest = max(np.abs(bars).max(), wording.CLOSE)
-    rows = [
-        {
-            "name": name,
-            "time": plots.seconds(time),
-            "levels": levels,
-            "stops": wording.signed(by, 3) if np.isfinite(departs) else "–",
-            "start": f"{50 + 50 * min(by, 0) / widest:.2f}",
-            "width": f"{50 * abs(by) / widest:.2f}",
-        }
-        for name, time, departs, by, levels in zip(
-            photographs.names, photographs.times, found, bars, counts, strict=True
-        )
-    ]
-    return {"spread": in_stops(spread), "verdict": wording.verdict(spread), "rows": rows}
+    return {"spread": spread, "widest": widest, "rows": list(zip(*columns, strict=True))}
 
 
 def against(truth: metrics.Truth, photographs: Bracket, offsets: Array, g: F64, E: Array) -> dict[str, Any]:
