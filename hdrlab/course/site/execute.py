@@ -79,6 +79,7 @@ def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterat
 
     free = asyncio.Semaphore(jobs)
     with asyncio.Runner() as runner:  # after an error, or Ctrl-C, it cancels what runs: no kernel outlives it
+        runner.get_loop().set_exception_handler(lambda *_: None)  # what was ended so has no more to tell
         tasks = {runner.get_loop().create_task(one(*each)) for each in waiting}
         while tasks:
             done, tasks = runner.run(asyncio.wait(tasks, return_when=asyncio.FIRST_COMPLETED))
