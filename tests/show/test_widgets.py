@@ -12,6 +12,7 @@ import pytest
 import threadpoolctl
 from halves import decoded
 from matplotlib.figure import Figure
+from matplotlib.legend import Legend
 
 from hdrlab import scenes
 from hdrlab.io import web
@@ -614,7 +615,31 @@ def named(k):
     )
 
 
-@pytest.mark.parametrize("draw", [fixed, running, beneath, bare, mapped, named])
+def covering(k):
+    """Draw lines that a legend covers in part, the same twice and then other ones."""
+    ax = plots.response(np.arange(256) / 100 - k // 2, span=(-2, 3), label="g", ax=plots.axes())
+    ax.plot([-2, 3], [200 + k // 2, 0], "s:", label="a line")
+    ax.axvspan(-1, k // 2, alpha=0.3, label="an area")
+    return plots.with_legend(ax, "upper left")
+
+
+def renamed(k):
+    """Draw one line that is told about in other words, by another marker, and at another place."""
+    ax = plots.axes()
+    ax.plot([0, 1], [0, 1], "osD"[k % 3], label=f"line {k // 2}")
+    ax.legend(loc=k % 2 + 1, title="what it is", fontsize=8 + k, labelcolor=["red", "blue"][k % 2])
+    return ax
+
+
+def crowned(k):
+    """Draw a line and a text above a legend, and a legend of points."""
+    ax = plots.axes()
+    ax.scatter([0, 1], [0, k], marker="osD"[k % 3], label="points")
+    ax.text(0, k, "above", zorder=9 if k == 2 else 3)
+    return plots.with_legend(ax, "upper left")
+
+
+@pytest.mark.parametrize("draw", [fixed, running, beneath, bare, mapped, named, covering, renamed, crowned])
 def test_a_plot_on_ground_that_was_kept_is_the_plot_drawn_afresh_to_the_bit(draw):
     kept = reuse.Kept()
     for k in (0, 1, 1, 3, 2, 0):
@@ -629,6 +654,19 @@ def test_the_background_is_kept_where_the_axes_stay_and_painted_again_where_they
         reuse.draw_reusing(draw, 1, render, kept)
         ((_, after),) = kept.background.values()
         assert (before is after) == stays
+
+
+def test_a_legend_is_blitted_where_it_and_what_it_covers_stay_and_drawn_where_they_change(monkeypatch):
+    drawn, draw_legend = [], Legend.draw
+    monkeypatch.setattr(
+        Legend, "draw", lambda *given: drawn.append(given[0].get_visible()) or draw_legend(*given)
+    )
+    for draw, count in ((covering, 2), (renamed, 4), (crowned, 4)):
+        kept = reuse.Kept()
+        drawn.clear()
+        for k in (0, 1, 2, 3):
+            reuse.draw_reusing(draw, k, render, kept)
+        assert sum(drawn) == count
 
 
 STILLS = {

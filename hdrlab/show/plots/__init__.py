@@ -34,35 +34,36 @@ SAMPLES = tuple(zip(COLOURS, "os^Dv*", strict=True))
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:
     """Return the Axes of a new figure (inches), always in the same place: played steps do not jump."""
-    if spare := reuse.take((width, height)):
-        return spare[0]
-    figure = Figure(figsize=(width, height), dpi=100)
-    left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
-    place = (left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height)
-    ax = figure.add_axes(place)
-    ax.grid(color="#D9D9D9", linewidth=0.6)
-    ax.set_axisbelow(True)
-    return reuse.register((width, height), ax)[0]
+
+    def made() -> list[Axes]:
+        figure = Figure(figsize=(width, height), dpi=100)
+        left, bottom, right, top = 0.75, 0.6, 0.2, 0.35
+        place = (left / width, bottom / height, 1 - (left + right) / width, 1 - (bottom + top) / height)
+        ax = figure.add_axes(place)
+        ax.grid(color="#D9D9D9", linewidth=0.6)
+        ax.set_axisbelow(True)
+        return [ax]
+
+    return reuse.take((width, height), made)[0]
 
 
 def picture_axes(width: float, height: float, place: Place) -> Axes:
     """Return bare Axes for a picture, in a figure of this size (inches) at a place in parts of it."""
-    if spare := reuse.take((width, height, *place)):
-        return spare[0]
-    ax = bare(Figure(figsize=(width, height), dpi=100).add_axes(place))
-    return reuse.register((width, height, *place), ax)[0]
+    size = (width, height)
+    return reuse.take((*size, *place), lambda: [bare(Figure(figsize=size, dpi=100).add_axes(place))])[0]
 
 
 def scaled_axes(width: float, height: float, places: Sequence[Place], bar: Place) -> list[Axes]:
     """Return bare Axes for each of some maps, and those of the scale that they share, without an axis up."""
-    size = (width, height, *chain(*places, bar))
-    if spare := reuse.take(size):
-        return spare
-    figure = Figure(figsize=(width, height), dpi=100)
-    maps, scale = [bare(figure.add_axes(place)) for place in places], figure.add_axes(bar)
-    scale.set_axisbelow(True)
-    scale.yaxis.set_visible(False)
-    return reuse.register(size, *maps, scale)
+
+    def made() -> list[Axes]:
+        figure = Figure(figsize=(width, height), dpi=100)
+        maps, scale = [bare(figure.add_axes(place)) for place in places], figure.add_axes(bar)
+        scale.set_axisbelow(True)
+        scale.yaxis.set_visible(False)
+        return [*maps, scale]
+
+    return reuse.take((width, height, *chain(*places, bar)), made)
 
 
 def bare(ax: Axes) -> Axes:

@@ -4,85 +4,82 @@
 the like return the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would
 leave behind. `paint` keeps the pixels of their background, which is the patch with ticks, numbers and grid:
 where these are the same as in the picture before, they are blitted, and only the artists upon them are drawn.
+So is a legend that says the same over the same pixels: to lay out its words takes longer than most curves.
 """
 
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from itertools import chain
 from typing import Any, TypeVar
 
+import numpy as np
 from matplotlib import rcParams
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.font_manager import FontProperties
+from matplotlib.legend import Legend
+from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 
 State = TypeVar("State")
 Picture = TypeVar("Picture")
+PLAIN = (str, int, float, tuple, FontProperties)  # what tells how an artist looks
 Size = tuple[float, ...]  # of the figure, inches, and where in it its Axes lie if not in the usual place
 
 
 class Kept:
-    """Axes between two pictures, by size: `spare` ones, those handed `out` since, and background pixels."""
+    """Axes between two pictures, by size: `spare` ones, those handed `out` since, and pixels."""
 
     def __init__(self) -> None:
         self.spare: dict[Size, list[Axes]] = {}
         self.out: dict[Size, tuple[list[Axes], list[object]]] = {}
         self.background: dict[Size, tuple[object, Any]] = {}
+        self.legend: tuple[object, Any, Any, Any] = (None, ..., None, None)  # its look, place, ground, pixels
 
 
 _kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
-
-
-@contextmanager
-def reusing(kept: Kept) -> Iterator[None]:
-    """Let `plots.axes` and `picture_axes` take Axes from `kept` while this lasts."""
-    token = _kept.set(kept)
-    kept.out.clear()
-    try:
-        yield
-    finally:
-        _kept.reset(token)
 
 
 def draw_reusing(
     draw: Callable[[State], object], state: State, finish: Callable[[object], Picture], kept: Kept
 ) -> Picture:
     """Return finish(draw(state)), drawn on spare Axes where there are some."""
-    with reusing(kept):
+    token = _kept.set(kept)
+    kept.out.clear()
+    try:
         shown = draw(state)
         picture = finish(shown)
+    finally:
+        _kept.reset(token)
     keep(kept, shown)
     return picture
 
 
-def take(size: Size) -> list[Axes]:
-    """Return the spare Axes of a figure of this size, wiped, or none; a picture gets them once."""
-    kept = _kept.get()
-    spare = kept.spare.pop(size, []) if kept else []
-    return register(size, *map(wipe, spare)) if spare else []
-
-
-def register(size: Size, *axes: Axes) -> list[Axes]:
-    """Return the Axes of a figure, and remember how they look."""
-    if kept := _kept.get():
-        kept.out[size] = (list(axes), [look(ax) for ax in axes])
-    return list(axes)
+def take(size: Size, make: Callable[[], list[Axes]]) -> list[Axes]:
+    """Return the spare Axes of a figure of this size, wiped, or new ones; a picture gets those once."""
+    if (kept := _kept.get()) is None:
+        return make()
+    axes = [wipe(ax) for ax in kept.spare.pop(size, [])] or make()
+    kept.out[size] = (axes, [look(ax) for ax in axes])
+    return axes
 
 
 def keep(kept: Kept, drawn: object) -> None:
     """Keep the Axes of a picture for the next one, if it has no others and wiping makes them as new."""
     for size, (axes, as_new) in kept.out.items():
         mine = getattr(drawn, "figure", None) is axes[0].figure
-        if mine and alone(axes) and [look(ax) for ax in axes] == as_new:
+        if mine and unchanged(axes, as_new):
             kept.spare[size] = axes
 
 
-def alone(axes: list[Axes]) -> bool:
-    """Return whether the figure has nothing but these Axes."""
+def unchanged(axes: list[Axes], as_new: list[object]) -> bool:
+    """Return whether the figure has nothing but these Axes, and they look as new once they are wiped."""
     figure: Any = axes[0].figure
     more = (figure.texts, figure.legends, figure.images, *(ax.child_axes for ax in axes))
-    return figure.axes == axes and not any(more)
+    return figure.axes == axes and not any(more) and [look(ax) for ax in axes] == as_new
 
 
 def look(ax: Axes) -> object:
@@ -97,9 +94,9 @@ def look(ax: Axes) -> object:
 
 def wipe(ax: Axes) -> Axes:
     """Return the Axes without what was drawn on them: linear, with limits that follow what comes."""
-    for group in (ax.lines, ax.collections, ax.patches, ax.texts, ax.images, ax.artists, ax.tables):
-        for artist in list(group):
-            artist.remove()
+    groups = (ax.lines, ax.collections, ax.patches, ax.texts, ax.images, ax.artists, ax.tables)
+    for artist in list(chain(*groups)):
+        artist.remove()
     if legend := ax.get_legend():
         legend.remove()
     for side in ("left", "center", "right"):
@@ -129,14 +126,43 @@ def paint(canvas: FigureCanvasAgg) -> None:
         with hidden(child for ax in axes for child in ax.get_children() if child not in background):
             canvas.draw()
         kept.background[size] = (marks, canvas.copy_from_bbox(figure.bbox))
-    with hidden(background):
+    top = max(axes[0].get_children(), key=lambda child: child.zorder)
+    fixed = isinstance(top, Legend) and vars(top)["_loc_real"] != 0  # which is where there is room
+    last = [top] if isinstance(top, Legend) and fixed and len(axes) == 1 else []
+    with hidden([*background, *last]):
         figure.draw(canvas.get_renderer())
+    for legend in last:
+        lay(legend, canvas, kept)
+
+
+def lay(legend: Legend, canvas: FigureCanvasAgg, kept: Kept) -> None:
+    """Draw a legend, or blit the one of the picture before where it looks the same and covers the same."""
+    looks, pixels = legend_look(legend), np.asarray(canvas.buffer_rgba())
+    before, box, covered, own = kept.legend
+    if before == looks and np.array_equal(pixels[box], covered):
+        pixels[box] = own
+        return
+    ground = pixels.copy()
+    legend.draw(canvas.get_renderer())
+    ends = legend.get_frame().get_window_extent().padded(3).extents
+    left, low, right, high = np.asarray(ends, int).clip(0)
+    box = np.s_[max(len(pixels) - high, 0) : len(pixels) - low, left:right]
+    kept.legend = (looks, box, ground[box], pixels[box].copy())
+
+
+def legend_look(legend: Legend) -> object:
+    """Return what makes a legend of lines and areas look as it does; of others, what nothing equals."""
+    parts = [legend, legend.get_frame(), *legend.legend_handles, *legend.texts, legend.get_title()]
+    plain = [[str(value) for value in vars(part).values() if isinstance(value, PLAIN)] for part in parts]
+    markers = [getattr(part, "get_marker", str)() for part in parts]
+    known = all(isinstance(part, Line2D | Patch) for part in legend.legend_handles)
+    return (plain, markers, legend.get_bbox_to_anchor().bounds) if known else object()
 
 
 def separable(axes: list[Axes], as_new: list[object]) -> bool:
     """Return whether the background of Axes lies below all else, and is nothing but ticks and labels."""
-    plain = alone(axes) and all(ax.get_aspect() == "auto" for ax in axes)
-    return plain and [look(ax) for ax in axes] == as_new and all(map(_background_below, axes))
+    plain = unchanged(axes, as_new) and all(ax.get_aspect() == "auto" for ax in axes)
+    return plain and all(map(_background_below, axes))
 
 
 def _background_below(ax: Axes) -> bool:

@@ -101,14 +101,9 @@ def play(
     'A square, ever lighter, step 2'
     """
     frames, alts, kept, areas = [], [], reuse.Kept(), list[list[float]]()
-
-    def finish(drawn: object) -> bytes:
-        frame = encode(drawn)
-        areas[:] = pictured(drawn)
-        return frame
-
     for k, state in enumerate(islice(states, MOST + 1)):
-        frames.append(reuse.draw_reusing(draw, state, finish, kept))
+        frame, areas = reuse.draw_reusing(draw, state, lambda drawn: (encode(drawn), pictured(drawn)), kept)
+        frames.append(frame)
         alts.append(require_alt(alt(state)) if callable(alt) else f"{require_alt(alt)}, {name} {k + 1}")
     if not 0 < len(frames) <= MOST:
         raise ValueError(f"expected 1 to {MOST} states to play, got {'none' if not frames else 'more'}")
@@ -211,20 +206,15 @@ def tune(
     if point is not None and (len(point) != 2 or not set(point) <= set(grids)):
         raise ValueError(f"expected a point of two parameters out of {', '.join(grids)}, got {point!r}")
 
-    kept, areas = reuse.Kept(), list[list[float]]()
+    kept = reuse.Kept()
 
-    def finish(drawn: object) -> web.Image:
-        image = render(drawn)
-        areas[:] = pictured(drawn)
-        return image
-
-    def picture(at: list[int]) -> web.Image:
+    def picture(at: list[int], finish: Callable[[object], Any] = render) -> Any:
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
             return reuse.draw_reusing(draw, f(**positions.values(grids, at)), finish, kept)
 
     at = positions.start(f, grids)
     most = int(os.environ.get("HDRLAB_STORED", stored))
-    first = picture(at)
+    first, areas = picture(at, lambda drawn: (render(drawn), pictured(drawn)))
     stored_at, frames = [at], [encode_change(first)]
     for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:
         with suppress(Exception):  # what a student's function refuses is told when it is asked for
