@@ -29,17 +29,21 @@ class Different(AssertionError):
         self.message, self.expected, self.came, self.kind = message, expected, came, kind
 
 
+def require(holds: Any, said: str, **remembered: Any) -> None:
+    """Raise Different, with what is said and remembered, where something does not hold."""
+    if not holds:
+        raise Different(said, **remembered)
+
+
 def numbers(came: Any, *, what: str = "the answer") -> Array:
     """Return an answer as an array of numbers, or raise Different that says what came instead."""
-    if came is None:
-        raise Different(f"{what}: expected numbers, and nothing came (None)")
+    require(came is not None, f"{what}: expected numbers, and nothing came (None)")
     if isinstance(came, tuple | list):
         came = as_listed(came, what)
-    if isinstance(came, tuple | list | str | bytes | dict):
-        raise Different(f"{what}: expected one array of numbers, got {_named(came)}")
+    one = not isinstance(came, tuple | list | str | bytes | dict)
+    require(one, f"{what}: expected one array of numbers, got {_named(came)}")
     array = np.asarray(came)
-    if array.dtype.kind not in "biuf":
-        raise Different(f"{what}: expected real numbers, got dtype {array.dtype}")
+    require(array.dtype.kind in "biuf", f"{what}: expected real numbers, got dtype {array.dtype}")
     return array
 
 
@@ -67,15 +71,15 @@ def as_shape(array: Array, shape: tuple[int, ...], what: str = "the answer") -> 
 
 def parts(came: Any, count: int, *, what: str = "the answer") -> tuple[Any, ...]:
     """Return the first `count` parts of an answer of several, or raise Different."""
-    if not isinstance(came, tuple | list) or len(came) < count:
-        raise Different(f"{what}: expected {count} things, got {_named(came)}")
+    several = isinstance(came, tuple | list) and len(came) >= count
+    require(several, f"{what}: expected {count} things, got {_named(came)}")
     return tuple(came[:count])
 
 
 def states(came: Any, *, what: str = "the steps") -> list[Any]:
     """Return what a generator yielded, at least one state, or raise Different."""
-    if not isinstance(came, list | tuple) or not came:
-        raise Different(f"{what}: expected a generator that yields states, got {_named(came)}")
+    yielded = isinstance(came, list | tuple) and len(came)
+    require(yielded, f"{what}: expected a generator that yields states, got {_named(came)}")
     return list(came)
 
 
@@ -132,8 +136,7 @@ def finite(came: Any, shape: tuple[int, ...], *, what: str = "the answer") -> Ar
 def _require_finite(values: Array, what: str, **remembered: Any) -> None:
     """Raise Different where a value is NaN or infinite."""
     bad = np.count_nonzero(~np.isfinite(values))
-    if bad:
-        raise Different(f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **remembered)
+    require(not bad, f"{what}: expected finite numbers, got {bad} NaN or infinite ones", **remembered)
 
 
 def _named(came: Any) -> str:

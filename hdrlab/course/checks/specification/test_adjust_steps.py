@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.core.steps import last
-from hdrlab.course.checks.compare import Different, finite, same, states
+from hdrlab.course.checks.compare import finite, require, same, states
 from hdrlab.tonemap import ward
 
 
@@ -30,9 +30,8 @@ def asked(subject, h, db, D, **knobs):
     each = [one[0] if isinstance(one, tuple | list) else one for one in came]
     found = [finite(one, h.shape, what="h").astype(float) for one in each]
     low = h < 25  # far below every ceiling
-    if not np.all(found[-1][low] >= 0.9 * h[low]):
-        said = "h: expected bins below the ceiling to stay, got less"
-        raise Different(said, expected=h, came=found[-1], kind="curve")
+    said = "h: expected bins below the ceiling to stay, got less"
+    require(np.all(found[-1][low] >= 0.9 * h[low]), said, expected=h, came=found[-1], kind="curve")
     return found
 
 
@@ -48,9 +47,8 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
     end = asked(subject, h, db, D)[-1]
     T = end.sum()
     above = np.maximum(end - T * db / D, 0).sum()
-    if not above <= 0.03 * T:
-        said = f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T"
-        raise Different(said, expected=last(ward.adjust_steps(h, db, D)).h, came=end, kind="curve")
+    said = f"h: expected hardly anything above the ceiling T db / D, got {above / T:.1%} of T"
+    require(above <= 0.03 * T, said, expected=last(ward.adjust_steps(h, db, D)).h, came=end, kind="curve")
 
 
 @pytest.mark.points(4)
@@ -63,10 +61,9 @@ def test_trimmings_are_not_put_elsewhere(subject, rng):
     """
     h, db, D = drawn(rng)
     for before, after in zip([h, *asked(subject, h, db, D)], asked(subject, h, db, D), strict=False):
-        if not np.all(after <= before + 1e-6 * before.max()):
-            raise Different("h: expected no bin to grow in a trim", expected=before, came=after, kind="curve")
-    if not after.sum() < h.sum():
-        raise Different("h: expected trims, and nothing was cut off")
+        said, grown = "h: expected no bin to grow in a trim", after > before + 1e-6 * before.max()
+        require(not np.any(grown), said, expected=before, came=after, kind="curve")
+    require(after.sum() < h.sum(), "h: expected trims, and nothing was cut off")
 
 
 @pytest.mark.points(4)

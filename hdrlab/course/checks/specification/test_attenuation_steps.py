@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import Different, finite, parts, same, states
+from hdrlab.course.checks.compare import finite, parts, require, same, states
 from hdrlab.tonemap import fattal
 
 INNER = (slice(24, -24), slice(24, -24))
@@ -22,8 +22,7 @@ def asked(subject, lL, **knobs):
     """Return the states, and ln Phi of the last one, that of the picture itself."""
     came = [parts(one, 5, what="a state") for one in states(subject.attenuation_steps(lL, **knobs))]
     Phi = finite(came[-1][4], lL.shape, what="Phi").astype(float)
-    if not (Phi > 0).all():
-        raise Different(f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi, kind="image")
+    require((Phi > 0).all(), f"Phi: expected attenuations above 0, got {Phi.min():.3g}", came=Phi)
     return came, np.log(Phi)
 
 

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from hdrlab.course.checks.compare import Different, same
+from hdrlab.course.checks.compare import require, same
 
 
 def drawn(rng):
@@ -50,10 +50,10 @@ def test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many(subject, 
     found = [subject.count(*one) for one in scenes]  # all of them: a mistake is known by what it answers
     for (scene, usable, overlap), n in zip(scenes, map(float, found), strict=True):
         reach = usable + (n - 1) * (usable - overlap)
-        if not reach >= scene - 1e-6:
-            raise Different(f"{n:g} photographs reach over {reach:.1f} stops, and the scene has {scene:.1f}")
-        if not reach - (usable - overlap) < scene:
-            raise Different(f"expected one less: {n - 1:g} photographs hold the {scene:.1f} stops too")
+        said = f"{n:g} photographs reach over {reach:.1f} stops, and the scene has {scene:.1f}"
+        require(reach >= scene - 1e-6, said)
+        said = f"expected one less: {n - 1:g} photographs hold the {scene:.1f} stops too"
+        require(reach - (usable - overlap) < scene, said)
 
 
 @pytest.mark.points(3)

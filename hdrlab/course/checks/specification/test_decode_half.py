@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import Different, as_shape, numbers, same
+from hdrlab.course.checks.compare import as_shape, numbers, require, same
 
 
 def asked(subject, rng, e):
@@ -62,5 +62,5 @@ def test_the_largest_exponent_is_infinite_or_no_number(subject, rng):
     """
     bits = np.array([0x7C00, 0xFC00, 0x7C00 + rng.integers(1, 1024), 0xFC00 + rng.integers(1, 1024)])
     came = as_shape(numbers(subject.decode_half(bits.astype(np.uint16)), what="the values"), (4,))
-    if not np.array_equal(came, [np.inf, -np.inf, np.nan, np.nan], equal_nan=True):
-        raise Different(f"expected inf, -inf, nan, nan, got {came.tolist()}")
+    said = f"expected inf, -inf, nan, nan, got {came.tolist()}"
+    require(np.array_equal(came, [np.inf, -np.inf, np.nan, np.nan], equal_nan=True), said)

@@ -6,7 +6,7 @@ import pytest
 from hdrlab.capture import responses
 from hdrlab.core import weights
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import Different, finite, parts, same
+from hdrlab.course.checks.compare import finite, parts, require, same
 from hdrlab.fast import debevec
 
 HAT = weights.hat()
@@ -87,10 +87,10 @@ def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subjec
         g, lE = asked(subject, Z, B, smoothness, HAT)
         bends.append(np.sum((HAT[1:-1] * np.diff(g, 2)) ** 2))
         misses.append(np.sum((HAT[Z] * (g[Z] - lE[:, None] - B)) ** 2))
-    if not (np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0]):
-        raise Different(f"sum (w g'')^2: expected less and less as lambda grows, got {_few(bends)}")
-    if not np.all(np.diff(misses) > 0):
-        raise Different(f"sum (w (g - lE - B))^2: expected more and more as lambda grows, got {_few(misses)}")
+    said = f"sum (w g'')^2: expected less and less as lambda grows, got {_few(bends)}"
+    require(np.all(np.diff(bends) < 0) and bends[-1] < 0.03 * bends[0], said)
+    said = f"sum (w (g - lE - B))^2: expected more and more as lambda grows, got {_few(misses)}"
+    require(np.all(np.diff(misses) > 0), said)
 
 
 def _few(numbers):

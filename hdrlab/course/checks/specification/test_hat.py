@@ -3,14 +3,13 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.course.checks.compare import finite, require, same
 
 
 def asked(subject, n):
     """Return w (n,) in shares of its largest value."""
     w = finite(subject.hat(n), (n,), what="w").astype(float)
-    if not w.max() > 0:
-        raise Different(f"w: expected weights above 0, got none above {w.max():.3g}")
+    require(w.max() > 0, f"w: expected weights above 0, got none above {w.max():.3g}")
     return w / w.max()
 
 
@@ -34,8 +33,7 @@ def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
     """
     n = some(rng)
     w = finite(subject.hat(n), (n,), what="w")
-    if not (w >= 0).all():
-        raise Different(f"w: expected weights of at least 0, got {float(w.min()):.3g}", came=w, kind="curve")
+    require((w >= 0).all(), f"w: expected weights of at least 0, got {float(w.min()):.3g}", came=w)
 
 
 @pytest.mark.points(4)
@@ -49,9 +47,9 @@ def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng
     n = some(rng)
     w = asked(subject, n)
     steps = np.diff(w) * np.where(np.arange(n - 1) < n // 2, 1, -1)  # the one in the middle may be 0
-    if wrong := [int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1]:
-        said = f"w: expected to rise up to the middle and to fall from there, not so from level {wrong[0]} on"
-        raise Different(said, expected=hat(n), came=w, kind="curve")
+    wrong = next((int(z) for z in np.flatnonzero(steps <= 0) if z != n // 2 - 1), n)
+    said = f"w: expected to rise up to the middle and to fall from there, not so from level {wrong} on"
+    require(wrong == n, said, expected=hat(n), came=w, kind="curve")
     same(w, hat(n), 0.02, what="w", kind="curve")  # ends that count are another promise
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.core.filters.bilateral import bilateral
-from hdrlab.course.checks.compare import Different, finite, parts, same
+from hdrlab.course.checks.compare import finite, parts, require, same
 
 SIGMA = {"sigma_s": 4.0, "sigma_r": 0.4}
 
@@ -33,9 +33,8 @@ def test_the_layers_add_up_to_the_picture(subject, rng):
     lL = drawn(rng)
     base, detail = asked(subject, lL)
     same(base + detail, lL, 1e-3, what="base + detail", picture=True)
-    if not detail.std() > 0.01:
-        said = "the detail: expected the texture of the walls, got hardly any"
-        raise Different(said, came=detail, kind="image")
+    said = "the detail: expected the texture of the walls, got hardly any"
+    require(detail.std() > 0.01, said, came=detail, kind="image")
 
 
 @pytest.mark.points(5)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.course.checks.compare import finite, require, same
 
 
 def drawn(rng):
@@ -49,8 +49,8 @@ def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
     L = drawn(rng)
     L[:4] = 0
     came = float(finite(subject.log_average(L), (), what="Lav"))
-    if not 0 < came < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()):
-        raise Different(f"Lav: expected above 0, and less than without the black pixels, got {came:.4g}")
+    said = f"Lav: expected above 0, and less than without the black pixels, got {came:.4g}"
+    require(0 < came < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()), said)
 
 
 @pytest.mark.points(2, needs="test_it_is_the_geometric_mean")

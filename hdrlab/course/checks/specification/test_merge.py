@@ -6,7 +6,7 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import weights
-from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.course.checks.compare import finite, require, same
 from hdrlab.radiance.merge import merge
 
 G = responses.true_g("gamma")
@@ -28,8 +28,7 @@ def photographs(rng, E, times=TIMES):
 def same_map(came, truth, tolerance=0.01, **knobs):
     """Compare the logarithms of two maps: radiance is right or wrong by a factor."""
     E = finite(came, truth.shape, what="E").astype(float)
-    if not np.all(E > 0):
-        raise Different(f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not", came=E)
+    require(np.all(E > 0), f"E: expected radiance above 0, got {np.sum(E <= 0)} values that are not", came=E)
     same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
 
 
@@ -43,8 +42,7 @@ def test_every_pixel_has_a_finite_radiance(subject, rng):
     """
     images = photographs(rng, smooth(rng))
     E = finite(subject.merge(images, TIMES, G), images.shape[1:], what="E")
-    if not (E >= 0).all():
-        raise Different(f"E: expected radiance of at least 0, got {float(E.min()):.3g}", came=E, kind="image")
+    require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}", came=E)
 
 
 @pytest.mark.points(8)

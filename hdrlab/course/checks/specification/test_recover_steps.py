@@ -7,7 +7,7 @@ from scipy.ndimage import gaussian_filter1d
 from hdrlab.capture import responses
 from hdrlab.core import weights
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import Different, finite, same, states
+from hdrlab.course.checks.compare import finite, require, same, states
 from hdrlab.response import robertson
 
 W = weights.cut(weights.gaussian(), below=0.02)
@@ -34,8 +34,7 @@ def asked(subject, Z, t, **knobs):
     found = []
     for state in came:
         f = finite(state[0] if isinstance(state, tuple | list) else state, (256,), what="f^-1").astype(float)
-        if not f[128] > 0:
-            raise Different(f"f^-1: expected values above 0, got {f[128]:.3g} at level 128")
+        require(f[128] > 0, f"f^-1: expected values above 0, got {f[128]:.3g} at level 128")
         found.append(f / f[128])
     return found
 
@@ -68,8 +67,8 @@ def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     line, shown = np.arange(256) / 128, slice(15, 249)
     truth = robertson.update(Z, t, robertson.irradiance(Z, t, line, W))
     found = asked(subject, Z, t, max_iterations=3, tolerance=0.0)
-    if len(found) < 2:
-        raise Different(f"expected a state before the first iteration and one after each, got {len(found)}")
+    said = f"expected a state before the first iteration and one after each, got {len(found)}"
+    require(len(found) >= 2, said)
     expected = truth[shown] / truth[128]
     same(found[1][shown], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
 
@@ -114,8 +113,8 @@ def test_each_iteration_is_a_state_and_moves_the_curve_less(subject, rng):
     Z, t = samples(rng, laws.drawn_response(rng))
     found = asked(subject, Z, t, max_iterations=8, tolerance=0.0)
     moved = [float(np.abs(b - a)[SHOWN].max()) for a, b in zip(found, found[1:], strict=False)]
-    if len(found) < 8 or not 0 < moved[-1] < 0.5 * moved[0]:
-        raise Different(f"expected 9 states that change less and less, got {len(found)} that move by {moved}")
+    said = f"expected 9 states that change less and less, got {len(found)} that move by {moved}"
+    require(len(found) >= 8 and 0 < moved[-1] < 0.5 * moved[0], said)
 
 
 @pytest.mark.points(2, needs="test_the_iterations_end_at_the_curve_of_the_camera")

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.course.checks.compare import finite, require, same
 
 SIGMA = 4.0
 INNER = (slice(16, -16), slice(16, -16))  # away from the border, where a blur may do this or that
@@ -26,8 +26,7 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
     """
     L = drawn(rng)
     s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s")
-    if not (s > 0).all():
-        raise Different(f"s: expected scales above 0, got {float(s.min()):.3g}", came=s, kind="image")
+    require((s > 0).all(), f"s: expected scales above 0, got {float(s.min()):.3g}", came=s, kind="image")
 
 
 @pytest.mark.points(2)

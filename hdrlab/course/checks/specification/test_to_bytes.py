@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import Different, same
+from hdrlab.course.checks.compare import Different, require, same
 from hdrlab.io.maps import pfm
 
 
@@ -14,8 +14,7 @@ def drawn(rng, channels=()):
 def asked(subject, E):
     """Return the bytes that came."""
     data = subject.to_bytes(E)
-    if not isinstance(data, bytes):
-        raise Different("expected the bytes of a file, got something else")
+    require(isinstance(data, bytes), "expected the bytes of a file, got something else")
     return data
 
 
@@ -36,8 +35,7 @@ def test_the_file_begins_with_the_kind_of_map(subject, rng):
     The bytes begin with b'Pf'.
     """
     for E, kind in ((drawn(rng), b"Pf"), (drawn(rng, (3,)), b"PF")):
-        if asked(subject, E)[:2] != kind:
-            raise Different(f"expected a file that begins with {kind.decode()}")
+        require(asked(subject, E)[:2] == kind, f"expected a file that begins with {kind.decode()}")
 
 
 @pytest.mark.points(6)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.course.checks.compare import finite, require, same
 from hdrlab.io.maps import rgbe
 
 
@@ -16,8 +16,8 @@ def drawn(rng):
 
 def asked(subject, E):
     pixels = finite(subject.to_pixels(E), (*E.shape[:2], 4), what="the pixels").astype(float)
-    if not ((pixels >= 0) & (pixels <= 255) & (pixels == np.round(pixels))).all():
-        raise Different(f"expected whole numbers 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}")
+    said = f"expected whole numbers 0 to 255, got {pixels.min():.4g} to {pixels.max():.4g}"
+    require(((pixels >= 0) & (pixels <= 255) & (pixels == np.round(pixels))).all(), said)
     return pixels
 
 
@@ -57,8 +57,8 @@ def test_the_largest_mantissa_is_128_or_more(subject, rng):
     """
     pixels = asked(subject, drawn(rng))
     largest = pixels[..., :3].max(axis=-1)
-    if not (largest >= 128).all():
-        raise Different(f"expected a largest mantissa of 128 or more in every pixel, got {largest.min():g}")
+    said = f"expected a largest mantissa of 128 or more in every pixel, got {largest.min():g}"
+    require((largest >= 128).all(), said)
 
 
 @pytest.mark.points(3)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from hdrlab.course.checks.compare import Different, finite, same
+from hdrlab.course.checks.compare import finite, require, same
 
 
 def drawn(rng):
@@ -21,8 +21,7 @@ def test_every_pixel_is_three_radiances(subject, rng):
     Nothing in it is below 0.
     """
     E = finite(subject.to_radiance(drawn(rng)), (9, 11, 3), what="E")
-    if not (E >= 0).all():
-        raise Different(f"E: expected radiance of at least 0, got {float(E.min()):.3g}")
+    require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}")
 
 
 @pytest.mark.points(5)
