@@ -7,6 +7,7 @@ a file holds is kept from them; that there is a file of a certain name is not.
 
 import os
 import sys
+from contextlib import ExitStack
 from socket import socket
 
 from hdrlab.course.sandbox import descent, filters, running, users
@@ -39,16 +40,14 @@ def launch(control: socket) -> running.Launched:
     python = "{0}/" + os.path.relpath(inside.places[inside.python], inside.prefix)
     loaded = ":".join(["{0}/lib", *(f"{{{j}}}" for j in range(2 + len(found), len(homes)))])
     walk, read = inside.readable()
-    user, held = users.lease()
-    words = users.descend(
-        user=user,
-        homes=homes,
-        fence={"read": read, "walk": walk, "write": [os.devnull]},
-        command=running.command(python, f"{{1}}/{running.PROGRAM.name}", control.fileno(), folders),
-        environment=running.ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
-    )
-    try:
-        return running.Launched(running.start(words, {}, control.fileno()), held.close)
-    except BaseException:
-        held.close()
-        raise
+    with ExitStack() as held:
+        user, lease = users.lease()
+        held.enter_context(lease)
+        words = users.descend(
+            user=user,
+            homes=homes,
+            fence={"read": read, "walk": walk, "write": [os.devnull]},
+            command=running.command(python, f"{{1}}/{running.PROGRAM.name}", control.fileno(), folders),
+            environment=running.ENVIRONMENT | {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": loaded},
+        )
+        return running.Launched(running.start(words, {}, control.fileno()), held.pop_all().close)

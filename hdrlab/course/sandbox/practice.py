@@ -9,7 +9,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
-from functools import partial
+from contextlib import ExitStack
 from socket import socket
 
 from hdrlab.course.sandbox import running
@@ -31,15 +31,12 @@ def launch(control: socket) -> running.Launched:
     words = running.command(python, str(running.PROGRAM), control.fileno(), running.packages())
     environment = running.ENVIRONMENT | {"HOME": scratch, "TMPDIR": scratch}
     environment |= {name: os.environ[name] for name in ("SYSTEMROOT",) if name in os.environ}  # for Windows
-    after = partial(shutil.rmtree, scratch, ignore_errors=True)
-    try:
+    with ExitStack() as held:
+        held.callback(shutil.rmtree, scratch, ignore_errors=True)
         if hasattr(control, "share"):  # on Windows
-            return running.Launched(_shared(words, environment, control, scratch), after)
+            return running.Launched(_shared(words, environment, control, scratch), held.pop_all().close)
         process = running.start(words, environment, control.fileno(), folder=scratch)
-        return running.Launched(process, after, scratch)
-    except BaseException:
-        after()
-        raise
+        return running.Launched(process, held.pop_all().close, scratch)
 
 
 def _shared(

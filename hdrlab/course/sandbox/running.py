@@ -88,12 +88,10 @@ class Running:
     def _start(self) -> None:
         """Launch, and do not wait: it gets ready while the parent does other things."""
         self._control, theirs = socket.socketpair()
-        with theirs:
-            try:
-                self._launched = self.sandbox.launch(theirs)
-            except BaseException:
-                self._control.close()
-                raise
+        with theirs, contextlib.ExitStack() as held:
+            held.enter_context(self._control)
+            self._launched = self.sandbox.launch(theirs)
+            held.pop_all()
         self._ready, self._checks = False, 0  # how many checks it has begun
         self._busy = False  # with one that is not cleared away
         order = {name: getattr(self.sandbox, name) for name in ORDERED}
@@ -133,16 +131,15 @@ class Running:
         self.clear()
         self.granted = max(1, math.ceil(min(self._each, self.left)))
         ours, theirs = socket.socketpair()
-        try:
+        with contextlib.ExitStack() as held:
+            held.enter_context(ours)
             with theirs:
                 self._checks += 1
                 self._busy = True
                 channel.send(self._control, "check", self.granted, self._checks)
                 socket.send_fds(self._control, [b"c"], [theirs.fileno()])
             self._hear("begun", CLEAR)
-        except BaseException:
-            ours.close()
-            raise
+            held.pop_all()
         return ours
 
     def clear(self, patience: float = 0.0) -> tuple[int, float]:

@@ -12,6 +12,7 @@ import subprocess
 import sys
 from functools import cache, partial
 from socket import socket
+from typing import BinaryIO
 
 from hdrlab.course.sandbox import descent, filters, users
 from hdrlab.course.sandbox.contents import PYTHON, Contents, contents
@@ -65,29 +66,23 @@ def walls(inside: Contents, sources: dict[str, str], rules: int) -> list[str]:
 
 def launch(bwrap: str, control: socket) -> Launched:
     """Start the supervisor behind the walls; root becomes a spare user first."""
-    inside, held = contents(), contextlib.ExitStack()  # without a user, bubblewrap leaves nothing to clear up
+    inside = contents()
     supervisor = command(inside.python, inside.program, control.fileno(), inside.packages)
-    rules = _readable(filters.program("supervisor"))
-    try:
-        words = [bwrap, *walls(inside, inside.places, rules), *supervisor]
-        if os.geteuid() == 0:
+    with contextlib.ExitStack() as held, _readable(filters.program("supervisor")) as rules:
+        words = [bwrap, *walls(inside, inside.places, rules.fileno()), *supervisor]
+        if os.geteuid() == 0:  # without a user, bubblewrap leaves nothing to clear up
             user, lease = users.lease()
-            held.callback(lease.close)
+            held.enter_context(lease)
             staged = {place: f"{descent.STAGE}/{j}" for j, place in enumerate(inside.places)}
-            words = [bwrap, *walls(inside, staged, rules), *supervisor]
+            words = [bwrap, *walls(inside, staged, rules.fileno()), *supervisor]
             paths = list(inside.places.values())
             words = users.descend(user=user, stage=paths, command=words, environment={})
-        return Launched(start(words, {}, control.fileno(), rules), held.close)
-    except BaseException:
-        held.close()
-        raise
-    finally:
-        os.close(rules)
+        return Launched(start(words, {}, control.fileno(), rules.fileno()), held.pop_all().close)
 
 
-def _readable(program: bytes) -> int:
-    """Return a descriptor from which a program of a few thousand bytes can be read."""
+def _readable(program: bytes) -> BinaryIO:
+    """Return a file from which a program of a few thousand bytes can be read."""
     ours, theirs = os.pipe()
     with open(theirs, "wb") as begin:
         begin.write(program)
-    return ours
+    return open(ours, "rb")

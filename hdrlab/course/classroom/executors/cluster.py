@@ -117,11 +117,10 @@ class Cluster:
         except (OSError, ValueError) as error:
             why = f": {error}" if isinstance(error, ValueError) else ""
             raise ValueError(f"expected a Dask cluster at {self._address}, there is none{why}") from None
-        try:
+        with contextlib.ExitStack() as held:
+            held.callback(self._client.close)
             self._check()
-        except BaseException:
-            self._client.close()
-            raise
+            held.pop_all()
         return self
 
     def __exit__(self, *error: object) -> None:
