@@ -65,6 +65,7 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
         raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
     tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
     files = files_of(homework, conditions.hidden)
+    asked = specification(files)
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
         job = _job(folder, read, homework, conditions)
@@ -74,8 +75,8 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
                 raise Unavailable(line["unavailable"])
             heard.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
             if "ended" in line:
-                yield _result(heard, read, homework, conditions, files)
-    yield _result(heard, read, homework, conditions, files)
+                yield _result(heard, read, homework, conditions, asked)
+    yield _result(heard, read, homework, conditions, asked)
 
 
 def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
@@ -124,11 +125,7 @@ def _seed_id(homework: Homework, conditions: Conditions) -> str:
 
 
 def _result(
-    heard: Sequence[dict[str, Any]],
-    read: Submission,
-    homework: Homework,
-    conditions: Conditions,
-    files: Sequence[Path],
+    heard: Sequence[dict[str, Any]], read: Submission, homework: Homework, conditions: Conditions, asked: str
 ) -> Result:
     return Result(
         student=conditions.student,
@@ -139,7 +136,7 @@ def _result(
         misconceptions={line["recognised"]: line["sentence"] for line in heard if "recognised" in line},
         problems=read.problems,
         submission=read.hash,
-        specification=specification(files),
+        specification=asked,
         seed=_seed_id(homework, conditions),
         versions=VERSIONS,
         at_most=homework.at_most,
