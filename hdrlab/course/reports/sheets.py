@@ -9,6 +9,7 @@ import csv
 import io
 import re
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 from pathlib import Path
 
 from hdrlab.io.files import write
@@ -73,6 +74,4 @@ def read_csv(path: str | Path, *, most: int = 5_000_000) -> list[dict[str, str]]
     header = [name.strip().lower() for name in lines[0]]
     if (longest := max(map(len, lines))) > len(header):
         raise ValueError(f"{path}: expected {len(header)} cells a row, as in its header, got {longest}")
-    return [
-        dict(zip(header, [c.strip() for c in line] + [""] * len(header), strict=False)) for line in lines[1:]
-    ]
+    return [dict(zip_longest(header, map(str.strip, line), fillvalue="")) for line in lines[1:]]
