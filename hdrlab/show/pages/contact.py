@@ -23,11 +23,7 @@ from hdrlab.tonemap import quality
 
 
 def entry_steps(
-    E: ArrayLike,
-    operators: Sequence[str] | Mapping[str, Method] | None = None,
-    *,
-    way: str = "hue",
-    clock: Callable[[], float] = perf_counter,
+    E: ArrayLike, operators: Sequence[str] | Mapping[str, Method] | None = None, *, way: str = "hue"
 ) -> Iterator[Entry]:
     """Yield the Entry of each operator: its picture, time, TMQI and statistics.
 
@@ -40,8 +36,6 @@ def entry_steps(
         operator is a name or your own function `tonemap(L) -> Ld` in [0, 1].
     way : {"hue", "ratio"}
         What becomes of colours that a display does not have: see `core.colour.render`.
-    clock : function
-        Returns seconds.
 
     Raises
     ------
@@ -63,10 +57,10 @@ def entry_steps(
     E = as_radiance(E)
     L = colour.luminance(E)
     for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
-        begun = clock()
+        begun = perf_counter()
         settings, saturation = pipeline.settle(tonemap, E)
         Ld = tonemap(L, **settings)
-        seconds = clock() - begun
+        seconds = perf_counter() - begun
         picture = colour.render(E, L, Ld, saturation=saturation, way=way)
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 
