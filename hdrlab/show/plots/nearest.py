@@ -42,19 +42,13 @@ class _Nearest(AxesImage):
 
 
 def show(
-    ax: Axes,
-    picture: ArrayLike,
-    *,
-    colours: Any = None,
-    norm: Any = None,
-    extent: Extent | None = None,
-    zorder: float = 0,
+    ax: Axes, picture: ArrayLike, *, colours: Any = None, norm: Any = None, extent: Extent | None = None
 ) -> AxesImage:
     """Draw a picture, its first row on top; values (H, W) have `colours`, whose ends the `norm` says.
 
     The limits of the Axes follow the picture, whose pixels have a side of 1 unless an `extent` is given.
     """
-    image = _Nearest(ax, cmap=colours, norm=norm, origin="upper", extent=extent, zorder=zorder)
+    image = _Nearest(ax, cmap=colours, norm=norm, origin="upper", extent=extent, zorder=0)
     image.set_data(picture)
     image.set_clip_path(ax.patch)
     image.set_extent(image.get_extent())

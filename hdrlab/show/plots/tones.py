@@ -72,7 +72,7 @@ def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object
     """Draw the colours of a scale, with its numbers or the names of its classes below."""
     low, high = (-0.5, len(names) - 0.5) if names else map(float, norm.inverse(np.array([0.0, 1.0])))
     each = np.arange(len(names)) if names else np.linspace(low, high, 256)
-    show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1), zorder=1)
+    show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1)).set_zorder(1)
     if names:
         bar.set_xticks(range(len(names)), [str(name) for name in names])
     else:
