@@ -34,9 +34,7 @@ def photographs(rng, E, offsets, times, noise=0.004):
 
 def drawn(rng, least, most):
     """Return an offset (dy, dx), each as far as that in either direction."""
-    return tuple(
-        int(s * n) for s, n in zip(rng.choice([-1, 1], 2), rng.integers(least, most + 1, 2), strict=True)
-    )
+    return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
 
 
 @pytest.mark.points(1, needs="test_photographs_a_pixel_apart_are_told_apart")

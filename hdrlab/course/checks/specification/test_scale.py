@@ -16,6 +16,11 @@ def drawn(rng, shape=(60, 76)):
     return np.exp(0.7 * lL / lL.std()).astype(np.float32)
 
 
+def asked(subject, L, k=8.0):
+    """Return s (H, W)."""
+    return finite(subject.scale(L, headroom=k, sigma=SIGMA), L.shape, what="s").astype(float)
+
+
 @pytest.mark.points(1)
 def test_every_pixel_has_a_scale_above_0(subject, rng):
     """A scale for each pixel: the shape of L.
@@ -24,9 +29,8 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
 
     Nothing in it is NaN or infinite.
     """
-    L = drawn(rng)
-    s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s")
-    require((s > 0).all(), f"s: expected scales above 0, got {float(s.min()):.3g}", came=s, kind="image")
+    s = asked(subject, drawn(rng))
+    require((s > 0).all(), f"s: expected scales above 0, got {s.min():.3g}", came=s)
 
 
 @pytest.mark.points(2)
@@ -40,8 +44,7 @@ def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
     for _ in range(2):
         level, k = float(10 ** rng.uniform(-2, 3)), float(rng.uniform(2, 16))
         L = np.full((40, 40), level, np.float32)
-        s = finite(subject.scale(L, headroom=k, sigma=SIGMA), L.shape, what="s").astype(float)
-        same(s * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
+        same(asked(subject, L, k) * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
 
 
 @pytest.mark.points(6)
@@ -54,8 +57,8 @@ def test_it_is_one_over_k_times_the_blur(subject, rng):
     """
     L = drawn(rng)
     truth = 1 / (8 * gaussian_filter(L.astype(float), SIGMA))
-    s = finite(subject.scale(L, headroom=8.0, sigma=SIGMA), L.shape, what="s").astype(float)
-    same((s / truth)[INNER], np.ones(truth[INNER].shape), 0.08, what="s k blur(L)", picture=True)
+    shares = (asked(subject, L) / truth)[INNER]
+    same(shares, np.ones(shares.shape), 0.08, what="s k blur(L)", picture=True)
 
 
 @pytest.mark.points(2, needs="test_it_is_one_over_k_times_the_blur")
@@ -67,9 +70,5 @@ def test_the_unit_of_luminance_cancels_in_the_picture(subject, rng):
     s of 10 L is s / 10.
     """
     L = drawn(rng)
-    shown = []
-    for light in (L, np.float32(10) * L):
-        s = finite(subject.scale(light, headroom=8.0, sigma=SIGMA), L.shape, what="s").astype(float)
-        shown.append(s * light)
-    one, ten = shown
+    one, ten = (asked(subject, light) * light for light in (L, np.float32(10) * L))
     same(ten, one, 0.01 * float(one.max()), what="s L with ten times the light", picture=True)

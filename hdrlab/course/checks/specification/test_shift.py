@@ -6,14 +6,14 @@ import pytest
 from hdrlab.course.checks.compare import same
 
 
-def views(rng, offsets, shape=(40, 50), channels=()):
-    """Return views of one picture that `offsets` (dy, dx) lay on each other, and the part that all show."""
-    margin = 12
-    H, W = shape
+def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
+    """Compare the part that all show of views of one picture, which `offsets` (dy, dx) lay on each other."""
+    margin, H, W = 12, 40, 50
     world = rng.integers(0, 256, (H + 2 * margin, W + 2 * margin, *channels), dtype=np.uint8)
     images = [world[margin + dy : margin + dy + H, margin + dx : margin + dx + W] for dy, dx in offsets]
-    (top, left), (bottom, right) = np.maximum(offsets, 0).max(0), np.minimum(offsets, 0).min(0) + shape
-    return np.stack(images), world[margin + top : margin + bottom, margin + left : margin + right]
+    (top, left), (bottom, right) = np.maximum(offsets, 0).max(0), np.minimum(offsets, 0).min(0) + (H, W)
+    common = world[margin + top : margin + bottom, margin + left : margin + right]
+    same(subject.shift(np.stack(images), offsets), np.stack([common] * len(offsets)), 0, what=what)
 
 
 @pytest.mark.points(5)
@@ -24,9 +24,7 @@ def test_moved_images_lie_on_each_other(subject, rng):
 
     The part that all show begins at the largest offset, and in image j at that less its own.
     """
-    offsets = np.array([[0, 0], [3, -5]])
-    images, common = views(rng, offsets)
-    same(subject.shift(images, offsets), np.stack([common, common]), 0, what="the moved images")
+    agree(subject, rng, np.array([[0, 0], [3, -5]]))
 
 
 @pytest.mark.points(5)
@@ -37,9 +35,7 @@ def test_nothing_comes_in_from_the_other_side(subject, rng):
 
     Cut the images to the rectangle that every moved one covers.
     """
-    offsets = rng.integers(-9, 10, (4, 2))
-    images, common = views(rng, offsets)
-    same(subject.shift(images, offsets), np.stack([common] * 4), 0, what="the moved images")
+    agree(subject, rng, rng.integers(-9, 10, (4, 2)))
 
 
 @pytest.mark.points(3)
@@ -50,9 +46,7 @@ def test_colour_moves_like_gray(subject, rng):
 
     image[top:bottom, left:right] takes all channels along.
     """
-    offsets = rng.integers(-6, 7, (3, 2))
-    images, common = views(rng, offsets, channels=(3,))
-    same(subject.shift(images, offsets), np.stack([common] * 3), 0, what="the moved images")
+    agree(subject, rng, rng.integers(-6, 7, (3, 2)), channels=(3,))
 
 
 @pytest.mark.points(1)
@@ -63,5 +57,4 @@ def test_images_that_need_not_move_stay_whole(subject, rng):
 
     Only differences between offsets cost pixels, beside what leaves the frame of (0, 0).
     """
-    images, common = views(rng, np.zeros((3, 2), int))
-    same(subject.shift(images, np.zeros((3, 2), int)), np.stack([common] * 3), 0, what="the images")
+    agree(subject, rng, np.zeros((3, 2), int), what="the images")

@@ -14,11 +14,7 @@ OPERATOR = "test_it_is_the_photographic_operator"
 
 def asked(subject):
     """Return the subject's operator, its answer as float32, which is how pictures travel."""
-
-    def tonemap(L):
-        return numbers(subject.tonemap(L), what="Ld").astype(np.float32)
-
-    return tonemap
+    return lambda L: numbers(subject.tonemap(L), what="Ld").astype(np.float32)
 
 
 def drawn(rng, shape=(96, 128)):

@@ -11,9 +11,8 @@ INNER = (slice(1, -1), slice(1, -1))
 
 def drawn(rng):
     """Return F (3, H, W)."""
-    return rng.uniform(0.05, 0.95, (3, int(rng.integers(12, 20)), int(rng.integers(20, 30)))).astype(
-        np.float32
-    )
+    shape = (3, int(rng.integers(12, 20)), int(rng.integers(20, 30)))
+    return rng.uniform(0.05, 0.95, shape).astype(np.float32)
 
 
 def compared(subject, F, powers, what):
