@@ -19,12 +19,15 @@ from numpy.typing import ArrayLike, NDArray
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.types import F32
+from hdrlab.io.decode import upright
 from hdrlab.io.files import check_size, replacing
 from hdrlab.io.maps.rgbe_header import read_header
 
 # 2^(e - 128) / 256, of each exponent e
 SCALE = np.ldexp(1.0, np.arange(256) - 136).astype(np.float32)
 SCALE[0] = 0
+# how rows and columns run, in the order of EXIF's orientations
+AXES = ("-Y+X", "-Y-X", "+Y-X", "+Y+X", "+X-Y", "-X-Y", "-X+Y", "+X+Y")
 # pixels: the longest run that one code of two bytes stands for
 LONGEST_RUN = 127
 # letters of a comment: OpenCV reads lines of up to 127
@@ -71,7 +74,7 @@ def read(path: str | Path) -> F32:
     else:
         check_size(path, scanlines, length, 4 * scanlines, available=len(data))
         E = to_radiance(_pixels(path, data, scanlines, length))
-    E = _upright(E, header.axes)
+    E = np.ascontiguousarray(upright(E, 1 + AXES.index(header.axes)))
     if np.any(header.exposure != 1):
         E /= header.exposure.astype(np.float32)
     return E
@@ -103,8 +106,7 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     height, width = E.shape[:2]
     if E.max() >= 2.0**127:
         raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
-    if E.ndim == 2:
-        E = np.broadcast_to(E[..., None], (height, width, 3))
+    E = np.broadcast_to(E if E.ndim == 3 else E[..., None], (height, width, 3))
     room = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
     with replacing(path) as name, open(name, "wb") as file:
         said = "".join(f"# {line}\n" for one in comments for line in wrap(one, COMMENT))
@@ -167,14 +169,3 @@ def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArr
         raise ValueError(f"{path}: expected {size}, they are damaged or cut short")
     repeated = words[pixel[: last + 1]].repeat(counts[: last + 1])
     return repeated.view(np.uint8).reshape(scanlines, length, 4)
-
-
-def _upright(E: F32, axes: str) -> F32:
-    """Return E with its first row at the top (-Y) and its first column at the left (+X)."""
-    if axes[1] == "X":
-        E = E.swapaxes(0, 1)
-    if "+Y" in axes:
-        E = E[::-1]
-    if "-X" in axes:
-        E = E[:, ::-1]
-    return np.ascontiguousarray(E)
