@@ -19,6 +19,7 @@ from hdrlab.core.weights import gaussian
 
 MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels
 BLOCK = re.compile(r"^# name: *(\w+) *\n# type: *matrix *\n# rows: *(\d{1,6}) *\n# columns: *3 *\n", re.M)
+NUMBER = re.compile(r"\s*[-+]?(\d+\.?\d*|\.\d+)(e[-+]?\d{1,3})?\s*", re.ASCII | re.IGNORECASE)
 
 
 def write_pfstools(path: Path, g: F64) -> None:
@@ -87,16 +88,11 @@ def numbers(text: str, columns: int, separator: str | None = None) -> F64:
 
     The last line must end too: a number that was cut short is a number still.
     """
-    rows = []
     if not text.endswith("\n"):
         raise ValueError("expected a table whose last line ends: is it cut short?")
-    for count, line in enumerate(text.splitlines(), 1):
-        cells = line.split(separator)
-        try:
-            row = [float(cell) for cell in cells]
-        except ValueError:
-            row = []
-        if len(row) != columns or not np.isfinite(row).all():
-            raise ValueError(f"expected {columns} numbers in line {count} of its table, got {line[:60]!r}")
-        rows.append(row)
+    rows = [line.split(separator) for line in text.splitlines()]
+    for count, row in enumerate(rows, 1):
+        if len(row) != columns or not all(map(NUMBER.fullmatch, row)):
+            got = (separator or " ").join(row)[:60]
+            raise ValueError(f"expected {columns} numbers in line {count} of its table, got {got!r}")
     return np.array(rows, np.float64).reshape(-1, columns)
