@@ -142,19 +142,15 @@ def write(path: str | Path, frames: Iterable[Array], *, rate: float = 25.0) -> i
         return (_write_film if path.suffix.lower() in FILMS else _write_gif)(name, pictures, rate)
 
 
-def _write_film(path: Path, frames: Iterable[Array], rate: float) -> int:
-    written, file = 0, None
-    try:
-        for frame in frames:
-            if file is None:
-                file = cast(Any, iio.imopen(path, "w", plugin="pyav"))
-                file.init_video_stream("libx264", fps=float(rate))
+def _write_film(path: Path, frames: Iterator[Array], rate: float) -> int:
+    first, written = next(frames), 0  # which may be none
+    with iio.imopen(path, "w", plugin="pyav") as file:
+        film: Any = file
+        film.init_video_stream("libx264", fps=float(rate))
+        for frame in chain([first], frames):
             even = frame[: len(frame) // 2 * 2, : frame.shape[1] // 2 * 2]
-            file.write_frame(np.ascontiguousarray(even))
+            film.write_frame(np.ascontiguousarray(even))
             written += 1
-    finally:
-        if file is not None:
-            file.close()
     return written
 
 
