@@ -46,7 +46,7 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @click.option("-o", "--out", multiple=True, type=common.OUT, help=f"Curve to write: {SUFFIXES}. Repeatable.")
 @click.option("--times", metavar=TIMES, default="exif", help="Exposure times: EXIF, corrected, or a list.")
 @click.option("--estimate-times", is_flag=True, help="Correct the times of a FILE by the pixels, too.")
-@click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
+@common.MASK
 @common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
 @common.choice("--response", METHODS, "debevec")
 @click.option("--plot", type=common.OUT, help="Picture of the curve and the residuals: .png or .svg.")
@@ -65,7 +65,7 @@ def calibrate(
     The table says at which levels exposure doubles.
     """
     from hdrlab import pipeline
-    from hdrlab.io import photos as files
+    from hdrlab.cli.photographs import read_bracket
     from hdrlab.io import response_files
     from hdrlab.pipeline import recovery
     from hdrlab.show.plots import calibration
@@ -74,12 +74,7 @@ def calibrate(
         response_files.suffix_of(path)  # an unknown suffix is better known before the work than after it
     if plot:
         calibration.check_suffix(plot)
-    bracket = files.read_bracket(
-        photos[0] if len(photos) == 1 else photos,
-        None if times in ("exif", "estimate") else Path(times),
-        mask=common.colour(mask),
-        progress=lambda paths: common.progress(paths, "reading"),
-    )
+    bracket = read_bracket(photos, times, mask, None)
     ready = "times" if estimate_times or times == "estimate" else "align"
     steps = pipeline.assemble_steps(
         bracket, align=align, response=response, times="estimate" if ready == "times" else "stated"

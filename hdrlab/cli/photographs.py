@@ -29,9 +29,7 @@ FUSION = "the picture is an exposure fusion of the photographs"
 )
 @click.option("--keep-times", is_flag=True, help="Take the times of a FILE as they are, too.")
 @click.option("--stops", type=click.FloatRange(0, min_open=True), help="No times, but frames so far apart.")
-@click.option(
-    "--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture (borders of scans)."
-)
+@common.MASK
 @common.choice(
     "--align",
     ["auto", *catalogue.names("align"), "none"],
