@@ -73,10 +73,8 @@ def plan(
         stops = made.names, made.times, np.full(count, camera["iso"])
         for way, (names, times, speeds) in (("by stops", stops), ("by noise", quick)):
             worst = planning.worst_snr(low, high, times, speeds, maker)
-            click.echo(
-                f"{way}: {len(names)} photographs in {times.sum():.4g} s and {len(names)} pauses of "
-                f"{maker.pause:g} s; signal over noise {worst:.3g} at worst"
-            )
+            took = f"{times.sum():.4g} s and {len(names)} pauses of {maker.pause:g} s"
+            click.echo(f"{way}: {len(names)} photographs in {took}; signal over noise {worst:.3g} at worst")
         for name, time, speed in zip(*quick, strict=True):
             click.echo(f"  {name:>7} s  (really {time:.6g} s) at ISO {speed:g}")
 
@@ -104,15 +102,13 @@ def meter(photo: Path, mode: str, at: str) -> None:
     read, stops = metering.reading(B, w), metering.correction(B, w)
     asked, full = (w > w.max() / 100).mean(), float((w * (B >= 1)).sum())
     click.echo(f"{mode}: asks {asked:.0%} of the pixels; {full:.0%} of what it hears is full pixels")
-    click.echo(
-        f"reading {read:.3f} of full, where {metering.MIDDLE_GRAY} is wanted: {abs(stops):.1f} stops "
-        + ("too dark" if stops > 0 else "too bright")
-    )
+    wanted, way = metering.MIDDLE_GRAY, "too dark" if stops > 0 else "too bright"
+    click.echo(f"reading {read:.3f} of full, where {wanted} is wanted: {abs(stops):.1f} stops {way}")
     said = decode.look(photo).exposure
     if said.seconds:
-        wanted = exposure.true_time(exposure.true_time(said.seconds) * 2.0**stops)
+        right = exposure.true_time(exposure.true_time(said.seconds) * 2.0**stops)
         dial = exposure.shutter_series(3)
-        name = dial.names[int(np.argmin(abs(dial.values - wanted)))]
+        name = dial.names[int(np.argmin(abs(dial.values - right)))]
         time = f"{said.seconds:g}" if said.seconds >= 0.4 else f"1/{1 / said.seconds:.0f}"
         click.echo(f"taken with {time} s; with {name} s it would be right")
 

@@ -81,11 +81,7 @@ def tonemap(
 
 def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, Any]) -> None:
     """Raise a ValueError that lists a method's knobs where one of `knobs` is not among them."""
-    known = [
-        knob.name
-        for knob in inspect.signature(catalogue.method(chapter, name)).parameters.values()
-        if knob.kind is knob.KEYWORD_ONLY
-    ]
+    known = inspect.getfullargspec(catalogue.method(chapter, name)).kwonlyargs
     for knob in knobs:
         if knob not in known:
             name = name if isinstance(name, str) else name.__module__.rpartition(".")[2]

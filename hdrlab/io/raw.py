@@ -40,9 +40,8 @@ def look(path: str | Path) -> tuple[tuple[int, int, int], Exposure]:
         sizes, other = file.sizes, file.other
         if file.num_colors != 3:
             raise ValueError(f"{path}: expected a sensor of three colours, got {file.num_colors}")
-        height, width = sizes.iheight, sizes.iwidth
-        if sizes.flip in (5, 6):  # turned by a quarter
-            height, width = width, height
+        # by 5 and 6 it is turned by a quarter
+        height, width = (sizes.iheight, sizes.iwidth)[:: -1 if sizes.flip in (5, 6) else 1]
         values = (other.shutter_speed, other.aperture, other.iso_speed)
     check_size(path, height, width, height * width // 64)
     return (height, width, 3), Exposure(*(float(value) if 0 < value < np.inf else None for value in values))

@@ -78,9 +78,9 @@ def are_inverse(seconds: Sequence[float], brightness: ArrayLike, where: str = "t
         return False
     r = float(np.corrcoef(np.argsort(np.argsort(seconds)), np.argsort(np.argsort(brightness)))[0, 1])
     if abs(r) < CORRELATION:
+        why = "to distinguish seconds from 1/seconds; write them as 1/60 or as 0.5 s"
         raise ValueError(
-            f"{where}: expected numbers that rise or fall with the photographs' brightness, to distinguish "
-            "seconds from 1/seconds; write them as 1/60 or as 0.5 s"
+            f"{where}: expected numbers that rise or fall with the photographs' brightness, {why}"
         )
     return r < 0
 
