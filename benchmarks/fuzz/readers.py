@@ -96,6 +96,12 @@ def read_other(path: Path) -> None:
     _each(lambda: describe_file(path), lambda: photos.read_photo(path))
 
 
+def read_jxl(path: Path) -> None:
+    """Read a JPEG XL as what it says that it is, a map or a photograph."""
+    light = describe_file(path)["values"].startswith("float")
+    (radiance.read_radiance if light else photos.read_photo)(path)
+
+
 def read_exif(path: Path) -> None:
     """Read EXIF, and what it tells."""
     _each(lambda: exif.list_personal_data(path.read_bytes()))
@@ -175,6 +181,7 @@ ALL: Sequence[Reader] = (
     Reader("photo-webp", ".webp", seeds.telephones, read_other),
     Reader("avif", ".avif", seeds.telephones, read_other),
     Reader("heic", ".heic", seeds.telephones, read_other, needs="pillow_heif"),
+    Reader("jxl", ".jxl", seeds.jpegxl, read_jxl, needs="imagecodecs"),
     Reader("motion", ".jpg", seeds.telephones, read_photo),
     Reader("dng", ".dng", seeds.raw, read_photo, needs="rawpy", damaged="dng", printed=LIBRAW),
     Reader("film", ".mp4", seeds.films, lambda path: [*_frames(path)], needs="av"),

@@ -1,6 +1,7 @@
 """Small good files of each kind, by the project's own writers: what is mutated is read at first."""
 
 import contextlib
+import io
 import shutil
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -85,6 +86,16 @@ def telephones(folder: Path) -> None:
     image.save(folder / "moving.jpg", **how)
     with open(folder / "moving.jpg", "ab") as file:
         file.write(bytes(4) + b"ftypmp42" + np.random.default_rng(1).bytes(600))
+
+
+def jpegxl(folder: Path) -> None:
+    """Write JPEG XL of each kind of sample, bare and in boxes, by libjxl."""
+    for name, pixels in ("light", E), ("half", E[..., 1].astype(np.float16)), ("deep", RGB * np.uint16(257)):
+        (folder / f"{name}.jxl").write_bytes(imagecodecs.jpegxl_encode(pixels, lossless=True))
+    (folder / "lossy.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB, distance=2.0))
+    (folder / "gray.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB[..., 1], usecontainer=True))
+    Image.fromarray(RGB).save(file := io.BytesIO(), "JPEG", exif=_exif())
+    (folder / "was.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
 
 
 def _exif() -> Image.Exif:

@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from hdrlab.io import raw
-from hdrlab.io.decode import Header, OtherPixels, look
+from hdrlab.io.decode import Header, look
+from hdrlab.io.files import OtherPixels
 
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
-SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif"}
+SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif", ".jxl"}
 # what programs add to the name of a photograph: IMG_1-edited, IMG_1_thumb, IMG_1~2
 EDITED = re.compile(r"(.+?)([-_ .]*(edit|edited|bearbeitet|hdr|thumb|thumbnail|small|preview)|~\d+)", re.I)
 # ... and Apple within it: IMG_E0001 is IMG_0001, edited

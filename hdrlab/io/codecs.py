@@ -16,6 +16,7 @@ from PIL import Image
 
 from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
 from hdrlab.core.types import Array
+from hdrlab.io import jpegxl
 
 for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong
     logging.getLogger(codec).addHandler(logging.NullHandler())
@@ -100,6 +101,14 @@ def _heic(data: bytes, out: Array | None) -> Array:
     return pixels if pixels.dtype == np.uint8 else _fill(pixels, image.info["bit_depth"])
 
 
+def _jxl(data: bytes, out: Array | None) -> Array:
+    """Decode into an array of the size that was looked at: another is refused before a pixel is decoded."""
+    shape, dtype, depth, *_ = jpegxl.look("", data)
+    out = np.empty(shape, dtype) if out is None else out
+    pixels = imagecodecs.jpegxl_decode(data, keeporientation=True, out=out)
+    return _fill(pixels << (16 - depth), depth) if dtype == np.uint16 else pixels
+
+
 def _fill(pixels: Array, depth: int) -> Array:
     """Return levels of `depth` bits, which are the upper ones of 16, spread over all: white is 65535."""
     return pixels | pixels >> depth
@@ -118,3 +127,4 @@ def _tiff(data: bytes, out: Array | None) -> Array:
 
 
 DECODERS = {"JPEG": _jpeg, "PNG": _png, "TIFF": _tiff, "WEBP": _pillow, "AVIF": _avif, "HEIF": _heic}
+DECODERS["JXL"] = _jxl

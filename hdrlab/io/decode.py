@@ -7,7 +7,7 @@ profile, see hdrlab.io.profiles.
 
 import re
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -16,31 +16,30 @@ from PIL import ExifTags, Image
 
 from hdrlab.core.optional import pillow_heif, tifffile
 from hdrlab.core.types import Array
-from hdrlab.io import profiles, raw
+from hdrlab.io import jpegxl, profiles, raw
 from hdrlab.io.codecs import avif_depth, stored_pixels
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
-from hdrlab.io.files import check_size
+from hdrlab.io.files import OtherPixels, check_size
 
 # what the first bytes of a file of each kind are
 MAGIC = {"TIFF": rb"II\*\0|MM\0\*", "JPEG": rb"\xff\xd8\xff", "PNG": rb"\x89PNG\r\n\x1a\n"}
 MAGIC |= {"WEBP": rb"RIFF....WEBP", "AVIF": rb"....ftyp.*avi[fs]", "HEIF": rb"....ftyp(he[iv]|mif1|msf1)"}
+MAGIC |= {"JXL": rb"\xff\n|\0\0\0\x0cJXL \r\n\x87\n"}
 # bytes of a picture in one of the file: more than any of these formats reaches
 BEST_COMPRESSION_RATIO = 1 << 12
 # ... and these, of which a black photograph takes hardly a kilobyte
-RATIOS = dict.fromkeys(("WEBP", "AVIF", "HEIF"), 1 << 16)
+RATIOS = dict.fromkeys(("WEBP", "AVIF", "HEIF", "JXL"), 1 << 16)
 # words that stand near the beginning of a file with a gain map: Adobe's, ISO 21496-1, Apple's
 GAIN_MAPS = (b"hdrgm:", b"urn:iso:std:iso:ts:21496", b"aux:hdrgainmap")
-# codes of PQ or HLG, as a PNG and an AVIF or HEIC say: the curve's number after that of the primaries
+CODED = "is coded for an HDR screen, by PQ or HLG"
+# ... as a PNG and an AVIF or HEIC say: the curve's number after that of the primaries
 BEYOND_GAMMA = re.compile(rb"cICP.[\x10\x12]|nclx\0.\0[\x10\x12]", re.DOTALL)
 LONGEST_HEADER = 1 << 18
 MODES = {"1": "1-bit pixels", "P": "a palette", "PA": "a palette", "LAB": "Lab"}
 # EXIF's CustomRendered: HDR, without and with the original, and portraits and panoramas of HDR [of Apple]
 BLENDED = (2, 3, 6, 7)
 MODES |= {"F": "floating point", "I": "32-bit integers"}
-
-
-class OtherPixels(ValueError):
-    """A picture that is no photograph of a bracket: with a palette, of CMYK, of floats, ..."""
+KINDS = {1: "MINISBLACK", 3: "RGB"}  # channels without alpha, and what TIFF calls them
 
 
 class Header(NamedTuple):
@@ -57,10 +56,14 @@ class Header(NamedTuple):
     exposure: Exposure = Exposure()
     icc: bytes = b""
     processing: str = ""
+    comments: Sequence[str] = ()
 
 
-def look(path: str | Path) -> Header:
-    """Return the Header of the photograph at `path`, or raise a ValueError for what is not one."""
+def look(path: str | Path, *, light: bool | None = False) -> Header:
+    """Return the Header of the photograph at `path`, or raise a ValueError for what is not one.
+
+    With `light` it is to hold floating-point samples, and with None any.
+    """
     path = Path(path)
     if path.suffix.lower() in raw.SUFFIXES:
         size, exposure = raw.look(path)
@@ -70,14 +73,17 @@ def look(path: str | Path) -> Header:
     kind = next((kind for kind, magic in MAGIC.items() if re.match(magic, head[:32], re.DOTALL)), "")
     if not kind:
         raise ValueError(f"{path}: expected a photograph ({', '.join(MAGIC)}), got {head[:8]!r}")
-    header = (_look_tiff if kind == "TIFF" else _look_pillow)(path, kind, head)
+    header = {"TIFF": _look_tiff, "JXL": _look_jxl}.get(kind, _look_pillow)(path, kind, head)
     shape, ratio = header.shape, RATIOS.get(kind, BEST_COMPRESSION_RATIO)
     check_size(path, shape[0], shape[1], int(np.prod(shape)) * header.dtype.itemsize // ratio)
+    if light not in (None, header.dtype.kind == "f"):
+        wanted, n = "floating-point samples" if light else "8 or 16 bits", (*header.shape, 1)[2]
+        raise OtherPixels(f"{path}: expected gray or RGB of {wanted}, got {n} x {header.dtype}, {KINDS[n]}")
     if header.orientation > 4:
         shape = (shape[1], shape[0], *shape[2:])
     gains = any(word in head for word in GAIN_MAPS)
     processing = "has a gain map: the picture in it was tone-mapped locally" if gains else header.processing
-    processing = "is coded for an HDR screen, by PQ or HLG" if BEYOND_GAMMA.search(head) else processing
+    processing = CODED if BEYOND_GAMMA.search(head) else processing
     return header._replace(shape=shape, processing=processing)
 
 
@@ -88,7 +94,7 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
     else:
         stored = stored_pixels(header.path, header.kind, out if header.orientation == 1 else None)
         pixels = upright(opaque(header.path, stored), header.orientation)
-        if header.icc:
+        if header.icc and pixels.dtype.kind == "u":
             pixels = profiles.to_srgb(header.path, pixels, header.icc)
     if pixels.shape != out.shape or pixels.dtype != out.dtype:
         got = f"{pixels.shape} {pixels.dtype}"
@@ -105,12 +111,12 @@ def upright(pixels: Array, orientation: int) -> Array:
 
 
 def opaque(path: Path, pixels: Array) -> Array:
-    """Return pixels without their alpha channel, or raise a ValueError where some are transparent."""
-    if pixels.ndim < 3 or pixels.shape[2] not in (2, 4):
+    """Return pixels without their alpha channel, or raise a ValueError where levels are transparent."""
+    if pixels.ndim < 3 or pixels.shape[2] == 3:
         return pixels
-    if (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
+    if pixels.dtype.kind == "u" and (pixels[..., -1] != np.iinfo(pixels.dtype).max).any():
         raise ValueError(f"{path}: expected gray or RGB, got an alpha channel with transparent pixels")
-    return pixels[..., 0] if pixels.shape[2] == 2 else pixels[..., :3]
+    return pixels[..., 0] if pixels.shape[2] < 3 else pixels[..., :3]
 
 
 def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
@@ -139,49 +145,36 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
     return Header(path, kind, shape, dtype, **exif)
 
 
-class TiffPage(NamedTuple):
-    """What the first page of a TIFF file says of its pixels; `alpha` of the `channels` are no colours."""
-
-    height: int
-    width: int
-    depth: int
-    channels: int
-    alpha: int
-    dtype: np.dtype[Any]
-    kind: str
-    description: str
-    icc: bytes
+def _look_jxl(path: Path, kind: str, head: bytes) -> Header:
+    """Return what is stated by a JPEG XL; how it is turned, it says itself, and not its EXIF."""
+    exif = _exif(lambda exif: exif.load(head.partition(b"Exif\0\0\0\0")[2]), None)
+    shape, dtype, _, exif["orientation"], curve = jpegxl.look(path, head)
+    exif |= {"processing": CODED} if curve in (jpegxl.PQ, jpegxl.HLG) else {}
+    return Header(path, kind, shape, dtype, **exif)
 
 
-def tiff_page(path: str | Path) -> TiffPage:
-    """Return the TiffPage of the file at `path`, or raise a ValueError."""
+def _look_tiff(path: Path, form: str, head: bytes) -> Header:
+    """Return what is stated by the first page of a TIFF file; floats may have any alpha channels."""
     open_tiff = tifffile.TiffFile
     try:
         with open_tiff(path) as file:
             page = file.pages.first
+            height, width, deep = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
+            channels, alpha = int(page.samplesperpixel), len(page.extrasamples)
             kind = str(getattr(page.photometric, "name", page.photometric))[:40]
-            size = int(page.imagelength), int(page.imagewidth), int(page.imagedepth)
-            channels = int(page.samplesperpixel), len(page.extrasamples)
-            dtype, icc = np.dtype(page.dtype), page.iccprofile or b""
-            return TiffPage(*size, *channels, dtype, kind, page.description, icc)
+            dtype, icc, comments = np.dtype(page.dtype), page.iccprofile or b"", page.description.splitlines()
     except Exception as error:  # on damaged files tifffile raises what it likes
         why = str(error)[:200]
         raise ValueError(f"{path}: expected a photograph, its header is damaged ({why})") from None
-
-
-def _look_tiff(path: Path, form: str, head: bytes) -> Header:
-    """Return what is stated by the first page of a TIFF file."""
-    page = tiff_page(path)
-    channels = page.channels - (page.alpha == 1)
-    kind = "an alpha channel" if page.alpha > 1 else page.kind
-    if (kind, channels) not in (("MINISBLACK", 1), ("RGB", 3)) or page.dtype not in ("u1", "u2"):
-        what = f"{page.channels} x {page.dtype}, {kind}"
-        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {what}")
-    if page.depth != 1:
-        raise OtherPixels(f"{path}: expected one picture, got {page.depth} on one another")
+    light = dtype.kind == "f"
+    colours = channels - (alpha if light else alpha == 1)
+    if KINDS.get(colours) != kind or not (light or dtype in ("u1", "u2")):
+        raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {channels} x {dtype}, {kind}")
+    if deep != 1:
+        raise OtherPixels(f"{path}: expected one picture, got {deep} on one another")
     with open(path, "rb") as stream:
-        exif = _exif(lambda exif: exif.load_from_fp(stream), page.icc)
-    return Header(path, form, (page.height, page.width, 3)[: 2 + (channels == 3)], page.dtype, **exif)
+        exif = _exif(lambda exif: exif.load_from_fp(stream), icc)
+    return Header(path, form, (height, width, 3)[: 2 + (colours == 3)], dtype, comments=comments, **exif)
 
 
 def _exif(load: Callable[[Image.Exif], None], icc: bytes | None) -> dict[str, Any]:

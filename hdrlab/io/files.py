@@ -13,6 +13,10 @@ from typing import BinaryIO
 MAX_PIXELS = 1 << 27
 
 
+class OtherPixels(ValueError):
+    """A picture that is no photograph of a bracket: with a palette, of CMYK, of floats, ..."""
+
+
 @contextmanager
 def replacing(path: str | Path, *, private: bool = False) -> Iterator[Path]:
     """Yield a temporary name beside `path`, which takes the place of `path` when the block ends well.

@@ -34,7 +34,7 @@ def read_photo(path: str | Path) -> Array:
 
     Parameters
     ----------
-    path : a JPEG, PNG, TIFF, WebP, AVIF or HEIC file, gray or RGB, of 8 to 16 bits, or a RAW file;
+    path : a JPEG, PNG, TIFF, WebP, AVIF, HEIC or JPEG XL file, gray or RGB, of 8 to 16 bits, or a RAW file;
         colours of another space than sRGB are converted by the file's profile
 
     Returns

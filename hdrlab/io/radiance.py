@@ -1,6 +1,6 @@
 """Radiance files by their suffix: .hdr, .pic, .rad are RGBE, .pfm float maps, .exr OpenEXR, .tif(f) TIFF.
 
-Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read.
+Of a .jpg with a gain map, Ultra HDR, what the brightest screen shows is read; a .jxl of floats is read, too.
 """
 
 from collections.abc import Mapping, Sequence
@@ -17,7 +17,8 @@ from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
 SUFFIXES: dict[str, ModuleType] = {".hdr": rgbe, ".pic": rgbe, ".rad": rgbe, ".pfm": pfm, ".exr": exr}
 SUFFIXES |= {".tif": tiff, ".tiff": tiff}
-READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr}  # which to write takes a picture as well
+# which to write takes a picture as well, or is for a screen
+READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
 
 
 def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
@@ -25,7 +26,7 @@ def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
 
     Parameters
     ----------
-    path : a .hdr, .pic, .rad, .pfm, .exr, .tif or .tiff file, or a .jpg or .jpeg with a gain map
+    path : a .hdr, .pic, .rad, .pfm, .exr, .tif, .tiff or .jxl file, or a .jpg or .jpeg with a gain map
     clean : True to repair values that are not radiance, see `core.gamut.sanitize`: NaN takes the mean of its
         neighbours, infinity the largest finite value, and a negative channel makes its pixel less colourful
 

@@ -6,8 +6,8 @@ from typing import Any
 import numpy as np
 
 from hdrlab.io import radiance
-from hdrlab.io.decode import look, tiff_page
-from hdrlab.io.maps import exr, layers, pfm, rgbe, rgbe_header, tiff
+from hdrlab.io.decode import look
+from hdrlab.io.maps import exr, layers, pfm, rgbe, rgbe_header
 from hdrlab.show.pages import wording
 
 
@@ -35,31 +35,20 @@ def describe_file(path: str | Path) -> dict[str, Any]:
     >>> describe_file(file)["width"]
     2
     """
-    form = radiance.SUFFIXES.get(Path(path).suffix.lower())
-    about = {rgbe: _rgbe, pfm: _pfm, exr: _exr, tiff: _tiff, None: _photo}[form]
+    form = radiance.READ.get(Path(path).suffix.lower(), radiance)
+    about = {rgbe: _rgbe, pfm: _pfm, exr: _exr}.get(form, _photo)
     return {"file": str(path), **about(path)}
 
 
 def _photo(path: str | Path) -> dict[str, Any]:
-    header = look(path)
+    header = look(path, light=None)
     height, width, channels = (*header.shape, 1)[:3]
     return {
         "format": header.kind,
         **_size(height, width, channels, np.dtype(header.dtype).name),
         "orientation": header.orientation,
-        **({"processing": header.processing} if header.processing else {}),
+        **{key: value for key in ("processing", "comments") if (value := getattr(header, key))},
         **{key: value for key, value in header.exposure._asdict().items() if value is not None},
-    }
-
-
-def _tiff(path: str | Path) -> dict[str, Any]:
-    if tiff_page(path).dtype.kind != "f":
-        return _photo(path)
-    page = tiff.read_header(path)
-    return {
-        "format": "TIFF",
-        **_size(page.height, page.width, page.channels, page.dtype.name),
-        **({"comments": page.description.splitlines()} if page.description else {}),
     }
 
 

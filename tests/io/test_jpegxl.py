@@ -1,0 +1,211 @@
+"""JPEG XL as photograph and as map: what its header says, against libjxl's encoder and decoder."""
+
+import io
+import struct
+
+import imagecodecs
+import numpy as np
+import pytest
+from PIL import Image
+
+from hdrlab.io import jpegxl, photos, radiance, screens
+from hdrlab.io.decode import look
+from hdrlab.io.files import MAX_PIXELS
+from hdrlab.show.describe import describe_file
+
+RGB = np.random.default_rng(0).integers(0, 256, (12, 17, 3), np.uint8)
+E = np.float32(2) ** np.random.default_rng(1).uniform(-8, 8, (12, 17, 3)).astype(np.float32)
+
+
+def written(path, pixels, **knobs):
+    path.write_bytes(imagecodecs.jpegxl_encode(pixels, **knobs))
+    return path
+
+
+def bits(*fields):
+    """Return fields of (value, bits), one after the other, as bytes."""
+    number, at = 0, 0
+    for value, count in fields:
+        number, at = number | value << at, at + count
+    return number.to_bytes((at + 7) // 8, "little")
+
+
+def header(*fields, frame=((1, 1),)):
+    """Return the headers of a bare codestream: these fields, and a frame, by default one as usual."""
+    return b"\xff\n" + bits(*fields) + bits(*frame) + bytes(40)
+
+
+@pytest.mark.parametrize("dtype", [np.uint8, np.uint16, np.float16, np.float32])
+@pytest.mark.parametrize("knobs", [{"lossless": True}, {"distance": 1.0}, {"usecontainer": True}], ids=str)
+def test_a_header_says_what_the_decoder_gives(dtype, knobs, tmp_path):
+    """All forms of a size: multiples of 8, each ratio of width and height, small, large, and gray."""
+    shapes = [(8, 8, 3), (64, 48), (5, 9, 3), (40, 80, 3), (1, 1, 3), (600, 17), (900, 1600, 3), (72, 96, 3)]
+    for shape in [*shapes, (10, 12, 3), (30, 20, 3), (20, 30), (16, 20, 3), (8, 520, 3)]:
+        path = written(tmp_path / "x.jxl", np.full(shape, 1, dtype), **knobs)
+        said, pixels = jpegxl.look(path, path.read_bytes()), imagecodecs.jpegxl_decode(path.read_bytes())
+        assert said[:4] == (pixels.shape, pixels.dtype, 8 * pixels.itemsize, 1)
+
+
+@pytest.mark.parametrize("depth", range(9, 17))
+def test_levels_of_any_depth_above_8_bits_fill_16(depth, tmp_path):
+    codes = np.linspace(0, 2**depth - 1, 12 * 17 * 3).astype(np.uint16).reshape(12, 17, 3)
+    Z = photos.read_photo(written(tmp_path / "x.jxl", codes, lossless=True, bitspersample=depth))
+    assert Z.dtype == np.uint16 and Z.max() == 65535 and not Z.min()
+    assert np.abs(Z / 65535 - codes / (2**depth - 1)).max() <= 2.0**-depth
+
+
+@pytest.mark.parametrize("levels", [RGB, RGB[..., 1], RGB.astype(np.uint16) * 257])
+def test_a_photograph_is_read_to_the_level(levels, tmp_path):
+    path = written(tmp_path / "x.jxl", levels, lossless=True)
+    Z = photos.read_photo(path)
+    assert Z.dtype == levels.dtype and np.array_equal(Z, levels)
+    about = describe_file(path)
+    assert (about["format"], about["width"], about["height"]) == ("JXL", 17, 12)
+
+
+def boxed(data, tags):
+    """Return a codestream in boxes, behind one of EXIF."""
+    boxes = [
+        (b"JXL ", b"\r\n\x87\n"),
+        (b"ftyp", b"jxl \0\0\0\0jxl "),
+        (b"Exif", bytes(4) + tags.tobytes()[6:]),
+    ]
+    return b"".join(
+        struct.pack(">I4s", len(said) + 8, name) + said for name, said in [*boxes, (b"jxlc", data)]
+    )
+
+
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_one_that_was_a_jpeg_stands_upright(orientation, tmp_path):
+    tags = Image.Exif()
+    tags[0x0112] = orientation
+    Image.fromarray(RGB.repeat(8, 0).repeat(8, 1)).save(file := io.BytesIO(), "JPEG", quality=98, exif=tags)
+    (tmp_path / "x.jpg").write_bytes(file.getvalue())
+    (tmp_path / "x.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
+    one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("x.jpg", "x.jxl"))
+    assert one.shape == other.shape and np.abs(one - other).mean() < 2
+
+
+def test_its_exif_tells_the_exposure_and_its_own_header_how_it_is_turned(tmp_path):
+    tags = Image.Exif()
+    tags[0x0112] = 6
+    tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 200})
+    (tmp_path / "x.jxl").write_bytes(boxed(imagecodecs.jpegxl_encode(RGB, lossless=True), tags))
+    assert np.array_equal(imagecodecs.jpegxl_decode((tmp_path / "x.jxl").read_bytes()), RGB)
+    found = look(tmp_path / "x.jxl")
+    assert found.exposure == (0.5, 8.0, 200) and found.orientation == 1
+    assert np.array_equal(photos.read_photo(tmp_path / "x.jxl"), RGB)
+
+
+def test_a_folder_of_them_is_a_bracket(tmp_path):
+    for name, t in ("a", 1), ("b", 4):
+        written(tmp_path / f"{name}.jxl", np.minimum(RGB // 5 * t, 255).astype(np.uint8), lossless=True)
+    bracket = photos.read_bracket(tmp_path, {"a.jxl": 1.0, "b.jxl": 4.0})
+    assert bracket.names == ("a.jxl", "b.jxl") and np.array_equal(bracket.images[0], RGB // 5)
+
+
+@pytest.mark.parametrize("light", [E, E[..., 0]])
+def test_a_map_comes_back_to_the_bit(light, tmp_path):
+    path = written(tmp_path / "x.jxl", light, lossless=True)
+    assert np.array_equal(radiance.read_radiance(path), light)
+    assert describe_file(path)["values"] == "float32"
+    screens.write_jxl(path, E)
+    assert np.array_equal(radiance.read_radiance(path), E)
+
+
+def test_a_map_whose_values_are_no_radiance_is_refused_and_can_be_cleaned(tmp_path):
+    path = written(tmp_path / "x.jxl", np.where(E > 100, -1, E).astype(np.float32), lossless=True)
+    with pytest.raises(ValueError, match=r"x\.jxl: .*clean=True repairs them"):
+        radiance.read_radiance(path)
+    assert radiance.read_radiance(path, clean=True).min() >= 0
+
+
+SIZE = [(0, 1), (0, 2), (11, 9), (0, 3), (0, 2), (16, 9)]  # 12 rows, 17 columns
+AS_USUAL, U8 = [(0, 1), (0, 1)], [(0, 1), (0, 2), (1, 1), (0, 2), (1, 1)]  # 8 bits, no more channels, XYB
+SRGB = [(0, 1), (0, 1), (0, 2), (1, 2)]  # not as usual, no profile, RGB, D65
+
+
+@pytest.mark.parametrize(
+    ("fields", "said"),
+    [
+        ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (9, 4)], "the primaries of sRGB"),  # P3
+        ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (7, 4)], "the primaries of sRGB"),  # BT.2020
+        ([*SIZE, *AS_USUAL, *U8, (0, 1), (1, 1), (0, 2)], "the primaries of sRGB"),  # a profile
+        ([*SIZE, *AS_USUAL, (0, 1), (0, 2), (1, 1), (1, 2)], "8 bits and 1 more channels"),  # alpha
+        ([*SIZE, *AS_USUAL, (0, 1), (3, 2), (31, 6), (1, 1), (0, 2)], "got 32 bits"),
+        ([*SIZE, (0, 1), (1, 1), (0, 3), (0, 1), (2, 2)], "an animation or a preview"),
+        ([(0, 1), (3, 2), (1 << 29, 30), (1, 3), (1, 1), (1, 1)], f"expected at most {MAX_PIXELS} in all"),
+        ([(0, 1), (2, 2), (10_000, 18), (1, 3), (1, 1), (1, 1)], "cut short or damaged"),
+    ],
+)
+def test_what_is_not_read_is_refused_by_name_before_a_pixel_is_decoded(fields, said, tmp_path, monkeypatch):
+    monkeypatch.delattr(imagecodecs, "jpegxl_decode")
+    (tmp_path / "odd.jxl").write_bytes(header(*fields))
+    for read in (photos.read_photo, radiance.read_radiance):
+        with pytest.raises(ValueError, match=rf"odd\.jxl: .*{said}") as refused:
+            read(tmp_path / "odd.jxl")
+        assert "\n" not in str(refused.value)
+
+
+USUAL = [*SIZE, (1, 1), (1, 1)]
+PLACED = [(1, 1), *[(0, 10)] * 2, *[(3, 2), (30_000 - 18_688, 30)] * 2, (0, 2), (1, 1)]
+
+
+@pytest.mark.parametrize(
+    "frame",
+    [
+        [(0, 1), (0, 2), (1, 1), (0, 2), (0, 2), (0, 2), (0, 2), *PLACED],  # 30,000 x 30,000 of 17 x 12
+        [(0, 1), (2, 2), (1, 1), (0, 2), (0, 2), (0, 2), *PLACED],  # kept for another
+        [(0, 1), (0, 2), (0, 1), (0, 2), (0, 2), (0, 6), (1, 2), (1, 2), (0, 8), (0, 1), (0, 2), (0, 1)],
+    ],
+    ids=["larger", "kept", "one of several"],
+)
+def test_frames_that_are_not_the_picture_are_refused_for_libjxl_takes_hours_for_them(
+    frame, tmp_path, monkeypatch
+):
+    monkeypatch.delattr(imagecodecs, "jpegxl_decode")
+    (tmp_path / "odd.jxl").write_bytes(header(*USUAL, frame=frame))
+    with pytest.raises(ValueError, match=r"odd\.jxl: expected one frame of the picture's size"):
+        photos.read_photo(tmp_path / "odd.jxl")
+
+
+@pytest.mark.parametrize(
+    "passes", [[(0, 2)], [(2, 2), (1, 2), (0, 4), (1, 2), (3, 2), (5, 3)]], ids=["1", "3"]
+)
+def test_a_frame_of_several_passes_is_a_picture(passes, tmp_path):
+    frame = [(0, 1), (0, 2), (0, 1), (2, 2), (111, 8), (0, 2), (0, 6), *passes, (0, 1), (0, 2), (1, 1)]
+    (tmp_path / "x.jxl").write_bytes(header(*USUAL, frame=frame))
+    assert look(tmp_path / "x.jxl").shape == (12, 17, 3)
+
+
+def test_the_box_of_the_codestream_is_believed_and_no_other(tmp_path):
+    """What looks like a codestream within EXIF is none; and what several boxes hold is one."""
+    data, decoy = imagecodecs.jpegxl_encode(RGB, lossless=True), b"jxlc" + header(*SIZE, (1, 1), (1, 1))
+    big = header((0, 1), (3, 2), (1 << 29, 30), (1, 3), (1, 1), (1, 1))
+    for name, parts in (
+        ("good", [(0, data[:9]), (1 << 31 | 1, data[9:])]),
+        ("big", [(0, big[:5]), (1, big[5:])]),
+    ):
+        boxes = [(b"JXL ", b"\r\n\x87\n"), (b"ftyp", b"jxl \0\0\0\0jxl "), (b"Exif", decoy)]
+        boxes += [(b"jxlp", struct.pack(">I", number) + part) for number, part in parts]
+        box = [struct.pack(">I4s", len(said) + 8, kind) + said for kind, said in boxes]
+        (tmp_path / f"{name}.jxl").write_bytes(b"".join(box))
+    assert np.array_equal(photos.read_photo(tmp_path / "good.jxl"), RGB)
+    with pytest.raises(ValueError, match=r"big\.jxl: its header claims .*expected at most"):
+        look(tmp_path / "big.jxl")
+
+
+@pytest.mark.parametrize("curve", [[(2, 2), (14, 4)], [(3, 2), (0, 6)]], ids=["PQ", "HLG"])
+def test_codes_of_pq_and_hlg_are_named(curve, tmp_path):
+    fields = [*SIZE, *AS_USUAL, *U8, *SRGB, (1, 2), (0, 1), *curve, (1, 2), (0, 2), (1, 1)]
+    (tmp_path / "x.jxl").write_bytes(header(*fields))
+    assert look(tmp_path / "x.jxl").processing == "is coded for an HDR screen, by PQ or HLG"
+
+
+def test_one_that_is_cut_short_is_refused_by_name(tmp_path):
+    for pixels, read in (RGB, photos.read_photo), (E, radiance.read_radiance):
+        data = imagecodecs.jpegxl_encode(pixels, lossless=True)
+        for size in (2, 12, 40, len(data) // 2, len(data) - 9):
+            (tmp_path / "cut.jxl").write_bytes(data[:size])
+            with pytest.raises(ValueError, match=r"cut\.jxl"):
+                read(tmp_path / "cut.jxl")
