@@ -63,9 +63,11 @@ def pytest_ignore_collect(collection_path, config):
 def pytest_collection_modifyitems(config, items):
     """Leave out the tests of other tiers, and bring forward what is to begin first."""
     if config.option.tier != ALL:
-        others = [item for item in items if tier_of(item.nodeid) != config.option.tier]
+        own, others = [], []
+        for item in items:
+            (own if tier_of(item.nodeid) == config.option.tier else others).append(item)
         config.hook.pytest_deselected(items=others)
-        items[:] = [item for item in items if tier_of(item.nodeid) == config.option.tier]
+        items[:] = own
     items.sort(key=lambda item: turn(item.nodeid))
 
 
