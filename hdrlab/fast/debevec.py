@@ -1,8 +1,8 @@
 """Debevec and Malik's response from n unknowns instead of n + N, and on any input: see `response.debevec`.
 
 For a given g each sample's best lE_i is a weighted mean, sum_j w^2 (g(Z_ij) - B_j) / sum_j w^2. Put into the
-normal equations it leaves a system S g = r in g alone (a Schur complement). The table C (N, n) holds the
-squared weights: C[i, z] is the sum of w^2 over the frames where sample i has level z.
+normal equations it leaves a system S g = r in g alone (a Schur complement). A sample has P levels, and so it
+adds to P x P entries of S.
 """
 
 from itertools import product
@@ -26,19 +26,21 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
         If the arrays do not fit together, or no sample is seen well in two different exposures.
     """
     Z, B, w = _validate(Z, B, smoothness, w)
-    N, n = len(Z), len(w)
+    n = len(w)
     W = w[Z] ** 2
     require_two_exposures(Z, B, w)
     D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
     has_weight = D > 0
     D[~has_weight] = 1
-    C = np.zeros((N, n))
-    np.add.at(C, (np.arange(N)[:, None], Z), W)
-    WB = W * B
-    S = np.diag(C.sum(axis=0)) - C.T @ (C / D[:, None]) + _stiffness(w, smoothness)
-    r = np.bincount(Z.ravel(), WB.ravel(), n) - C.T @ (WB.sum(axis=1) / D)
+    means = (W @ B) / D
+    both = np.bincount(  # what two levels of a sample have in common
+        (n * Z[:, :, None] + Z[:, None]).ravel(), (W[:, :, None] * (W / D[:, None])[:, None]).ravel(), n * n
+    )
+    S = np.diag(np.bincount(Z.ravel(), W.ravel(), n)) - both.reshape(n, n) + _stiffness(w, smoothness)
+    r = np.zeros(n)
+    np.add.at(r, Z, W * (B - means[:, None]))
     g = _solve_with_gauge(S, r)
-    return Solution(g, np.where(has_weight, (C @ g - WB.sum(axis=1)) / D, 0.0))
+    return Solution(g, np.where(has_weight, (W * g[Z]).sum(axis=1) / D - means, 0.0))
 
 
 def _stiffness(w: F64, smoothness: float) -> F64:
