@@ -3,6 +3,7 @@
 import contextlib
 import io
 import shutil
+import struct
 from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
@@ -96,6 +97,10 @@ def jpegxl(folder: Path) -> None:
     (folder / "gray.jxl").write_bytes(imagecodecs.jpegxl_encode(RGB[..., 1], usecontainer=True))
     Image.fromarray(RGB).save(file := io.BytesIO(), "JPEG", exif=_exif())
     (folder / "was.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
+    packed = b"Exif" + imagecodecs.brotli_encode(bytes(4) + _exif().tobytes()[6:])
+    boxes = [(b"JXL ", b"\r\n\x87\n"), (b"brob", packed), (b"jxlc", imagecodecs.jpegxl_encode(RGB))]
+    data = b"".join(struct.pack(">I4s", 8 + len(said), name) + said for name, said in boxes)
+    (folder / "packed.jxl").write_bytes(data)
 
 
 def _exif() -> Image.Exif:

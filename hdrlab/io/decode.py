@@ -147,7 +147,7 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
 
 def _look_jxl(path: Path, kind: str, head: bytes) -> Header:
     """Return what is stated by a JPEG XL; how it is turned, it says itself, and not its EXIF."""
-    exif = _exif(lambda exif: exif.load(head.partition(b"Exif\0\0\0\0")[2]), None)
+    exif = _exif(lambda exif: exif.load(jpegxl.exif(head)), None)
     shape, dtype, _, exif["orientation"], curve = jpegxl.look(path, head)
     exif |= {"processing": CODED} if curve in (jpegxl.PQ, jpegxl.HLG) else {}
     return Header(path, kind, shape, dtype, **exif)

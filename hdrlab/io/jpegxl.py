@@ -7,15 +7,17 @@ busy for hours: a picture is read that is one frame of its own size.
 """
 
 import struct
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from hdrlab.core.optional import imagecodecs
 from hdrlab.io.files import OtherPixels
 
 USUAL = 0b110010000
-ENOUGH = 64  # bytes for the headers
+ENOUGH, LONGEST_EXIF = 64, 1 << 16  # bytes for the headers
 WIDER = ((1, 1), (6, 5), (4, 3), (3, 2), (16, 9), (5, 4), (2, 1))  # width over height, by number
 # bits of a sample: how they are told of whole numbers and of floats, and which are read
 DEPTHS = ((8, 0), (10, 0), (12, 0), (1, 6)), ((32, 0), (16, 0), (24, 0), (1, 6))
@@ -87,15 +89,30 @@ class Bits:
         )  # placed, blended, the last
 
 
+def boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:
+    """Yield the name of each box, and what is in it."""
+    at = 0
+    while at + 8 <= len(data):
+        size, name = struct.unpack_from(">I4s", data, at)
+        yield name, data[at + 8 : at + (size or len(data))]
+        at += size if size >= 8 else len(data)
+
+
 def codestream(data: bytes) -> bytes:
     """Return the first bytes of the codestream, which is all of the file or stands in boxes."""
-    found, at = data[:ENOUGH] if data[:1] == b"\xff" else b"", 0
-    while len(found) < ENOUGH and at + 8 <= len(data):
-        size, name = struct.unpack_from(">I4s", data, at)
-        if start := {b"jxlc": 8, b"jxlp": 12}.get(name):
-            found += data[at + start : at + (size or len(data))][:ENOUGH]
-        at += size if size >= 8 else len(data)
-    return found
+    start = {b"jxlc": 0, b"jxlp": 4}
+    parts = (box[start[name] :][:ENOUGH] for name, box in boxes(data) if name in start)
+    return data if data[:1] == b"\xff" else b"".join(parts)
+
+
+def exif(data: bytes) -> bytes:
+    """Return EXIF, which may be packed by Brotli, or nothing."""
+    for name, box in boxes(data):
+        if name == b"brob" and box[:4] == b"Exif":
+            name, box = b"Exif", bytes(imagecodecs.brotli_decode(box[4:], out=bytearray(LONGEST_EXIF)))
+        if name == b"Exif":
+            return box[4:]
+    return b""
 
 
 def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any], int, int, int]:
@@ -106,7 +123,7 @@ def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any],
     data = codestream(head)
     if not data:
         raise ValueError(f"{path}: expected a photograph, its header is damaged (it has no codestream)")
-    bits, orientation = Bits(data[2:]), 1
+    bits, orientation = Bits(data[2:ENOUGH]), 1
     size = bits.size()
     if bits.take(1):  # all is as usual, as 11 bits would say
         bits.left, bits.at = bits.left << 11 | USUAL, bits.at - 11
