@@ -2,6 +2,8 @@
 
 import io
 import re
+import shutil
+import subprocess
 import tempfile
 from pathlib import Path
 
@@ -14,7 +16,8 @@ from PIL import Image
 
 import hdrlab
 from hdrlab.cli import run
-from hdrlab.io import photos, radiance
+from hdrlab.io import photos, radiance, screens
+from hdrlab.io.decode import look
 
 PAGE = Path(hdrlab.__file__).parent / "course/site/pages/photographs.md"
 RGB = np.random.default_rng(0).integers(30, 220, (4, 6, 3), np.uint8).repeat(8, axis=0).repeat(8, axis=1)
@@ -244,6 +247,75 @@ def test_what_is_written_another_program_reads(name, options, decode, tmp_path):
         assert not ended.value.code
     came = np.asarray(decode(io.BytesIO((tmp_path / name).read_bytes())))
     assert came.shape[:2] == E.shape[:2] and came.shape[2] in (3, 4) and np.ptp(came[..., :3]) > 0
+
+
+def program(folder, *words):
+    """Return what a program of the system prints; skip where it is not installed."""
+    if not shutil.which(words[0]):
+        pytest.skip(f"{words[0]} is not installed")
+    done = subprocess.run(words, cwd=folder, capture_output=True, check=True)
+    return done.stdout
+
+
+@pytest.mark.parametrize("light", [E, E[..., 0]], ids=["RGB", "gray"])
+@pytest.mark.parametrize("half", [False, True])
+def test_pfstools_reads_the_values_of_an_exr_of_ours(light, half, tmp_path):
+    radiance.write_radiance(tmp_path / "ours.exr", light, half=half)
+    frame = program(tmp_path, "pfsinexr", "ours.exr")
+    subprocess.run(["pfsoutpfm", "theirs.pfm"], cwd=tmp_path, input=frame, capture_output=True, check=True)
+    came = radiance.read_radiance(tmp_path / "theirs.pfm")
+    came = came if light.ndim == 3 or came.ndim == 2 else came[..., 1]
+    assert np.allclose(came, light, rtol=1e-3 if half else 1e-4)  # it goes by XYZ
+
+
+def test_djxl_and_jxlinfo_read_a_jxl_of_ours_to_the_bit(tmp_path):
+    screens.write_jxl(tmp_path / "ours.jxl", E)
+    program(tmp_path, "djxl", "ours.jxl", "theirs.pfm")
+    assert np.array_equal(radiance.read_radiance(tmp_path / "theirs.pfm"), E)
+    said = program(tmp_path, "jxlinfo", "ours.jxl").decode()
+    assert "48x32" in said and "32-bit float" in said and "sRGB primaries, Linear transfer" in said
+
+
+@pytest.mark.parametrize(
+    "options",
+    [["-d", "0"], ["-d", "0", "-e", "9"], ["-d", "1"], ["-d", "1", "-p"], ["-d", "0", "-p"]],
+    ids=" ".join,
+)
+@pytest.mark.parametrize("levels", [RGB, RGB[..., 1].copy(), DEEP], ids=["RGB", "gray", "16 bits"])
+def test_a_photograph_of_cjxl_is_read(levels, options, tmp_path):
+    (tmp_path / "a.png").write_bytes(imagecodecs.png_encode(levels))
+    program(tmp_path, "cjxl", "a.png", "a.jxl", *options)
+    Z = photos.read_photo(tmp_path / "a.jxl")
+    assert Z.dtype == levels.dtype and Z.shape == levels.shape
+    off = np.abs(Z.astype(float) - levels).mean() / np.iinfo(Z.dtype).max
+    assert off == 0 if options[1] == "0" else off < 0.03
+
+
+def test_a_jpeg_that_cjxl_packs_keeps_its_pixels_and_tells_its_exposure(tmp_path):
+    tags = Image.Exif()
+    tags[0x0112] = 6
+    tags.get_ifd(0x8769).update({33434: 0.5, 33437: 8.0, 34855: 200})
+    (tmp_path / "a.jpg").write_bytes(pillow("JPEG", quality=95, exif=tags))
+    program(tmp_path, "cjxl", "a.jpg", "a.jxl")
+    assert b"brobExif" in (tmp_path / "a.jxl").read_bytes()
+    one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("a.jpg", "a.jxl"))
+    assert one.shape == other.shape == (48, 32, 3) and np.abs(one - other).mean() < 2
+    assert look(tmp_path / "a.jxl").exposure == look(tmp_path / "a.jpg").exposure == (0.5, 8.0, 200)
+
+
+@pytest.mark.parametrize("distance", [0, 0.1])
+def test_a_map_of_cjxl_is_read_and_one_that_is_not_linear_or_of_several_frames_refused(distance, tmp_path):
+    radiance.write_radiance(tmp_path / "a.pfm", E)
+    where = [f"-d {distance}", "-x color_space=RGB_D65_SRG_Rel_Lin", "--progressive_dc=1"]
+    program(tmp_path, "cjxl", "a.pfm", "a.jxl", *where[0].split(), *where[1].split())
+    came = radiance.read_radiance(tmp_path / "a.jxl")
+    assert np.array_equal(came, E) if not distance else np.abs(came - E).mean() < 0.05 * E.mean()
+    program(tmp_path, "cjxl", "a.pfm", "curved.jxl", *where[0].split())
+    with pytest.raises(ValueError, match=r"curved\.jxl: expected floats that are linear"):
+        radiance.read_radiance(tmp_path / "curved.jxl")
+    program(tmp_path, "cjxl", "a.pfm", "dc.jxl", "-d", "1", *where[1].split(), where[2])
+    with pytest.raises(ValueError, match=r"dc\.jxl: expected one frame of the picture's size"):
+        radiance.read_radiance(tmp_path / "dc.jxl")
 
 
 @pytest.mark.parametrize("suffix", [".webp", ".heic", ".jfif"])
