@@ -206,20 +206,43 @@ def test_a_page_of_the_site_leads_to_where_python_answers(tuner):
     assert tuner.get_by_role("link", name="Run it yourself").get_attribute("href") == "../installing.html"
 
 
+def answer(page, level, at):
+    """Let a kernel answer with a gray square, for a position of the slider."""
+    page.evaluate(
+        """([runs, at]) => {
+            const model = window.model;
+            model.set("frame", new DataView(Uint8Array.from(runs).buffer));
+            model.set("shown", at);
+            model.set("answers", model.get("answers") + 1);
+        }""",
+        [list(web.encode_runs(square(level))), at],
+    )
+
+
+def test_where_python_answers_a_stored_picture_is_shown_until_it_does_and_earlier_answers_come_too_late(
+    tuner,
+):
+    answer(tuner, 120, [100])
+    until_level(tuner, 120)
+    tuner.get_by_role("slider").press("End")
+    until_level(tuner, 200)
+    assert alt(tuner) == "A square, level = 200" and tuner.get_by_role("status").inner_text() == ""
+    answer(tuner, 60, [150])
+    assert alt(tuner) == "A square, level = 200"
+    answer(tuner, 30, [200])
+    until_level(tuner, 30)
+    tuner.get_by_role("slider").press("ArrowLeft")
+    answer(tuner, 90, [150])  # nothing is stored here, so what was asked for earlier shows the way
+    until_level(tuner, 90)
+    assert alt(tuner) == "A square, level = 150"
+
+
 def test_an_answer_replaces_the_stored_picture(tuner):
     slider = tuner.get_by_role("slider")
     slider.focus()
     tuner.keyboard.press("End")
     until_level(tuner, 200)
-    tuner.evaluate(
-        """(runs) => {
-            const model = window.model;
-            model.set("frame", new DataView(Uint8Array.from(runs).buffer));
-            model.set("shown", model.get("at"));
-            model.set("answers", model.get("answers") + 1);
-        }""",
-        list(web.encode_runs(square(30))),
-    )
+    answer(tuner, 30, [200])
     until_level(tuner, 30)
     assert tuner.get_by_role("status").inner_text() == ""
     before = tuner.evaluate("window.model.saved")

@@ -1,4 +1,5 @@
-// Parameters of a function: Python computes each picture. Where no Python answers, the stored ones are shown.
+// Parameters of a function: Python computes each picture. Those that are stored are shown at once, and stay where no
+// Python answers.
 
 const PATIENCE = 3000; // ms without an answer before a page that had a kernel counts as one without
 
@@ -41,7 +42,7 @@ function render({ model, el }) {
   const controls = element(root, "div", { className: "hdrlab-controls" });
   const bars = names.map((name, k) => slider(controls, name, values[k].length));
   const texts = (at) => at.map((position, k) => `${names[k]} = ${values[k][position]}`).join(", ");
-  let [answered, timer, first] = [false, null, null];
+  let [answered, timer, first, ready] = [false, null, null, false];
 
   // Stored positions are a grid: the nearest one is so along each slider.
   function distance(a, b) {
@@ -76,12 +77,21 @@ function render({ model, el }) {
     return canvas;
   }
 
+  const showOpened = (k) => view.show(layered(k), `${model.get("alt")}, ${texts(model.get("stored_at")[k])}`);
+
   function showStored() {
     const [at, stored] = [model.get("at"), model.get("stored_at")];
     const away = stored.map((other) => distance(other, at));
     const nearest = away.indexOf(Math.min(...away));
-    view.show(layered(nearest), `${model.get("alt")}, ${texts(stored[nearest])}`);
+    showOpened(nearest);
     tellStored(stored[nearest]);
+  }
+
+  // Python's own picture of the same place follows; one of another place, asked for earlier, comes too late.
+  function showReady() {
+    const k = model.get("stored_at").findIndex((other) => same(other, model.get("at")));
+    ready = k >= 0;
+    if (ready) showOpened(k);
   }
 
   function showBars() {
@@ -95,8 +105,9 @@ function render({ model, el }) {
 
   function answer() {
     answered = true;
-    if (same(model.get("shown"), model.get("at"))) clearTimeout(timer);
-    showFrame();
+    const awaited = same(model.get("shown"), model.get("at"));
+    if (awaited) clearTimeout(timer);
+    if (awaited || !ready) showFrame();
   }
 
   function giveUp() {
@@ -123,8 +134,9 @@ function render({ model, el }) {
     model.save_changes();
     showBars();
     clearTimeout(timer);
-    if (answered) timer = setTimeout(giveUp, PATIENCE);
-    else showStored();
+    if (!answered) return showStored();
+    showReady();
+    timer = setTimeout(giveUp, PATIENCE);
   }
 
   bars.forEach((bar) => bar.input.addEventListener("input", move));
