@@ -1,9 +1,9 @@
 """What a JPEG XL says before its pixels: size, samples, colours, frames [ISO 18181-1 annexes D and F].
 
 A file is a codestream, or boxes of which one holds it, or several its parts. A header is bits, the lowest of
-each byte first. Colours are those of sRGB, whatever their curve, but that floats are linear; others are
-refused, as are alpha and animations. Of a frame libjxl believes any size, so that a few hundred bytes keep it
-busy for hours: a picture is read that is one frame of its own size.
+each byte first. Colours are those of sRGB, whatever their curve, but that floats are linear, or those of
+Display P3; others are refused, as are alpha and animations. Of a frame libjxl believes any size, so that a
+few hundred bytes keep it busy for hours: a picture is read that is one frame of its own size.
 """
 
 import struct
@@ -24,6 +24,7 @@ DEPTHS = ((8, 0), (10, 0), (12, 0), (1, 6)), ((32, 0), (16, 0), (24, 0), (1, 6))
 READ = range(8, 17), (16, 32)
 # curves by their number [ITU-T H.273]
 LINEAR, SRGB, PQ, HLG = 8, 13, 16, 18
+OF_SRGB, OF_P3 = 1, 11  # primaries
 
 
 class Bits:
@@ -58,15 +59,15 @@ class Bits:
         over, under = WIDER[ratio - 1]
         return height, height * over // under if ratio else self.side(small)
 
-    def colours(self) -> tuple[bool, int, int]:
-        """Return whether primaries are those of sRGB, whether there is gray alone, and the curve's number."""
+    def colours(self) -> tuple[int, int, int]:
+        """Return the number of the primaries or 0, whether there is gray alone, and the curve's number."""
         if self.take(1):
-            return True, 0, SRGB
-        profile, gray = self.take(1), self.kind()
-        known = not profile and gray < 2 and self.kind() == 1 and (gray == 1 or self.kind() == 1)
+            return OF_SRGB, 0, SRGB
+        profile, gray, white = self.take(1), self.kind(), self.kind()
+        primaries = OF_SRGB if gray == 1 else self.kind()
         curve = 0 * self.take(24) if self.take(1) else self.kind()
         self.kind()  # how it is to be rendered
-        return known, gray, curve
+        return primaries if not profile and gray < 2 and white == 1 else 0, gray, curve
 
     def lone(self, xyb: int) -> bool:
         """Return whether the frame that begins here is the only one, and has the picture's size."""
@@ -115,8 +116,8 @@ def exif(data: bytes) -> bytes:
     return b""
 
 
-def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any], int, int, int]:
-    """Return shape, dtype and bits of the samples as they are stored, the orientation, and the curve.
+def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any], int, int, int, int]:
+    """Return shape, dtype and bits of the samples as they are stored, orientation, curve and primaries.
 
     `head` is the beginning of the file. What is not read is an `OtherPixels`.
     """
@@ -139,9 +140,9 @@ def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any],
     if others or depth not in READ[floats]:
         got = f"{depth} bits and {others} more channels"
         raise OtherPixels(f"{path}: expected gray or RGB of 8 or 16 bits, got {got}")
-    known, gray, curve = bits.colours()
-    if not known:
-        raise OtherPixels(f"{path}: expected the primaries of sRGB, got others or a profile")
+    primaries, gray, curve = bits.colours()
+    if primaries != OF_SRGB and (primaries, curve, floats) != (OF_P3, SRGB, 0):
+        raise OtherPixels(f"{path}: expected the primaries of sRGB or Display P3, got others or a profile")
     if floats and curve != LINEAR:
         raise OtherPixels(f"{path}: expected floats that are linear, got the curve number {curve}")
     if more and not bits.take(1):
@@ -149,4 +150,4 @@ def look(path: str | Path, head: bytes) -> tuple[tuple[int, ...], np.dtype[Any],
     if bits.take(2) or not bits.take(1) or not bits.lone(xyb):  # extensions, the usual transforms
         raise OtherPixels(f"{path}: expected one frame of the picture's size, got several or another")
     dtype = np.dtype(f"{'uf'[floats]}{(depth + 7) // 8}")
-    return (*size, 3)[: 3 - gray], dtype, depth, orientation, curve
+    return (*size, 3)[: 3 - gray], dtype, depth, orientation, curve, primaries

@@ -8,15 +8,21 @@ differs, or the picture is gray, the levels stay: a curve is part of the respons
 
 import io
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import ImageCms
 
+from hdrlab.core.colour import decode_srgb
 from hdrlab.core.optional import imagecodecs
 from hdrlab.core.types import Array
 
 # stands for the profile of a camera that says Adobe RGB in EXIF, by R03, and holds none
 ADOBE = b"adobergb"
+# ... and for that of a JPEG XL, which says so by a number
+DISPLAY_P3 = b"displayp3"
+# x, y and Y of its red, green and blue, and of D65 [SMPTE EG 432-1]
+PRIMARIES, WHITE = (0.68, 0.32, 1, 0.265, 0.69, 1, 0.15, 0.06, 1), (0.3127, 0.329, 1)
 # XYZ of red, green and blue under D50, as profiles of sRGB have them [ICC.1:2022 annex E, IEC 61966-2-1]
 SRGB = ((0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141))
 
@@ -39,7 +45,7 @@ def to_srgb(path: str | Path, pixels: Array, icc: bytes) -> Array:
 
 def _is_srgb(icc: bytes) -> bool:
     """Return whether a profile has the primaries of sRGB, whatever its curve."""
-    if icc == ADOBE:
+    if icc in (ADOBE, DISPLAY_P3):
         return False
     profile = ImageCms.ImageCmsProfile(io.BytesIO(icc)).profile
     colorants = (profile.red_colorant, profile.green_colorant, profile.blue_colorant)
@@ -49,6 +55,10 @@ def _is_srgb(icc: bytes) -> bool:
 def _convert(pixels: Array, icc: bytes) -> Array:
     srgb = imagecodecs.cms_profile("srgb")
     source = imagecodecs.cms_profile("adobergb") if icc == ADOBE else icc
+    if icc == DISPLAY_P3:
+        curve = decode_srgb(np.linspace(0, 1, 4096, dtype=np.float32))
+        known: dict[str, Any] = {"whitepoint": WHITE, "primaries": PRIMARIES, "transferfunction": curve}
+        source = imagecodecs.cms_profile("rgb", **known)
     # LittleCMS is quick by tables, which are right to a level of 255 for 8 bits, and off by 19 for 16
     flags = 0 if pixels.dtype == np.uint8 else imagecodecs.CMS.FLAGS.NOOPTIMIZE
     how = {"colorspace": "rgb", "outcolorspace": "rgb", "flags": flags}

@@ -16,6 +16,7 @@ from PIL import Image
 
 import hdrlab
 from hdrlab.cli import run
+from hdrlab.core.colour import decode_srgb
 from hdrlab.io import photos, radiance, screens
 from hdrlab.io.decode import look
 
@@ -301,6 +302,23 @@ def test_a_jpeg_that_cjxl_packs_keeps_its_pixels_and_tells_its_exposure(tmp_path
     one, other = (photos.read_photo(tmp_path / name).astype(int) for name in ("a.jpg", "a.jxl"))
     assert one.shape == other.shape == (48, 32, 3) and np.abs(one - other).mean() < 2
     assert look(tmp_path / "a.jxl").exposure == look(tmp_path / "a.jpg").exposure == (0.5, 8.0, 200)
+
+
+@pytest.mark.parametrize("depth", [8, 16])
+def test_display_p3_of_cjxl_is_converted_as_the_profile_of_a_png_is(depth, tmp_path):
+    """Against the primaries' own matrix, in linear light [SMPTE EG 432-1, IEC 61966-2-1]."""
+    levels = RGB if depth == 8 else DEEP
+    (tmp_path / "a.ppm").write_bytes(
+        b"P6\n48 32\n%d\n" % (2**depth - 1) + levels.astype(f">u{depth // 8}").tobytes()
+    )
+    program(tmp_path, "cjxl", "a.ppm", "a.jxl", "-d", "0", "-x", "color_space=RGB_D65_DCI_Rel_SRG")
+    matrix = np.array([[1.22494, -0.22494, 0], [-0.04206, 1.04206, 0], [-0.01964, -0.07864, 1.09827]])
+    expected = decode_srgb(levels / (2**depth - 1)) @ matrix.T
+    came = decode_srgb(photos.read_photo(tmp_path / "a.jxl") / (2**depth - 1))
+    shown = (expected > 0.002) & (expected < 1)
+    assert np.abs(came - expected)[shown].max() < (0.01 if depth == 8 else 2e-4) and not np.array_equal(
+        came, expected
+    )
 
 
 @pytest.mark.parametrize("distance", [0, 0.1])

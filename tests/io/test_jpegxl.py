@@ -128,7 +128,7 @@ SRGB = [(0, 1), (0, 1), (0, 2), (1, 2)]  # not as usual, no profile, RGB, D65
 @pytest.mark.parametrize(
     ("fields", "said"),
     [
-        ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (9, 4)], "the primaries of sRGB"),  # P3
+        ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (9, 4), (0, 1), (2, 2), (6, 4)], "of sRGB"),  # P3, linear
         ([*SIZE, *AS_USUAL, *U8, *SRGB, (2, 2), (7, 4)], "the primaries of sRGB"),  # BT.2020
         ([*SIZE, *AS_USUAL, *U8, (0, 1), (1, 1), (0, 2)], "the primaries of sRGB"),  # a profile
         ([*SIZE, *AS_USUAL, (0, 1), (0, 2), (1, 1), (1, 2)], "8 bits and 1 more channels"),  # alpha
