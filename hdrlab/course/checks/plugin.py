@@ -110,11 +110,8 @@ class Checking:
     def pytest_runtest_makereport(self, item: pytest.Item, call: pytest.CallInfo[None]) -> Any:
         """Write down how a check ended."""
         report = yield
-        if call.when == "setup" and call.excinfo is None:
-            return report
-        if call.when != "teardown" or call.excinfo is not None:
-            raised = None if call.excinfo is None else call.excinfo.value
-            self._ended(item, raised)
+        if call.when == "call" or call.excinfo is not None:
+            self._ended(item, call.excinfo and call.excinfo.value)
         return report
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
