@@ -28,6 +28,12 @@ def doubtful(truth, threshold=0.05):
     return np.any([np.abs(np.abs(one.response) - threshold) < CLOSE for one in truth], axis=0)
 
 
+def same_adaptation(came, truth, what, sure):
+    """Compare the adaptations of the last states, in shares of the largest."""
+    scale = truth[-1].adaptation.max()
+    same(came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure)
+
+
 @pytest.mark.points(4)
 def test_each_response_compares_a_width_with_the_next(subject, rng):
     """The surround of one width is the centre of the next: eight responses out of nine blurs.
@@ -54,9 +60,7 @@ def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
     blurred = drawn(rng)
     truth = list(reinhard.scale_steps(blurred))
     came, sure = asked(subject, blurred), ~doubtful(truth)
-    expected = truth[-1].adaptation
-    scale = np.abs(expected).max()
-    same(came[-1][4] / scale, expected / scale, 1e-3, what="the adaptation", picture=True, where=sure)
+    same_adaptation(came, truth, "the adaptation", sure)
     for one, true in zip(came, truth, strict=True):
         same(one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure)
 
@@ -88,6 +92,5 @@ def test_the_knobs_are_used(subject, rng):
         truth = list(reinhard.scale_steps(blurred, **knobs))
         came = asked(subject, blurred, **knobs)
         sure = ~doubtful(truth, knobs.get("threshold", 0.05))
-        scale = np.abs(truth[-1].adaptation).max()
-        what = f"the adaptation with {next(iter(knobs))}={next(iter(knobs.values()))}"
-        same(came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure)
+        ((knob, value),) = knobs.items()
+        same_adaptation(came, truth, f"the adaptation with {knob}={value}", sure)

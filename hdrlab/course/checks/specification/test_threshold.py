@@ -51,8 +51,7 @@ def test_several_fractions_give_a_code_each(subject, rng):
     np.searchsorted takes an array as it takes a number; np.argmax of a comparison needs q[:, None].
     """
     Y, q = drawn(rng), np.array([0.17, 0.5, 0.83])
-    expected = [subject.threshold(histogram(Y), float(one)) for one in q]
-    expected = [numbers(one, what="t").item() for one in expected]
+    expected = [numbers(subject.threshold(histogram(Y), float(one)), what="t").item() for one in q]
     same(subject.threshold(histogram(Y), q), expected, 0, what="the codes of three fractions")
 
 
