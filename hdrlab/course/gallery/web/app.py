@@ -39,10 +39,8 @@ class Gallery(Front):
         when, chosen = ballots.read_ballot(self.db, voter.id)
         order = tokens.shuffled(list(hung), set_up.secret, voter.id)
         may, key = set_up.is_open(self.clock()), tokens.form_key(shown)
-        cards = []
-        for id in order:
-            own = hung[id].team == voter.team
-            cards.append(Markup(self.card(one=hung[id], own=own, chosen=id in chosen, open=may)))
+        each = [(hung[id], {"own": hung[id].team == voter.team, "chosen": id in chosen}) for id in order]
+        cards = [Markup(self.card(one=one, open=may, **said)) for one, said in each]
         at = None if when is None else store.format_time(datetime.fromtimestamp(when, set_up.closes.tzinfo))
         marks, count = set_up.marks, len(chosen)
         return self.page("wall.html", cards=cards, marks=marks, chosen=count, when=at, key=key)
@@ -129,15 +127,11 @@ class Gallery(Front):
             closes = store.format_time(set_up.closes)
             raise Refusal(403, f"The results are shown when the vote has closed: {closes}.")
         cast = [one for one in ballots.every(self.db).values() if one]
-        authors: dict[str, list[str]] = {}
-        for voter in store.voters(self.db):
-            authors.setdefault(voter.team, []).append(voter.name)
         return self.page(
             "results.html",
             rows=[(row, hung[row.artifact]) for row in counting.standings(hung, cast)],
-            authors=authors,
             cast=len(cast),
-            voters=sum(map(len, authors.values())),
+            voters=store.voters(self.db),
             method=counting.METHOD.format(marks=set_up.marks),
         )
 
