@@ -122,7 +122,5 @@ def imported(sources: Iterable[str]) -> list[str]:
     >>> imported(["from scipy import ndimage", "import scipy.sparse.linalg as la, os", "not Python"])
     ['scipy', 'scipy.ndimage', 'scipy.sparse.linalg']
     """
-    found: set[str] = set()
-    for source in sources:
-        found |= modules(source)
+    found = set().union(*map(modules, sources))
     return sorted(one for one in found if one.split(".")[0] in ("numpy", "scipy"))

@@ -8,7 +8,6 @@ of which are read-only but /dev/null.
 import errno
 import tempfile
 import tomllib
-from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -36,26 +35,19 @@ def program(name: str) -> bytes:
         raise Unavailable(f"the filter of system calls needs pyseccomp and libseccomp: {error}") from None
     rules = pyseccomp.SyscallFilter(pyseccomp.ERRNO(errno.EPERM))
     more = CALLS["tending"] if name == "supervisor" else []
-    _allow(rules, [*CALLS["computing"], *CALLS["reading"], *more])
+    for call in [*CALLS["computing"], *CALLS["reading"], *more]:
+        try:
+            number = pyseccomp.resolve_syscall(pyseccomp.Arch.NATIVE, call)
+        except OSError:  # this processor lacks it
+            continue
+        if number >= 0:
+            rules.add_rule(pyseccomp.ALLOW, number)
     if name == "check":
         _narrow(rules)
     with tempfile.TemporaryFile() as file:
         rules.export_bpf(file)
         file.seek(0)
         return file.read()
-
-
-def _allow(rules: Any, names: Iterable[str]) -> None:
-    """Allow the calls of these names, as far as this processor has them."""
-    import pyseccomp
-
-    for name in names:
-        try:
-            number = pyseccomp.resolve_syscall(pyseccomp.Arch.NATIVE, name)
-        except OSError:
-            continue
-        if number >= 0:
-            rules.add_rule(pyseccomp.ALLOW, number)
 
 
 def _narrow(rules: Any) -> None:

@@ -57,16 +57,13 @@ def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Itera
     key = library_key()
     waiting = []
     for source in notebooks:
-        kept = cache / "executed" / f"{source.stem}-{_key(source, key)}.ipynb"
+        own = hashlib.sha256(key.encode() + source.read_bytes()).hexdigest()[:16]
+        kept = cache / "executed" / f"{source.stem}-{own}.ipynb"
         if kept.exists():
             yield Done(source, kept, False)
         else:
             waiting.append((source, kept))
     yield from _run_all(waiting, cache, jobs)
-
-
-def _key(source: Path, library: str) -> str:
-    return hashlib.sha256(library.encode() + source.read_bytes()).hexdigest()[:16]
 
 
 def _run_all(waiting: list[tuple[Path, Path]], cache: Path, jobs: int) -> Iterator[Done]:

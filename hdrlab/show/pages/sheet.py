@@ -131,7 +131,8 @@ def draw(
     head, foot = _broken(title or "Tone mapping", width, 12), _broken(LEGEND, width, 7)
     top = 24 + 20 * len(head)
     below = top + -(-len(entries) // columns) * cell[1]
-    figure = _blank(width, below + 16 + 14 * len(foot))
+    size = (width / DPI, (below + 16 + 14 * len(foot)) / DPI)
+    figure = Figure(figsize=size, dpi=DPI, facecolor="white")
     figure.set_label(alt_text(entries, title))
     _write(figure, GAP, 12, "\n".join(head), fontsize=13, fontweight="bold")
     for i, entry in enumerate(entries):
@@ -157,10 +158,6 @@ def write_sheet(path: str | Path, sheet: Figure) -> None:
 def check_suffix(path: str | Path) -> None:
     """Raise a ValueError where a sheet cannot be written under this name."""
     require_suffix(path, (".png",), "a sheet, whose alt text travels in it")
-
-
-def _blank(width: int, height: int) -> Figure:
-    return Figure(figsize=(width / DPI, height / DPI), dpi=DPI, facecolor="white")
 
 
 def _place(figure: Figure, entry: Entry, left: int, top: int, picture: tuple[int, int]) -> None:
