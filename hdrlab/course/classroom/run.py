@@ -22,7 +22,6 @@ from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.plan import Conditions, Homework, Late
 from hdrlab.course.reports import gradebook, results
-from hdrlab.course.reports.results import Result
 from hdrlab.course.sandbox import doctor
 from hdrlab.course.sandbox.running import Unavailable
 from hdrlab.course.wording import plain
@@ -76,7 +75,7 @@ class Grader(NamedTuple):
         ValueError
             Where it never does.
         """
-        each: list[Result] = []
+        each: list[results.Result] = []
         while len(each) < journal.TRIES:
             each.append(self._result(piece))
             if all(one.kind != "killed" for one in each[-1].checks):
@@ -85,7 +84,7 @@ class Grader(NamedTuple):
             return results.to_json(each[0])
         raise ValueError("its functions' process ended without an answer, each time at another check")
 
-    def _result(self, piece: Piece) -> Result:
+    def _result(self, piece: Piece) -> results.Result:
         """Grade a submission."""
         student = piece.owner if self.conditions.secret else ""
         with tempfile.TemporaryDirectory(prefix="hdrlab-class-") as scratch:
@@ -178,7 +177,7 @@ def write_feedback(out: Path, done: Done) -> Done:
     return done
 
 
-def read(out: Path, everything: Sequence[Piece]) -> Iterator[Result]:
+def read(out: Path, everything: Sequence[Piece]) -> Iterator[results.Result]:
     """Yield the results that are there, one at a time: a large class has more pictures than memory."""
     for piece in everything:
         path = journal.place(out / "results", piece)

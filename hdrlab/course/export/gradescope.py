@@ -9,11 +9,10 @@ from collections.abc import Iterator
 from importlib.metadata import requires
 from pathlib import Path
 
-from hdrlab.course import plan as plans
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.checks.running import LIBRARY
 from hdrlab.course.material import materials
-from hdrlab.course.plan import Plan, Task
+from hdrlab.course.plan import PLAN, Plan, Task
 from hdrlab.io.files import write
 
 SKIPPED = (".pyc", ".ipynb")
@@ -42,7 +41,7 @@ def export(
             **library,
             **{script.name: script.read_bytes() for script in SCRIPTS.iterdir()},
             "requirements.txt": "\n".join(requirements()).encode() + b"\n",
-            "plan.toml": (plan_file or plans.PLAN).read_bytes(),
+            "plan.toml": (plan_file or PLAN).read_bytes(),
             "settings.json": json.dumps({"homework": name, "secret": secret}).encode(),
             **{f"hidden/{one.name}": one.read_bytes() for one in own},
             **{name: data for task in plan.homeworks[name].tasks for name, data in _own(task)},
