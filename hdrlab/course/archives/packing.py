@@ -3,25 +3,14 @@
 import io
 import zipfile
 from collections.abc import Collection, Mapping
-from pathlib import Path, PurePath
-from typing import BinaryIO
+from pathlib import PurePath
 
 EPOCH = (1980, 1, 1, 0, 0, 0)  # the time of every file
 PACKED = {".jpg", ".jpeg", ".png", ".zip", ".gz", ".webp", ".exr"}  # which another compression only slows
 
 
-def write(target: Path | BinaryIO, files: Mapping[str, bytes], programs: Collection[str] = ()) -> None:
-    """Write a zip of these files by name, of which `programs` can be run."""
-    with zipfile.ZipFile(target, "w") as opened:
-        for name, data in sorted(files.items()):
-            entry = zipfile.ZipInfo(name, EPOCH)
-            entry.external_attr = (0o100755 if name in programs else 0o100644) << 16
-            stored = PurePath(name).suffix.lower() in PACKED
-            opened.writestr(entry, data, zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED)
-
-
 def packed(files: Mapping[str, bytes], programs: Collection[str] = ()) -> bytes:
-    """Return the bytes of such a zip.
+    """Return the bytes of a zip of these files by name, of which `programs` can be run.
 
     Examples
     --------
@@ -29,5 +18,10 @@ def packed(files: Mapping[str, bytes], programs: Collection[str] = ()) -> bytes:
     ['a.txt', 'b.txt']
     """
     archive = io.BytesIO()
-    write(archive, files, programs)
+    with zipfile.ZipFile(archive, "w") as opened:
+        for name, data in sorted(files.items()):
+            entry = zipfile.ZipInfo(name, EPOCH)
+            entry.external_attr = (0o100755 if name in programs else 0o100644) << 16
+            stored = PurePath(name).suffix.lower() in PACKED
+            opened.writestr(entry, data, zipfile.ZIP_STORED if stored else zipfile.ZIP_DEFLATED)
     return archive.getvalue()

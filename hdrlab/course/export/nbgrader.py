@@ -59,16 +59,11 @@ def _cell(cell: dict[str, Any], tasks: dict[str, Task]) -> dict[str, Any] | None
         return cell
     if name not in tasks:
         return None
-    marks: dict[str, Any] = {"grade_id": cell["id"], "schema_version": SCHEMA, "task": False}
-    if kind == "task":
-        marks |= {"grade": False, "locked": False, "solution": True}
-        return _marked(cell, marks, solved(tasks[name]))
-    marks |= {"grade": True, "locked": True, "solution": False, "points": tasks[name].points}
-    asked = f'found = check("{name}", worth={tasks[name].points:g})'
-    return _marked(cell, marks, f"{asked}\ndisplay(found)\nfound.points")
-
-
-def _marked(cell: dict[str, Any], marks: dict[str, Any], text: str) -> dict[str, Any]:
+    asks, points = kind == "check", tasks[name].points
+    marks = {"grade_id": cell["id"], "schema_version": SCHEMA, "task": False, "solution": not asks}
+    marks |= {"grade": asks, "locked": asks} | ({"points": points} if asks else {})
+    asked = f'found = check("{name}", worth={points:g})\ndisplay(found)\nfound.points'
+    text = asked if asks else solved(tasks[name])
     return {**cell, "metadata": {**cell["metadata"], "nbgrader": marks}, "source": text}
 
 

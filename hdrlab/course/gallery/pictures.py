@@ -4,14 +4,13 @@ So whatever else a file holds (scripts, another format behind the first, where i
 Its header is judged before anything of the size that it claims is allocated.
 """
 
-import os
 from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.core.arrays import to_256
 from hdrlab.io import photos, web
 from hdrlab.io.decode import look
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write
 from hdrlab.show.plots.figures import fit
 
 SIZES = {"small": 720, "large": 2400}  # pixels along a side, at most
@@ -53,9 +52,7 @@ def prepare(path: str | Path) -> Prepared:
 def keep(folder: Path, id: str, prepared: Prepared) -> None:
     """Write the pictures of an artifact into the gallery's folder."""
     for name, data in prepared.files.items():
-        with replacing(place(folder, id, name)) as temporary:
-            temporary.write_bytes(data)
-            os.chmod(temporary, 0o644)
+        write(place(folder, id, name), data).chmod(0o644)
 
 
 def place(folder: Path, id: str, size: str) -> Path:

@@ -9,10 +9,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 import hdrlab
-from hdrlab.course.archives import packing
+from hdrlab.course.archives.packing import packed
 from hdrlab.course.projects import privacy
 from hdrlab.course.projects.project import MANIFEST, Project
-from hdrlab.io.files import replacing
+from hdrlab.io.files import write as save
 
 VERSION = 1
 
@@ -71,9 +71,9 @@ def write(project: Project, archive: Path, files: list[Packed], *, now: datetime
         "files": {one.name: hashlib.sha256(one.data).hexdigest() for one in files},
     }
     manifest = (json.dumps(described, indent=1, ensure_ascii=False) + "\n").encode()
-    with replacing(archive) as temporary:
-        packing.write(temporary, {MANIFEST: manifest, **{one.name: one.data for one in files}})
-        return hashlib.sha256(temporary.read_bytes()).hexdigest()
+    data = packed({MANIFEST: manifest, **{one.name: one.data for one in files}})
+    save(archive, data)
+    return hashlib.sha256(data).hexdigest()
 
 
 def is_archive(path: Path) -> bool:
