@@ -7,7 +7,7 @@ assignfeedback_file_zip_importer]. An import without a column of comments leaves
 """
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 from hdrlab.course.archives.packing import packed
@@ -43,12 +43,8 @@ def write(out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, home
         For another table, and where the assignment gives another number of points than the homework.
     """
     listed = sheets.read_csv(worksheet, most=1 << 27)
-    known: Mapping[str, Mark] = {
-        fold(word): row
-        for row, one in zip(rows, roster.students, strict=True)
-        for word in (one.id, one.email)
-        if word
-    }
+    both = zip(rows, roster.students, strict=True)
+    known = {fold(word): row for row, one in both for word in (one.id, one.email) if word}
     lines: list[list[sheets.Cell]] = []
     files, lost = {}, []
     for line in listed:

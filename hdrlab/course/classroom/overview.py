@@ -8,7 +8,7 @@ class.html      how many hold each promise, which misconceptions were met, and w
 
 import statistics
 from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -39,23 +39,20 @@ class Tally(NamedTuple):
     points: dict[str, float]
     outcomes: dict[tuple[str, str], Counter[Outcome]]
     met: Counter[tuple[str, str]]
-    refused: Mapping[str, str] = {}
+    refused: dict[str, str] = {}
 
 
 def tally(each: Iterable[Result]) -> Tally:
     """Return what counts of results, each of which is looked at once and let go."""
-    points: dict[str, float] = {}
-    outcomes: dict[tuple[str, str], Counter[Outcome]] = {}
-    met: Counter[tuple[str, str]] = Counter()
-    refused: dict[str, str] = {}
+    found = Tally({}, {}, Counter(), {})
     for result in each:
-        points[result.student] = result.score
+        found.points[result.student] = result.score
         if result.problems and all(one.kind == "missing" for one in result.checks):
-            refused[result.student] = result.problems[0]
-        met.update(result.misconceptions.items())
+            found.refused[result.student] = result.problems[0]
+        found.met.update(result.misconceptions.items())
         for one in result.checks:
-            outcomes.setdefault((one.task, one.promise), Counter())[one.outcome] += 1
-    return Tally(points, outcomes, met, refused)
+            found.outcomes.setdefault((one.task, one.promise), Counter())[one.outcome] += 1
+    return found
 
 
 def marks_of(course: Course, found: Found, counted: Tally) -> list[Mark]:

@@ -201,12 +201,10 @@ def _solved(made: Sequence[Handout], assignments: Path, solutions: Path, jobs: i
     from hdrlab.course.site import execute
 
     texts = {one.homework: to_text(one.solution) for one in made}
+    texts = {name: text.replace(near[name], far[name]) for name, text in texts.items()}
     with tempfile.TemporaryDirectory(prefix="hdrlab-solutions-", ignore_cleanup_errors=True) as folder:
         scratch = Path(folder)
-        sources = [
-            write_text(scratch / f"{name}.ipynb", text.replace(near[name], far[name]))
-            for name, text in texts.items()
-        ]
+        sources = [write_text(scratch / f"{name}.ipynb", text) for name, text in texts.items()]
         for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
             ran = json.loads(done.executed.read_text(encoding="utf8"))
             name = done.source.stem

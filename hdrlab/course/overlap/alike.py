@@ -56,10 +56,7 @@ def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) ->
         yield one.work.team
     found = similarity.compare(each, authored.handout_code(homework.name), library(homework))
     teams = [one.work.team for one in each]
-    table = [
-        (teams[one], teams[other], f"{share:.3f}", f"{forth:.3f}", f"{back:.3f}")
-        for one, other, share, forth, back in found.pairs[:ROWS]
-    ]
+    table = [(teams[a], teams[b], *map("{:.3f}".format, shares)) for a, b, *shares in found.pairs[:ROWS]]
     sheets.write_csv(out / "similar.csv", COLUMNS, table, private=True)
     write(out / "similar.html", page(homework, each, found), private=True)
 

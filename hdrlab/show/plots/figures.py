@@ -131,10 +131,8 @@ def scale(low: float, high: float, colours: str = "viridis", *, digits: int = 0)
     at = np.array(MaxNLocator(6, steps=[1, 2, 5, 10]).tick_values(low, high))
     at = at[(at >= low - 1e-9) & (at <= high + 1e-9)]
     table = matplotlib.colormaps[colours](np.linspace(0, 1, 17))
-    return Scale(
-        [to_hex(one) for one in table],
-        [(100 * (one - low) / (high - low), signed(one, digits)) for one in at.tolist()],
-    )
+    ticks = [(100 * (one - low) / (high - low), signed(one, digits)) for one in at.tolist()]
+    return Scale([to_hex(one) for one in table], ticks)
 
 
 def round_up(value: float) -> float:
