@@ -135,11 +135,10 @@ def _imported(node: ast.Import | ast.ImportFrom) -> dict[str, tuple[str, str, st
     found = {}
     for alias in node.names:
         name = alias.asname or alias.name
-        renamed = f" as {alias.asname}" if alias.asname else ""
         if isinstance(node, ast.Import):
-            found[name.split(".")[0]] = (alias.name, "", f"import {alias.name}{renamed}")
+            found[name.split(".")[0]] = (alias.name, "", ast.unparse(ast.Import([alias])))
         else:
-            said = f"from {node.module} import {alias.name}{renamed}"
+            said = ast.unparse(ast.ImportFrom(node.module, [alias], 0))
             found[name] = (str(node.module), alias.name, said)
     return found
 
