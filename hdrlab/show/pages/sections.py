@@ -64,10 +64,17 @@ def radiance(E: Array) -> dict[str, Any]:
     """Return the map in false colour and its scale."""
     ev = figures.stops(E)
     low, high = figures.limits(ev)
-    image = figures.false_colour(figures.fit(ev, 1000), low, high)
     ends = f"from {wording.signed(low)} to {wording.signed(high)} stops around the median luminance"
-    shown = figures.photograph(image, 1000, f"The radiance map in false colour, {ends}")
-    return {"picture": shown, "scale": figures.scale(low, high)}
+    return _coloured(ev, low, high, f"The radiance map in false colour, {ends}")
+
+
+def _coloured(
+    values: Array, low: float, high: float, alt: str, colours: str = "viridis", digits: int = 0
+) -> dict[str, Any]:
+    """Return values in false colour and their scale."""
+    image = figures.false_colour(figures.fit(values, 1000), low, high, colours=colours)
+    scale = figures.scale(low, high, colours, digits=digits)
+    return {"picture": figures.photograph(image, 1000, alt), "scale": scale}
 
 
 def known(quality: Flags, picture: Image) -> dict[str, Any]:
@@ -91,12 +98,10 @@ def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
         return {"said": said, "picture": None}
     low, high = np.nanpercentile(stops, [1, 99]).tolist()
     low = min(low, 0.9 * high)  # lest what is even looks uneven
-    image = figures.false_colour(figures.fit(stops, 1000), low, high)
     ends = f"from ± {low:.2g} to ± {high:.2g} stops; gray where it is not known"
-    shown = figures.photograph(image, 1000, f"How sure each pixel is, in false colour, {ends}")
-    scale = figures.scale(low, high, digits=3)
-    scale = scale._replace(ticks=[(at, label.removeprefix("+")) for at, label in scale.ticks])
-    return {"said": said, "picture": shown, "scale": scale}
+    shown = _coloured(stops, low, high, f"How sure each pixel is, in false colour, {ends}", digits=3)
+    ticks = [(at, label.removeprefix("+")) for at, label in shown["scale"].ticks]
+    return {**shown, "said": said, "scale": shown["scale"]._replace(ticks=ticks)}
 
 
 def moving(labels: Labels | None, picture: Image) -> dict[str, Any] | None:
@@ -145,12 +150,8 @@ def error_map(truth: metrics.Truth, E: Array, well: Mask) -> dict[str, Any]:
     ratio = 1 + metrics.radiance_errors(colour.luminance(E), colour.luminance(truth.E), well)
     stops = np.where(well, np.log2(np.maximum(ratio, 2.0**-10)), np.nan)
     reach = figures.round_up(np.nanpercentile(np.abs(stops), 99))
-    image = figures.false_colour(figures.fit(stops, 1000), -reach, reach, colours="PuOr_r")
     ends = f"from {wording.signed(-reach, 2)} to {wording.signed(reach, 2)} stops"
-    return {
-        "picture": figures.photograph(image, 1000, f"Errors of luminance in false colour, {ends}"),
-        "scale": figures.scale(-reach, reach, "PuOr_r", digits=2),
-    }
+    return _coloured(stops, -reach, reach, f"Errors of luminance in false colour, {ends}", "PuOr_r", 2)
 
 
 def recipe(photographs: Bracket, given: str | Mapping[str, Any]) -> list[tuple[str, str]]:
