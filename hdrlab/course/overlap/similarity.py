@@ -179,8 +179,6 @@ def _pairs(teams: Sequence[str], best: np.ndarray) -> tuple[list[Pair], np.ndarr
     counted = (names[one] != names[other]) & (largest >= 0)
     kept = np.flatnonzero(counted & (largest >= THRESHOLD))
     kept = kept[np.argsort(-largest[kept], kind="stable")]
-    pairs = [
-        Pair(a, b, float(max(best[a, b], best[b, a])), float(best[a, b]), float(best[b, a]))
-        for a, b in zip(one[kept].tolist(), other[kept].tolist(), strict=True)
-    ]
-    return pairs, np.histogram(largest[counted], BINS, (0, 1))[0]
+    a, b = one[kept], other[kept]
+    columns = (each.tolist() for each in (a, b, largest[kept], best[a, b], best[b, a]))
+    return [*map(Pair, *columns)], np.histogram(largest[counted], BINS, (0, 1))[0]

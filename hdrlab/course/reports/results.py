@@ -162,10 +162,9 @@ def _check_to_json(check: Check) -> dict[str, Any]:
 
 def drawing_to_json(drawing: Drawing) -> list[dict[str, str]]:
     """Return pictures as JSON holds them."""
-    return [
-        {"webp": base64.b64encode(frame).decode(), "alt": alt, "caption": caption}
-        for frame, alt, caption in zip(*drawing, strict=True)
-    ]
+    texts = [base64.b64encode(frame).decode() for frame in drawing.frames]
+    each = zip(texts, drawing.alts, drawing.captions, strict=True)
+    return [{"webp": text, "alt": alt, "caption": caption} for text, alt, caption in each]
 
 
 def drawing_from_json(read: list[dict[str, str]]) -> Drawing:
