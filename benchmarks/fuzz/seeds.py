@@ -98,7 +98,8 @@ def jpegxl(folder: Path) -> None:
     Image.fromarray(RGB).save(file := io.BytesIO(), "JPEG", exif=_exif())
     (folder / "was.jxl").write_bytes(imagecodecs.jpegxl_encode_jpeg(file.getvalue()))
     packed = b"Exif" + imagecodecs.brotli_encode(bytes(4) + _exif().tobytes()[6:])
-    boxes = [(b"JXL ", b"\r\n\x87\n"), (b"brob", packed), (b"jxlc", imagecodecs.jpegxl_encode(RGB))]
+    boxes = [(b"JXL ", b"\r\n\x87\n"), (b"ftyp", b"jxl \0\0\0\0jxl "), (b"brob", packed)]
+    boxes += [(b"jxlc", imagecodecs.jpegxl_encode(RGB))]
     data = b"".join(struct.pack(">I4s", 8 + len(said), name) + said for name, said in boxes)
     (folder / "packed.jxl").write_bytes(data)
 
