@@ -32,6 +32,7 @@ import numpy as np
 from hdrlab.core.arrays import as_stack, to_256
 from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
 from hdrlab.diagnostics import flat_patches, response_steps
+from hdrlab.diagnostics.doubts import say
 
 # side of a part of the picture, in patches
 TILE = 12
@@ -199,32 +200,15 @@ def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: 
     Of a map whose spread is small, stops, only times that are wrong need a word, and places that differ much.
     """
     if found.tints.max() > WRONG:
-        return (
-            f"{names[int(found.tints.argmax())]} has another white balance: a channel is too bright by "
-            f"{found.tints.max():.2f} stops or more, another too dark; leave it out, and set a fixed balance"
-        )
+        return say("white_balance", frame=names[int(found.tints.argmax())], stops=found.tints.max())
     corners = found.corners[np.isfinite(found.corners)]
     if len(corners) and np.median(corners) > SLIGHT:
-        return (
-            "the corners change against the middle of the picture by "
-            f"{np.median(corners):.2f} stops from one photograph to the next: with the aperture its "
-            "vignetting changed; keep the aperture fixed"
-        )
+        return say("corners", stops=np.median(corners))
     by = np.nanmedian(found.regions) if found.local else 0.0
     if by > LOCAL or (found.local and spread > SOUND):
         j = int(np.nanargmax(found.regions))
-        return (
-            f"the photographs contradict each other by {by:.2f} stops in parts of the picture, most between "
-            f"{names[j]} and {names[j + 1]}: light or white balance that changed, or a camera that brightens "
-            "by place; switch HDR and automatic enhancement off, or take RAW; other times will not help"
-        )
+        return say("local", stops=by, dark=names[j], bright=names[j + 1])
     if not found.wrong or spread < EXPLAINED:
         return ""
     off = ", ".join(f"{names[j]} by {found.stops[j]:+.2f}" for j in found.wrong)
-    known = np.isfinite(found.stops).sum()
-    other = " (of three it may also be the first or the last, by twice as much)" if known == 3 else ""
-    return (
-        f"the photographs contradict their exposure times, in stops of exposure by the pixels over exposure "
-        f"stated: {off}{other}; a factor for each frame explains them: correct these times, or estimate them "
-        "(--times estimate), and see that the camera did not change ISO or aperture"
-    )
+    return say("times", off=off + (say("of_three") if np.isfinite(found.stops).sum() == 3 else ""))

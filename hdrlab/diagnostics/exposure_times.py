@@ -17,6 +17,7 @@ import numpy as np
 from hdrlab.core.arrays import as_response, as_stack
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import flat_patches, response_steps
+from hdrlab.diagnostics.doubts import say
 
 # stops: a time that was this far off is more than rough
 FAR = 0.5
@@ -180,11 +181,5 @@ def doubts(found: Estimate) -> tuple[str, ...]:
     if not found.accepted or far <= (ROUNDED if len(found.stops) == 3 else FAR):
         return ()
     if far <= FAR:
-        return (
-            f"of three photographs, one time is wrong: the middle one's by {1.5 * far:.2f} stops, or that of "
-            f"the first or last by {3 * far:.2f}, and with it the contrast of the map; a fourth would tell",
-        )
-    return (
-        f"the estimated times depart from those stated by up to {far:.2f} stops: the frames now agree, but "
-        "the span of the times, and with it the contrast of the map, is only as true as the stated ones are",
-    )
+        return (say("one_of_three", middle=1.5 * far, end=3 * far),)
+    return (say("far", stops=far),)

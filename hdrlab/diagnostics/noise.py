@@ -25,6 +25,7 @@ from scipy.optimize import least_squares
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.types import F64, Array
+from hdrlab.diagnostics.doubts import say
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of a channel, on an even grid, that stand for all
@@ -143,10 +144,7 @@ def _fit(Z: Array, t: F64, g: F64, E: F64, groups: list[Array], top: int) -> tup
         rows.append([*scatter(x[0] - x[1]), rounding.mean(axis=1).sum(), *a, 2.0, len(pixels)])
     S, bias, a0, *a, count = np.array([row for row in rows if row[0] > 0]).reshape(-1, 7).T
     if len(S) < 6:
-        raise ValueError(
-            "expected flat parts of many lights, each measured by two photographs, to learn the noise from; "
-            f"got {len(S)} groups of pixels, of at least 6"
-        )
+        raise ValueError(say("few", count=len(S)))
     N, R, rho = _solve(S, a0, np.array(a), count)
     return N, R, np.sqrt(rho**2 + max(float(np.median(bias - S / count)), 0.0) / MEDIAN)
 

@@ -22,6 +22,7 @@ from hdrlab.core.bracket import short_to_long
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
 from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
+from hdrlab.diagnostics.doubts import say
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8
 NEIGHBOUR_ERROR_LIMIT = 4.0
@@ -102,24 +103,17 @@ def validate_response(g: F64, images: ArrayLike, times: ArrayLike, *, valid: Arr
     order = short_to_long(stack, t)
     Z, t = ranks(stack, as_mask(valid, stack))[:, order], t[order]
     error, darker_share = neighbour_errors(Z, t, curve)
-    expected = "expected times consistent with the images: "
     if np.any(darker_share > 0.5):
-        raise ValueError(f"{expected}{_pair(t, darker_share)} the longer exposure is the darker photograph")
+        raise ValueError(say("darker", pair=_pair(t, darker_share)))
     measured = error[np.isfinite(error)]
     if np.any(measured > NEIGHBOUR_ERROR_LIMIT) or (
         len(measured) > 2 and np.median(measured) > MEDIAN_ERROR_LIMIT
     ):
-        raise ValueError(
-            f"{expected}{_pair(t, error)} the response found is {measured.max():.1f} stops off, "
-            "which a time or an order of frames that is wrong would explain"
-        )
+        raise ValueError(say("steep", pair=_pair(t, error), stops=measured.max()))
     low, high = INNER_LEVELS
     span = float(np.max(curve[high] - curve[low]) / np.log(2))
     if span > SPAN_LIMIT:
-        raise ValueError(
-            f"{expected}under these the camera would span {span:.0f} stops from level {low} to {high}, "
-            f"where none is known beyond {WIDEST_CAMERA:.0f}"
-        )
+        raise ValueError(say("wide", stops=span, low=low, high=high, widest=WIDEST_CAMERA))
     return g
 
 

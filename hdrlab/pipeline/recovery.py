@@ -23,6 +23,7 @@ from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
 from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.diagnostics import consistency
+from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.plausibility import validate_response
 from hdrlab.fast import debevec, robertson
 from hdrlab.fast.merge import merge_with_quality
@@ -39,10 +40,6 @@ SLACK, FINEST = 0.05, 0.003
 WIDEST_GAP = 20
 # samples that show which levels two frames share
 SAMPLES = 1000
-IN_COMMON = (
-    "where one photograph shows something, all others are black or white: take some in between, 1 to 2 stops "
-    "apart, and longer ones if all of them are black"
-)
 
 
 class Choice(NamedTuple):
@@ -191,7 +188,7 @@ def find_response(response: Method, choice: Choice, bracket: Bracket) -> tuple[F
     try:
         g = space.recover(images, times, valid=valid)
     except ValueError as error:
-        raise ValueError(f"{error}; {IN_COMMON}") from None
+        raise ValueError(say("in_common", error=error)) from None
     try:
         return validate_response(g, images, times, valid=valid), (said,), ""
     except ValueError:

@@ -16,6 +16,7 @@ from hdrlab.core.steps import last
 from hdrlab.core.types import F64
 from hdrlab.diagnostics import consistency, motion
 from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions, warn_of_contradictions
+from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.outlying_frames import find_outlying_frames
 from hdrlab.fast.merge import Expendable, merge_with_quality
 from hdrlab.pipeline import recovery, timing
@@ -166,12 +167,9 @@ def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
     found, rivals = find_outlying_frames(images, times, valid=valid)
     if not found:
         return state
-    said = (
-        f"left out, for the other photographs contradict it: {', '.join(names[j] for j in found)}; see "
-        "whether its time is right, and whether it shows this scene, in this light"
-    )
-    either = f"; it may also be {' or '.join(names[j] for j in rivals)} that is wrong, and with it the map"
-    doubts, notes = ((said + either,), ()) if rivals and not relative else ((), (said,))
+    said = say("contrary", frames=", ".join(names[j] for j in found))
+    either = said + say("rivals", frames=" or ".join(names[j] for j in rivals))
+    doubts, notes = ((either,), ()) if rivals and not relative else ((), (said,))
     state = state._replace(notes=(*state.notes, *notes), doubts=(*state.doubts, *doubts))
     return take_frames(state, np.delete(np.arange(len(times)), found))
 
@@ -226,26 +224,16 @@ def assess(state: Assembly, medians: F64, found: Contradictions, moved: float, b
         state = state._replace(fallback=f"the photographs contradict each other by {state.spread:.2f} stops")
     names = state.bracket.names
     if np.isnan(state.spread):
-        why = "no level stands in two frames, so nothing supports times and map: take photographs in between"
-        return state._replace(doubts=(*state.doubts, why), fallback=why)
+        return state._replace(doubts=(*state.doubts, say("alone")), fallback=say("alone"))
     said = warn_of_contradictions(found, names, state.spread)
     if not said and moved > motion.MOVED:
-        said = (
-            f"the photographs contradict each other in {100 * moved:.0f} % of the picture, as where leaves, "
-            "water or people moved, and the map shows all of them there: --ghosts regions shows one"
-        )
+        said = say("moved", percent=100 * moved)
     if not said and bands > motion.BANDED:
-        said = (
-            f"lamps flicker: the light changed by {bands:.2f} stops in bands across the picture, and as a "
-            "whole as well; no times put that right: take daylight, or exposures of 1/25 s and longer"
-        )
+        said = say("flicker", stops=bands)
     if not said and state.spread > CONTRADICTION:
         stops = zip(names, consistency.measure_deviations(medians), strict=True)
         off = ", ".join(f"{name} by {by:+.2f}" for name, by in stops if abs(by) > 0.1)
-        said = (
-            f"the photographs disagree by {state.spread:.2f} stops in the map ({off}), and neither times nor "
-            "place explain it: see whether much of the scene moved, or the camera changed its processing"
-        )
+        said = say("unexplained", stops=state.spread, off=off)
     if said:
         return state._replace(doubts=(*state.doubts, said))
     unknown = [name for name, by in zip(names, found.stops, strict=True) if np.isnan(by)]

@@ -16,6 +16,7 @@ from hdrlab.core.bracket import bracket as make_bracket
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import exposure_times, plausibility
+from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.exposure_times import Estimate
 from hdrlab.pipeline import recovery
 from hdrlab.pipeline.assembly import Assembly, Method, take_frames
@@ -28,7 +29,6 @@ LEAST_SPAN = 0.3
 TRUE, WORTHLESS = 0.01, 0.5
 # pixels of a frame, on an even grid
 PIXELS = 400_000
-WRONG_ORDER = "the longer exposure is the darker photograph: check which time belongs to which, or take them"
 
 
 def usual_response(n: int, linear: bool = False) -> F64:
@@ -87,7 +87,7 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
             return bracket, ()
     if len(falls) and times != "estimate":
         pair = " and ".join(f"{names[j]} ({seconds[j]:.4g} s)" for j in (falls[0], falls[0] + 1))
-        raise ValueError(f"{pair}: {WRONG_ORDER} from the pixels (--times estimate)")
+        raise ValueError(say("order", pair=pair))
     found = estimate_relative_times(bracket)
     if len(seconds) < 2 or np.log2(found.times[-1]) < LEAST_SPAN or (equal and times == "stated"):
         got = ", ".join(f"{name} {time:.6g} s" for name, time in zip(names, seconds, strict=True))
@@ -98,11 +98,7 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
 
 def describe_steps(times: F64) -> str:
     """Return the sentence on relative times: how they were found, and how far to trust them."""
-    by = ", ".join(f"{step:.1f}" for step in np.diff(np.log2(times)))
-    return (
-        f"relative times, the shortest is 1, by the pixels and the response of a usual camera: steps of {by} "
-        "stops; the contrast of the map is as true as these, so give --stops 2 or the like if you know them"
-    )
+    return say("relative", steps=", ".join(f"{step:.1f}" for step in np.diff(np.log2(times))))
 
 
 def refine_times(state: Assembly, response: Method, before: float) -> Assembly:

@@ -21,6 +21,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.course.site import live, reference
 from hdrlab.course.site import pages as build
+from hdrlab.diagnostics import doubts
 from hdrlab.io import web
 from hdrlab.io.photos import read_bracket, write_picture
 from hdrlab.io.web import decode_picture
@@ -457,6 +458,7 @@ def test_the_page_on_warnings_quotes_them_as_they_are_printed():
         strings += [[one] for one in nodes if isinstance(one, ast.Constant) and isinstance(one.value, str)]
         for parts in strings:
             printed += "".join(part.value if isinstance(part, ast.Constant) else "%" for part in parts) + "\n"
+    printed += "\n".join(re.sub(r"\{.*?\}", "%", one) for one in doubts.SENTENCES.values())
     quotes = quotes_of_the_page_on_warnings()[: -len(REFUSED)]
     assert len(quotes) >= 12
     for quote in quotes:
