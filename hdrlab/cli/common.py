@@ -1,10 +1,12 @@
 """What the commands share: kinds of options, progress, and text that becomes values."""
 
+import inspect
 import os
 import re
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import click
@@ -39,7 +41,7 @@ def operator(name: str) -> Option:
 
 
 class Command(click.Command):
-    """A command that writes over nothing that it reads."""
+    """A command that writes over nothing that it reads; one of many options gets them by name, as `asked`."""
 
     def invoke(self, ctx: click.Context) -> Any:
         """Run the command, or raise a ValueError where an output is one of the files that it would read."""
@@ -49,6 +51,8 @@ class Command(click.Command):
         written = [path for is_out, paths in given if is_out for path in paths]
         read = [path for is_out, paths in given if written and not is_out for path in paths]
         require_other(written, [file for path in read for file in (path, *_photographs(path))])
+        if "asked" in inspect.signature(self.callback or print).parameters:
+            ctx.params = {"asked": SimpleNamespace(**ctx.params)}
         return super().invoke(ctx)
 
 

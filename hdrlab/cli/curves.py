@@ -50,16 +50,7 @@ def method_or_curve(response: str | Path) -> str | Callable[..., Any]:
 @common.choice("--align", ["auto", *catalogue.names("align"), "none"], "mtb")
 @common.choice("--response", METHODS, "debevec")
 @click.option("--plot", type=common.OUT, help="Picture of the curve and the residuals: .png or .svg.")
-def calibrate(
-    photos: tuple[Path, ...],
-    out: tuple[Path, ...],
-    times: str,
-    estimate_times: bool,
-    mask: str | None,
-    align: str,
-    response: str,
-    plot: Path | None,
-) -> None:
+def calibrate(asked: Any) -> None:
     """Find the camera's response in PHOTOS (files, or one folder), and how far it is to be trusted.
 
     The table says at which levels exposure doubles.
@@ -70,27 +61,26 @@ def calibrate(
     from hdrlab.pipeline import recovery
     from hdrlab.show.plots import calibration
 
-    for path in out:
+    for path in asked.out:
         response_files.suffix_of(path)  # an unknown suffix is better known before the work than after it
-    if plot:
-        calibration.check_suffix(plot)
-    bracket = read_bracket(photos, times, mask, None)
-    ready = "times" if estimate_times or times == "estimate" else "align"
-    steps = pipeline.assemble_steps(
-        bracket, align=align, response=response, times="estimate" if ready == "times" else "stated"
-    )
+    if asked.plot:
+        calibration.check_suffix(asked.plot)
+    bracket = read_bracket(asked.photos, asked.times, asked.mask, None)
+    ready = "times" if asked.estimate_times or asked.times == "estimate" else "align"
+    kept = "estimate" if ready == "times" else "stated"
+    steps = pipeline.assemble_steps(bracket, align=asked.align, response=asked.response, times=kept)
     state = next(one for one in steps if one.stage == ready)
     common.say("note", (*state.notes, *state.doubts))
     # an aligned bracket under the plausible response that the method finds
-    g = recovery.find_validated_method(response)(*state.bracket[:2], valid=state.bracket.valid)
+    g = recovery.find_validated_method(asked.response)(*state.bracket[:2], valid=state.bracket.valid)
     found = pipeline.assemble(state.bracket, align="none", response=lambda *_, **__: g, times="stated")
     common.say("warning", found.doubts)
     g, medians, (_, seconds, names, *_) = found.g, found.medians, found.bracket
-    click.echo(f"{response}, from {len(seconds)} photographs")
+    click.echo(f"{asked.response}, from {len(seconds)} photographs")
     click.echo("\n".join(calibration.summary(g, medians, names)))
-    for path in out:
+    for path in asked.out:
         response_files.write_curve(path, g)
         click.echo(path)
-    if plot:
-        calibration.write_plot(plot, calibration.calibration(g, medians, seconds, title=response))
-        click.echo(plot)
+    if asked.plot:
+        calibration.write_plot(asked.plot, calibration.calibration(g, medians, seconds, title=asked.response))
+        click.echo(asked.plot)

@@ -25,17 +25,7 @@ MODES = ("spot", "partial", "centre", "average", "matrix")
 @click.option("--thirds", is_flag=True, help="The dial has thirds of a stop.")
 @click.option("--snr", type=click.FloatRange(0, min_open=True), help="As quick as may be at this SNR, too.")
 @click.option("--camera", "model", type=common.FILE, help="For --snr: the camera's noise, a .toml.")
-def plan(
-    low: float | None,
-    high: float | None,
-    low_: float | None,
-    high_: float | None,
-    source: Path | None,
-    thirds: bool,
-    snr: float | None,
-    model: Path | None,
-    **camera: float,
-) -> None:
+def plan(asked: Any) -> None:
     """Plan the photographs for a scene whose luminances go from LOW to HIGH, cd/m^2.
 
     Moonlight is about 0.1 cd/m^2, a living room in the evening 10, a white page in the sun 30 000. Of a map,
@@ -51,13 +41,14 @@ def plan(
     from hdrlab.capture import planning
     from hdrlab.core.colour import luminance
 
-    low, high = low_ or low, high_ or high
-    if source is not None and low is None:
-        L = luminance(common.read_map(source, clean=False))
+    low, high = asked.low_ or asked.low, asked.high_ or asked.high
+    camera = {name: getattr(asked, name) for name in ("aperture", "iso", "usable", "overlap")}
+    if asked.source is not None and low is None:
+        L = luminance(common.read_map(asked.source, clean=False))
         low, high = np.quantile(L[L > 0], [0.001, 0.999]) if (L > 0).any() else (0.0, 0.0)
-    elif source is not None or low is None or high is None:
+    elif asked.source is not None or low is None or high is None:
         raise ValueError("expected LOW and HIGH in cd/m^2, or --map FILE")
-    made = planning.plan(low, high, per_stop=3 if thirds else 1, **camera)
+    made = planning.plan(low, high, per_stop=3 if asked.thirds else 1, **camera)
     scene = np.log2(high / low)
     held = f"one photograph holds {camera['usable']:g}"
     click.echo(f"scene: {low:.3g} to {high:.3g} cd/m^2, {scene:.1f} stops; {held}")
@@ -66,10 +57,10 @@ def plan(
     click.echo(f"{shots}, f/{camera['aperture']:g}, ISO {camera['iso']:g}:")
     for name, time, (dark, bright) in zip(made.names, made.times, made.holds, strict=True):
         click.echo(f"  {name:>7} s  (really {time:.6g} s) holds {dark:.3g} to {bright:.3g} cd/m^2")
-    if snr:
+    if asked.snr:
         usual = planning.Model(speeds=(camera["iso"],), aperture=camera["aperture"])
-        maker = usual._replace(**_camera(model, usual._fields)) if model else usual
-        quick = planning.plan_by_noise(low, high, snr, maker)
+        maker = usual._replace(**_camera(asked.model, usual._fields)) if asked.model else usual
+        quick = planning.plan_by_noise(low, high, asked.snr, maker)
         stops = made.names, made.times, np.full(count, camera["iso"])
         for way, (names, times, speeds) in (("by stops", stops), ("by noise", quick)):
             worst = planning.worst_snr(low, high, times, speeds, maker)

@@ -1,7 +1,6 @@
 """Commands about assignments: a student's check, and an instructor's grade."""
 
 from pathlib import Path
-from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -31,9 +30,7 @@ SECRET = click.option(
 @click.option("--hints", type=click.IntRange(0, 3), default=0, help="So many hints of what does not hold.")
 @click.option("--page", type=common.OUT, help="The same as a page with pictures: a .html file.")
 @PLAN
-def check(
-    submission: Path, homework: str | None, task: str | None, hints: int, page: Path | None, plan: Path | None
-) -> None:
+def check(asked: Any) -> None:
     """Check SUBMISSION, a notebook or a Python file, as often as you like. Not for credit.
 
     Your functions run in a process of their own, which is no sandbox: check what you trust.
@@ -41,16 +38,17 @@ def check(
     from hdrlab.course.reports import feedback
     from hdrlab.io.files import write
 
-    asked = _homework(submission, homework, plan)
-    if task is not None:
-        tasks = {one.id: one for one in asked.tasks}
-        if task not in tasks:
-            raise ValueError(f"expected a task out of {', '.join(tasks)}, got {task!r}")
-        asked = asked._replace(tasks=(tasks[task],))
-    result = _graded(submission, asked, plans.Conditions(tier="practice", draw=page is not None))
-    click.echo(feedback.text(result, hints=hints))
-    if page is not None:
-        click.echo(write(page, feedback.page(result)))
+    homework = _homework(asked.submission, asked.homework, asked.plan)
+    if asked.task is not None:
+        tasks = {one.id: one for one in homework.tasks}
+        if asked.task not in tasks:
+            raise ValueError(f"expected a task out of {', '.join(tasks)}, got {asked.task!r}")
+        homework = homework._replace(tasks=(tasks[asked.task],))
+    conditions = plans.Conditions(tier="practice", draw=asked.page is not None)
+    result = _graded(asked.submission, homework, conditions)
+    click.echo(feedback.text(result, hints=asked.hints))
+    if asked.page is not None:
+        click.echo(write(asked.page, feedback.page(result)))
 
 
 @common.command()
@@ -77,18 +75,7 @@ def check(
 @click.option("--jobs", type=click.IntRange(1), help="Submissions at a time.  [default: processors]")
 @click.option("--cluster", metavar="ADDRESS", help="Of a class, on this Dask cluster, tcp://HOST:8786.")
 @PLAN
-def grade(
-    submission: Path,
-    homework: str | None,
-    tier: str,
-    hidden: Path | None,
-    out: Path,
-    student: str,
-    secret_file: Path | None,
-    timeout: float,
-    plan: Path | None,
-    **of_class: Any,
-) -> None:
+def grade(asked: Any) -> None:
     """Grade SUBMISSION, a notebook or a Python file, and write the results in every form.
 
     Its code never runs in the process that scores it. A tier that this machine cannot give is an error.
@@ -99,27 +86,27 @@ def grade(
     from hdrlab.course.reports import feedback, gradebook
     from hdrlab.course.scratch import temporary_folder
 
-    if student and secret_file is None:
+    if asked.student and asked.secret_file is None:
         raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
-    secret, note = secret_of(secret_file)
-    conditions = plans.Conditions(tier, student, secret, hidden, timeout)
-    if submission.is_dir():
+    secret, note = secret_of(asked.secret_file)
+    conditions = plans.Conditions(asked.tier, asked.student, secret, asked.hidden, asked.timeout)
+    homework = _homework(asked.submission, asked.homework, asked.plan)
+    if asked.submission.is_dir():
         from hdrlab.cli import classroom
 
-        options = SimpleNamespace(**of_class)
-        course = classroom.course_of(_homework(submission, homework, plan), conditions, plan, options)
+        course = classroom.course_of(homework, conditions, asked.plan, asked)
         with temporary_folder():
-            classroom.grade_folder(submission, out, course, options)
+            classroom.grade_folder(asked.submission, asked.out, course, asked)
         click.echo(note, nl=bool(note), err=True)
         return
-    result = _graded(submission, _homework(submission, homework, plan), conditions)
+    result = _graded(asked.submission, homework, conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
         click.echo(f"note: for practice. {result.why_practice}", err=True)
     if secret:
         click.echo(note, nl=bool(note), err=True)
-    gradebook.write_results(out, result)
-    click.echo(out / "feedback.html")
+    gradebook.write_results(asked.out, result)
+    click.echo(asked.out / "feedback.html")
 
 
 @common.command()

@@ -1,6 +1,7 @@
 """Commands that make the course: its handouts, other systems' forms of it, tasks of an instructor's own."""
 
 from pathlib import Path
+from typing import Any
 
 import click
 
@@ -39,26 +40,21 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Pat
 @click.option("--hidden", type=FOLDER, help="Folder with checks of your own, test_<task>.py; for Gradescope.")
 @SECRET
 @PLAN
-def export(
-    nbgrader: Path | None,
-    gradescope: Path | None,
-    hidden: Path | None,
-    secret_file: Path | None,
-    plan: Path | None,
-) -> None:
+def export(asked: Any) -> None:
     """Write the course in the form of another system, whose tests call the same checks."""
     from hdrlab.course.export import gradescope as to_gradescope
     from hdrlab.course.export import nbgrader as to_nbgrader
 
-    if nbgrader is None and gradescope is None:
+    if asked.nbgrader is None and asked.gradescope is None:
         raise ValueError("expected --nbgrader DIR or --gradescope DIR")
-    read = plans.read(plan)
-    if nbgrader is not None:
-        common.list_files(to_nbgrader.export(read, nbgrader))
-    if gradescope is not None:
-        secret, note = secret_of(secret_file)
+    read = plans.read(asked.plan)
+    if asked.nbgrader is not None:
+        common.list_files(to_nbgrader.export(read, asked.nbgrader))
+    if asked.gradescope is not None:
+        secret, note = secret_of(asked.secret_file)
         click.echo(note, nl=bool(note), err=True)
-        made = to_gradescope.export(read, gradescope, hidden=hidden, plan_file=plan, secret=secret)
+        secrets = {"hidden": asked.hidden, "plan_file": asked.plan, "secret": secret}
+        made = to_gradescope.export(read, asked.gradescope, **secrets)
         common.list_files(made)
 
 

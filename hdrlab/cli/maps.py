@@ -28,18 +28,7 @@ WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
 )
 @WAY
 @common.CLEAN
-def tonemap(
-    source: Path,
-    out: Path,
-    to: str,
-    headroom: float,
-    primaries: str,
-    operator: str,
-    knobs: tuple[str, ...],
-    saturation: float | None,
-    way: str,
-    clean: bool,
-) -> None:
+def tonemap(asked: Any) -> None:
     """Make a picture of the radiance map SOURCE.
 
     Bright colours may want more of a channel than a display has. By --way hue they become a little darker and
@@ -61,22 +50,25 @@ def tonemap(
     from hdrlab.pipeline import screens
     from hdrlab.pipeline.pictures import find_operator
 
-    to = {".avif": "avif", ".jxl": "jxl"}.get(out.suffix.lower(), to) if to == "picture" else to
-    E = common.read_map(source, clean)
-    settings = dict(common.knob(one) for one in knobs)
-    check_knobs("tonemap", find_operator(operator), settings)
-    with elapsed(operator):
-        made = pipeline.develop_and_describe(E, operator, saturation=saturation, way=way, **settings)
+    by_suffix = {".avif": "avif", ".jxl": "jxl"}.get(asked.out.suffix.lower(), "picture")
+    to = by_suffix if asked.to == "picture" else asked.to
+    E = common.read_map(asked.source, asked.clean)
+    settings = dict(common.knob(one) for one in asked.knobs)
+    check_knobs("tonemap", find_operator(asked.operator), settings)
+    with elapsed(asked.operator):
+        settings |= {"saturation": asked.saturation, "way": asked.way}
+        made = pipeline.develop_and_describe(E, asked.operator, **settings)
         if to == "ultrahdr":
-            ultrahdr.write_picture(out, made.picture, E, headroom=headroom)
+            ultrahdr.write_picture(asked.out, made.picture, E, headroom=asked.headroom)
         elif to == "picture":
-            files.write_picture(out, made.picture)
+            files.write_picture(asked.out, made.picture)
         elif to == "jxl":
-            codes.write_jxl(out, screens.light(made.picture, E))
+            codes.write_jxl(asked.out, screens.light(made.picture, E))
         else:
-            v = screens.signal(screens.light(made.picture, E, headroom=headroom), primaries=primaries)
-            (codes.write_png if to == "png" else codes.write_avif)(out, v, primaries=primaries)
-    click.echo(f"{out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
+            light = screens.light(made.picture, E, headroom=asked.headroom)
+            v = screens.signal(light, primaries=asked.primaries)
+            (codes.write_png if to == "png" else codes.write_avif)(asked.out, v, primaries=asked.primaries)
+    click.echo(f"{asked.out}: {E.shape[1]} x {E.shape[0]}, {made.settings}")
 
 
 def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, Any]) -> None:

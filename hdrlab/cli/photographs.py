@@ -56,23 +56,7 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
 @click.option("--uncertainty", type=common.OUT, help="Map and standard deviation as two layers: .exr.")
 @click.option("--strict", is_flag=True, help="Exit with 3 where the map is doubtful; it is written, too.")
-def assemble(
-    photos: tuple[Path, ...],
-    out: Path,
-    times: str,
-    keep_times: bool,
-    stops: float | None,
-    mask: str | None,
-    calibrate: str | None,
-    tonemap: str,
-    picture: Path | None,
-    report: Path | None,
-    uncertainty: Path | None,
-    strict: bool,
-    merge: str,
-    response: str | Path,
-    **methods: str,
-) -> None:
+def assemble(asked: Any) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
     Exposure comes from EXIF (time, ISO, f-number), or from --times. A file that is called exif or estimate is
@@ -88,28 +72,30 @@ def assemble(
     from hdrlab.io.maps import layers
     from hdrlab.show.pages import wording
 
-    recover, metered = curves.method_or_curve(response), calibrate and common.reading(calibrate)
-    radiance.format_of(out)  # an unknown suffix is better known before the work than after it
-    if uncertainty:
-        require_suffix(uncertainty, [".exr"], "a map with its standard deviation")
-    kept = "stated" if keep_times or times == "stated" else "correct"
-    methods |= {"method": merge, "times": "estimate" if times == "estimate" else kept}
-    knobs = {"response": recover, "release": not (report or uncertainty)}
-    assembly = _assembled(read_bracket(photos, times, mask, stops), methods | knobs)
-    if uncertainty:
+    recover = curves.method_or_curve(asked.response)
+    metered = asked.calibrate and common.reading(asked.calibrate)
+    radiance.format_of(asked.out)  # an unknown suffix is better known before the work than after it
+    if asked.uncertainty:
+        require_suffix(asked.uncertainty, [".exr"], "a map with its standard deviation")
+    kept = "stated" if asked.keep_times or asked.times == "stated" else "correct"
+    methods = {stage: getattr(asked, stage) for stage in ("align", "weight", "ghosts", "flare")}
+    methods |= {"method": asked.merge, "times": "estimate" if asked.times == "estimate" else kept}
+    knobs = {"response": recover, "release": not (asked.report or asked.uncertainty)}
+    assembly = _assembled(read_bracket(asked.photos, asked.times, asked.mask, asked.stops), methods | knobs)
+    if asked.uncertainty:
         assembly = pipeline.measure_deviation(assembly)
     if metered:
         assembly = pipeline.calibrate(assembly, *metered)
     common.say("note", assembly.notes)
     common.say("warning", _shorten(assembly.doubts))
     comments = ["unit: cd/m^2"] * bool(metered) + [f"doubt: {doubt}" for doubt in assembly.doubts]
-    radiance.write_radiance(out, assembly.E, comments=comments)
-    if uncertainty and assembly.s is not None:
+    radiance.write_radiance(asked.out, assembly.E, comments=comments)
+    if asked.uncertainty and assembly.s is not None:
         both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
-        layers.write_layers(uncertainty, both, comments=comments)
-        click.echo(f"{uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
-    if picture or report:
-        rendered, settings = pipeline.develop_and_describe(assembly.E, tonemap)
+        layers.write_layers(asked.uncertainty, both, comments=comments)
+        click.echo(f"{asked.uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
+    if asked.picture or asked.report:
+        rendered, settings = pipeline.develop_and_describe(assembly.E, asked.tonemap)
         if assembly.fallback:
             from hdrlab.fast import mertens
 
@@ -117,16 +103,16 @@ def assemble(
             assembly = assembly._replace(notes=(*assembly.notes, f"{FUSION}, for {assembly.fallback}"))
             rendered = np.rint(255 * mertens.fuse(assembly.bracket.images).clip(0, 1)).astype(np.uint8)
             settings = FUSION
-        if picture:
-            files.write_picture(picture, rendered)
-            click.echo(f"{picture}: {settings}")
-        if report:
+        if asked.picture:
+            files.write_picture(asked.picture, rendered)
+            click.echo(f"{asked.picture}: {settings}")
+        if asked.report:
             from hdrlab.show.pages.report import write_report
 
-            recipe = {"response": response} | methods | {"tonemap": settings}
-            write_report(report, assembly, rendered, recipe=recipe)
-    click.echo(f"{out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
-    if strict and assembly.doubts:
+            recipe = {"response": asked.response} | methods | {"tonemap": settings}
+            write_report(asked.report, assembly, rendered, recipe=recipe)
+    click.echo(f"{asked.out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
+    if asked.strict and assembly.doubts:
         click.get_current_context().exit(3)
 
 
