@@ -1,7 +1,7 @@
 """Exposure ratios of neighbouring frames, and the response, by least squares over flat patches.
 
 H   pair tables     (P - 1, C, 256, 256): patches of level a in frame j, b in the next; see `flat_patches`
-V   the same, weighted by trust in the levels, and less where a patch does not fit
+V   the weights of what stands in them, by trust in the levels, and less where a patch does not fit: see Pairs
 B   ln stated times (P,); b = its steps (P - 1,)
 g   responses       (C, 256), ln exposure of each level
 x   corrections     (P,), ln(time / stated time) = Q y
@@ -26,7 +26,7 @@ from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_times
-from hdrlab.core.types import F64, Mask
+from hdrlab.core.types import F64, Indices, Mask
 from hdrlab.core.weights import second_differences
 
 W = weights.cut(weights.hat(), below=0.02)
@@ -44,8 +44,29 @@ FEWEST = 5
 MOST = 100
 # of weights by what is left, which then hardly change
 ROUNDS = 4
-# w(z) g''(z), as Debevec weights it
 CURVATURES = second_differences(W, 1)
+# of g^T S g = |w(z) g''(z)|^2, as Debevec weights it
+STIFFNESS = CURVATURES.T @ CURVATURES
+
+
+class Pairs(NamedTuple):
+    """What stands in pair tables, (M,) each: of step j and channel c, level a that becomes b, of weight V.
+
+    Of a hundred pairs of levels one occurs or none. `shape` is (P - 1, C).
+    """
+
+    j: Indices
+    c: Indices
+    a: Indices
+    b: Indices
+    V: F64
+    shape: tuple[int, int]
+
+    def total(self, values: F64) -> F64:
+        """Return the sum of values (M,) over each table, (P - 1, C)."""
+        out = np.zeros(self.shape)
+        np.add.at(out, (self.j, self.c), values)
+        return out
 
 
 class Fit(NamedTuple):
@@ -86,25 +107,34 @@ def remove_trend(x: F64, B: F64) -> F64:
     return min(left, key=lambda r: float(np.round(np.sqrt(np.abs(r)).sum(), 6)))
 
 
-def weight_pairs(H: F64) -> F64:
-    """Return V = w(a) w(b) H / SIGMA^2 of trusted pairs, no pair with more than MOST patches."""
-    V = PAIR * H
-    total = V.sum(axis=(1, 2, 3), keepdims=True)
-    return V * np.minimum(1, MOST / np.maximum(total, 1)) / SIGMA**2
+def trust_pairs(H: F64) -> Pairs:
+    """Return what stands in H, of weight w(a) w(b) H, or 0 where a level is not trusted."""
+    j, c, a, b = np.unravel_index(np.flatnonzero(H.ravel() != 0), H.shape)  # of one axis it is found fastest
+    return Pairs(j, c, a, b, PAIR[a, b] * H[j, c, a, b], H.shape[:2])
+
+
+def weight_pairs(H: F64) -> Pairs:
+    """Return the trusted pairs, weighted by w(a) w(b) H / SIGMA^2, no step with more than MOST patches."""
+    found = trust_pairs(H)
+    most = np.minimum(1, MOST / np.maximum(found.total(found.V).sum(axis=1), 1))
+    return found._replace(V=found.V * most[found.j] / SIGMA**2)
 
 
 def find_informative(H: F64) -> Mask:
     """Return which pairs of frames have at least FEWEST patches, (P - 1,)."""
-    return np.asarray((PAIR * H).sum(axis=(2, 3)).mean(axis=1) >= FEWEST)
+    found = trust_pairs(H)
+    return np.asarray(found.total(found.V).mean(axis=1) >= FEWEST)
 
 
-def solve_steps(V: F64, B: F64, Q: F64, *, g: F64 | None = None, sd: float, smoothness: float) -> Fit:
+def solve_steps(V: Pairs, B: F64, Q: F64, *, g: F64 | None = None, sd: float, smoothness: float) -> Fit:
     """Return the Fit of least squares: sum V (g(b) - g(a) - step)^2 + (smoothness w g'')^2 + (x / sd)^2."""
     b, F = np.diff(B), np.diff(Q, axis=0)
-    v = np.moveaxis(V.sum(axis=2) - V.sum(axis=3), 1, 0)
-    T = np.diag(V.sum(axis=(1, 2, 3)))
+    v = np.zeros((V.shape[1], V.shape[0], 256))
+    np.add.at(v, (V.c, V.j, V.b), V.V)
+    np.subtract.at(v, (V.c, V.j, V.a), V.V)
+    T = np.diag(V.total(V.V).sum(axis=1))
     if g is None:
-        answers = np.stack([np.linalg.solve(_penalty(V[:, c], smoothness), v[c].T) for c in range(len(v))])
+        answers = np.stack([np.linalg.solve(_penalty(V, c, smoothness), v[c].T) for c in range(len(v))])
         left = T - (v @ answers).sum(axis=0)  # of the weight, when each response has explained its part
         target = left @ b
     else:
@@ -113,19 +143,20 @@ def solve_steps(V: F64, B: F64, Q: F64, *, g: F64 | None = None, sd: float, smoo
     return Fit(answers @ (b + F @ y) if g is None else g, Q @ y)
 
 
-def _penalty(V: F64, smoothness: float) -> F64:
+def _penalty(V: Pairs, c: int, smoothness: float) -> F64:
     """Return S of g^T S g: patches connect levels (a graph's Laplacian), smoothness connects the rest."""
-    edges = V.sum(axis=0)
-    S = np.diag(edges.sum(axis=0) + edges.sum(axis=1)) - edges - edges.T
-    S += MOST / SIGMA**2 * smoothness**2 * CURVATURES.T @ CURVATURES
+    S = MOST / SIGMA**2 * smoothness**2 * STIFFNESS
+    a, b, weights = (each[V.c == c] for each in (V.a, V.b, V.V))
+    for row, column, sign in ((a, b, -1), (b, a, -1), (a, a, 1), (b, b, 1)):
+        np.add.at(S, (row, column), sign * weights)
     S[128, 128] += MOST / SIGMA**2  # the gauge, g(128) = 0, costs nothing: v sums to 0
-    return S + 1e-9 * np.trace(S) / len(S) * np.eye(len(S))
+    np.fill_diagonal(S, S.diagonal() + 1e-9 * np.trace(S) / len(S))
+    return S
 
 
-def step_residuals(found: Fit, B: F64) -> F64:
-    """Return g(b) - g(a) - (B + x)_j+1 + (B + x)_j for all pairs of levels, (P - 1, C, 256, 256)."""
-    g = found.g
-    return (g[:, None, :] - g[:, :, None]) - np.diff(B + found.x)[:, None, None, None]
+def step_residuals(V: Pairs, found: Fit, B: F64) -> F64:
+    """Return g(b) - g(a) - (B + x)_j+1 + (B + x)_j of each pair of levels, (M,)."""
+    return found.g[V.c, V.b] - found.g[V.c, V.a] - np.diff(B + found.x)[V.j]
 
 
 def fit_steps(
@@ -138,20 +169,20 @@ def fit_steps(
     V0 = V = weight_pairs(H)
     for _ in range(ROUNDS):
         found = solve_steps(V, B, Q, g=g, sd=sd * np.log(2), smoothness=smoothness)
-        r2 = step_residuals(found, B) ** 2
-        total = np.maximum(V.sum(axis=(2, 3), keepdims=True), 1e-9)
-        spread2 = (V * r2).sum(axis=(2, 3), keepdims=True) / total
-        V = V0 / (1 + r2 / (4 * np.maximum(spread2, CORE**2)))
+        r2 = step_residuals(V, found, B) ** 2
+        spread2 = V.total(V.V * r2) / np.maximum(V.total(V.V), 1e-9)
+        V = V0._replace(V=V0.V / (1 + r2 / (4 * np.maximum(spread2, CORE**2)[V.j, V.c])))
     return found
 
 
 def measure_biases(H: F64, B: F64, found: Fit, *, sizes: bool = False) -> F64:
     """Return by how many stops each step misses, (P - 1, C): weighted medians over patches, or of sizes."""
-    V, r = PAIR * H, step_residuals(found, B) / np.log(2)
+    V = trust_pairs(H)
+    r = step_residuals(V, found, B) / np.log(2)
     r = np.abs(r) if sizes else r
-    out = np.full(H.shape[:2], np.nan)
+    out = np.full(V.shape, np.nan)
     for j, c in np.ndindex(*out.shape):
-        used = V[j, c] > 0
+        used = (V.j == j) & (V.c == c) & (V.V > 0)
         if used.any():
-            out[j, c] = np.quantile(r[j, c][used], 0.5, weights=V[j, c][used], method="inverted_cdf")
+            out[j, c] = np.quantile(r[used], 0.5, weights=V.V[used], method="inverted_cdf")
     return out

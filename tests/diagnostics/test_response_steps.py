@@ -34,3 +34,26 @@ def test_a_tenth_of_the_patches_moves_the_steps_by_least_squares_and_hardly_the_
         np.abs(corrections(pair_tables(0.1), fit)).max() for fit in (plain, response_steps.fit_steps)
     )
     assert moved > 0.08 and held < moved / 3
+
+
+def test_least_squares_over_the_pairs_that_occur_are_those_over_one_equation_for_each():
+    H, sd, C = pair_tables(0.1), np.log(2) / 6, response_steps.CURVATURES
+    V, Q = response_steps.weight_pairs(H), response_steps.free_directions(B)
+    found = response_steps.solve_steps(V, B, Q, sd=sd, smoothness=1.0)
+    unit, F, k = np.sqrt(response_steps.MOST) / response_steps.SIGMA, np.diff(Q, axis=0), np.arange(len(V.V))
+    patches = np.zeros((len(k), 256 + Q.shape[1]))  # sqrt V (g(b) - g(a) - F y) = sqrt V step
+    np.add.at(patches, (k, V.b), 1)
+    np.add.at(patches, (k, V.a), -1)
+    patches[:, 256:] = -F[V.j]
+    smooth, prior = np.zeros((len(C), patches.shape[1])), np.zeros((Q.shape[1], patches.shape[1]))
+    smooth[:, :256], prior[:, 256:], gauge = (
+        unit * C,
+        np.eye(Q.shape[1]) / sd,
+        unit * np.eye(len(prior[0]))[[128]],
+    )
+    A = np.vstack([np.sqrt(V.V)[:, None] * patches, smooth, prior, gauge])
+    right = np.concatenate([np.sqrt(V.V) * np.diff(B)[V.j], np.zeros(len(A) - len(k))])
+    solution = np.linalg.lstsq(A, right)[0]
+    trusted = np.unique([V.a, V.b])
+    assert np.abs(found.x - Q @ solution[256:]).max() < 1e-5
+    assert np.abs((found.g[0] - solution[:256])[trusted]).max() < 1e-3
