@@ -3,6 +3,7 @@
 import csv
 import os
 import signal
+import sys
 import tempfile
 import threading
 from functools import cache
@@ -10,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import runs
 import threadpoolctl
 from hypothesis import settings
 from hypothesis.configuration import set_hypothesis_home_dir
@@ -21,6 +21,9 @@ from xdist.scheduler import LoadScopeScheduling
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 
+# with it nbformat's schemas know addresses of all alphabets, which no notebook has; when loaded it compiles a
+# grammar, two seconds for each worker
+sys.modules.setdefault("rfc3987_syntax", None)
 pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
 settings.load_profile("hdrlab")
@@ -167,4 +170,6 @@ def kept(tmp_path_factory):
 @pytest.fixture(scope="session")
 def executed(kept):
     """executed(path) -> the notebook as it was run from the top: its file, and its untrue sentences."""
+    import runs  # it loads what runs notebooks, which takes a second
+
     return lambda path: runs.run_once(path, kept)
