@@ -33,8 +33,7 @@ def run_once(path: Path, kept: Path) -> Ran:
 
     It is kept where `hdrlab site` would keep it in its cache.
     """
-    key = execute._key(path, execute.library_key())
-    executed = kept / "executed" / f"{path.stem}-{key}.ipynb"
+    executed = execute.place(path, kept, execute.library_key())
     judged = (
         kept
         / "judged"

@@ -46,6 +46,12 @@ def library_key(*, course: bool = False) -> str:
     return digest.hexdigest()
 
 
+def place(source: Path, cache: Path, library: str) -> Path:
+    """Return where the executed copy of a notebook is kept, which ran on a library of that key."""
+    own = hashlib.sha256(library.encode() + source.read_bytes()).hexdigest()[:16]
+    return cache / "executed" / f"{source.stem}-{own}.ipynb"
+
+
 def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Iterator[Done]:
     """Run notebooks, at most `jobs` at a time, and yield each when it is done; first those that are kept.
 
@@ -57,8 +63,7 @@ def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Itera
     key = library_key()
     waiting = []
     for source in notebooks:
-        own = hashlib.sha256(key.encode() + source.read_bytes()).hexdigest()[:16]
-        kept = cache / "executed" / f"{source.stem}-{own}.ipynb"
+        kept = place(source, cache, key)
         if kept.exists():
             yield Done(source, kept, False)
         else:
