@@ -18,9 +18,7 @@ from hdrlab.cli import common, curves
 @click.option("--rate", type=float, default=25.0, help="Frames a second of the film that is written.")
 @click.option("--key", type=float, default=0.18, help="What the log average of the frames becomes.")
 @click.option("--span", type=click.IntRange(0), default=1, help="Frames before and after to adapt to, too.")
-def video(
-    frames: Path, out: Path, times: str, response: str | Path, rate: float, key: float, span: int
-) -> None:
+def video(asked: Any) -> None:
     """Make a film of high dynamic range out of FRAMES whose exposures take turns.
 
     FRAMES is a folder of photographs, sorted by name, or a film, which wants the extra `video`. The
@@ -36,20 +34,20 @@ def video(
     from hdrlab.beyond import video as merging
     from hdrlab.io import sequence
 
-    turn = seconds(times)
-    require = sequence.require_writable if out.suffix else sequence.require_new
-    require(out)  # better known before the work
-    count = sequence.count(frames)
-    film = sequence.read(frames)
+    turn = seconds(asked.times)
+    require = sequence.require_writable if asked.out.suffix else sequence.require_new
+    require(asked.out)  # better known before the work
+    count = sequence.count(asked.frames)
+    film = sequence.read(asked.frames)
     begun = list(islice(film, len(turn)))
-    g = recovered(response, begun, turn)
+    g = recovered(asked.response, begun, turn)
     steps = merging.merge_steps(chain(begun, film), turn, g)
     maps = (state.E for state in common.progress(steps, "merging", count))
-    if out.suffix:
-        written = sequence.write(out, pictures(maps, key=key, span=span), rate=rate)
+    if asked.out.suffix:
+        written = sequence.write(asked.out, pictures(maps, key=asked.key, span=asked.span), rate=asked.rate)
     else:
-        written = sequence.write_maps(out, maps)
-    click.echo(f"{out}: {written} frames, {begun[0].shape[1]} x {begun[0].shape[0]}")
+        written = sequence.write_maps(asked.out, maps)
+    click.echo(f"{asked.out}: {written} frames, {begun[0].shape[1]} x {begun[0].shape[0]}")
 
 
 def seconds(text: str) -> list[float]:
