@@ -83,11 +83,8 @@ class Bits:
             self.take(2 * (passes - 1 + smaller))
             for _ in range(smaller):
                 self.pick((0, 0), (1, 0), (2, 0), (0, 3))
-        return regular and (self.take(1), self.take(2), self.take(1)) == (
-            0,
-            0,
-            1,
-        )  # placed, blended, the last
+        placed, blended, last = self.take(1), self.take(2), self.take(1)
+        return bool(regular and last and not (placed or blended))
 
 
 def boxes(data: bytes) -> Iterator[tuple[bytes, bytes]]:

@@ -22,14 +22,9 @@ def run(folder: Path, job: Path, files: Sequence[Path], patience: float) -> Iter
     empty = folder / "empty"
     empty.mkdir()
     with (folder / "said").open("wb") as said:
-        process = subprocess.Popen(
-            _command(job, empty, files),
-            cwd=empty,
-            env=_environment(folder),
-            stdin=subprocess.DEVNULL,
-            stdout=said,
-            stderr=said,
-        )
+        streams: dict[str, Any] = {"stdin": subprocess.DEVNULL, "stdout": said, "stderr": said}
+        words = _command(job, empty, files)
+        process = subprocess.Popen(words, cwd=empty, env=_environment(folder), **streams)
         try:
             yield from _followed(process, folder / "lines", patience)
         finally:

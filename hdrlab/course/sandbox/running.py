@@ -199,15 +199,8 @@ def start(
     stdin: int = subprocess.DEVNULL,
 ) -> subprocess.Popen[bytes]:
     """Return the process of a command: what it says is kept in case it fails."""
-    return subprocess.Popen(
-        words,
-        stdin=stdin,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        cwd=folder,
-        env=environment,
-        pass_fds=inherited,
-    )
+    streams: dict[str, Any] = {"stdin": stdin, "stdout": subprocess.DEVNULL, "stderr": subprocess.PIPE}
+    return subprocess.Popen(words, cwd=folder, env=environment, pass_fds=inherited, **streams)
 
 
 def command(python: str, program: str, control: int, packages: Mapping[str, str]) -> list[str]:

@@ -185,14 +185,9 @@ def parts(
     if magic != b"v/1\x01":
         raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
     # the module prints what is wrong with a part, and leaves the part out
-    open_parts, printed = OpenEXR.File, io.StringIO()
+    which, printed = (str(path), separate_channels, header_only), io.StringIO()
     try:
-        with (
-            PRINTING,
-            silence(2),
-            contextlib.redirect_stdout(printed),
-            open_parts(str(path), separate_channels, header_only) as file,
-        ):
+        with PRINTING, silence(2), contextlib.redirect_stdout(printed), OpenEXR.File(*which) as file:
             found = []
             for part in file.parts[:count]:
                 channels = [(one.name, one.xSampling, one.ySampling) for one in part.header["channels"]]

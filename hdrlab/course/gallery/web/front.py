@@ -47,11 +47,8 @@ class Front:
     def page(self, name: str, status: int = 200, **words: Any) -> HTMLResponse:
         """Return a page."""
         set_up = store.settings(self.db)
-        known = {
-            "title": set_up.title,
-            "open": set_up.is_open(self.clock()),
-            "closes": store.format_time(set_up.closes),
-        }
+        closes = store.format_time(set_up.closes)
+        known = {"title": set_up.title, "open": set_up.is_open(self.clock()), "closes": closes}
         return HTMLResponse(self.pages.get_template(name).render(known | words), status)
 
     def voter(self, request: Request) -> tuple[store.Voter, tokens.Shown]:
