@@ -3,53 +3,93 @@
 `asked` holds the options of a class by name, as the command line gave them.
 """
 
+import json
 from collections.abc import Mapping, Sequence
 from datetime import UTC
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import click
 
-from hdrlab.cli import common
+from hdrlab.cli import common, grading
 from hdrlab.course import plan as plans
 
+# options of a run; the others are of the class, and a regrade takes them as they were
+OF_A_RUN = ("submission", "out", "only", "since", "regrade", "jobs", "cluster")
+
 if TYPE_CHECKING:
-    from hdrlab.course.classroom.handins import Handin
+    from hdrlab.course.classroom.handins import Found, Handin
     from hdrlab.course.classroom.journal import Done, Executor, Piece
     from hdrlab.course.classroom.run import Course
 
 
-def grade_folder(folder: Path, out: Path, course: "Course", asked: Any) -> None:
-    """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course.classroom import handins, journal, moodle, overview
+class Class(NamedTuple):
+    """A class that is graded: by what, what has come, what there is to do, and the options."""
+
+    course: "Course"
+    found: "Found"
+    pieces: "list[Piece]"
+    asked: Any
+
+
+def class_of(conditions: plans.Conditions, asked: Any) -> Class:
+    """Return a class with what it has handed in, as the options of `hdrlab grade` name it."""
+    from hdrlab.course.classroom import handins, marks
+    from hdrlab.course.classroom import roster as lists
     from hdrlab.course.classroom import run as classroom
 
+    if asked.roster is None:
+        raise ValueError("expected --roster, which says who is in the class")
+    homework = grading.homework_of(asked.submission, asked.homework, asked.plan)
+    late, before = plans.read(asked.plan).late, marks.read(asked.before)
+    course = classroom.Course(lists.read(asked.roster), homework, conditions, late, before)
     times = handins.read_times(asked.received) if asked.received else {}
-    found = handins.find(folder, course.roster, times)
+    found = handins.find(asked.submission, course.roster, times)
+    return Class(course, found, classroom.pieces(found.handins, homework, conditions), asked)
+
+
+def grade_folder(whole: Class) -> None:
+    """Grade what a class has handed in; what was graded before is not graded again."""
+    from hdrlab.course.classroom import journal
+    from hdrlab.course.classroom import run as classroom
+
+    course, found, pieces, asked = whole
     common.say("note", found.notes)
+    options = {name: value for name, value in vars(asked).items() if name not in OF_A_RUN}
     since = asked.since.replace(tzinfo=UTC) if asked.since else None
-    everything = classroom.pieces(found.handins, course.homework, course.conditions)
     wanted = classroom.select_handins(found.handins, course.roster, asked.only, since)
-    with journal.lock_folder(out):
-        done = _graded([piece for piece in everything if piece.owner in wanted], out, course, asked)
+    with journal.lock_folder(asked.out):
+        text = json.dumps([asked.submission, options], default=lambda path: str(path.resolve()))
+        journal.write(asked.out / "asked.json", text.encode())
+        done = graded(whole, [piece for piece in pieces if piece.owner in wanted], asked.out)
         lost = [f"{one.piece.owner}: {one.why}" for one in done if one.why]
         common.say("warning", lost)
-        counted = overview.tally(classroom.read(out, everything))
-        *_, page = overview.write(out, course, found, counted, lost)
-        if asked.moodle:
-            rows = overview.marks_of(course, found, counted)
-            common.say("note", moodle.write(out, asked.moodle, rows, course.roster, course.homework))
-        _compare(out, course, found.handins)
+        page, count = write_books(whole, lost)
+        _compare(asked.out, course, found.handins)
     fresh = sum(one.fresh for one in done if one.result)
-    click.echo(f"{page}: {len(counted.points)} of {len(found.handins)} graded, {fresh} of them now")
+    click.echo(f"{page}: {count} of {len(found.handins)} graded, {fresh} of them now")
 
 
-def _graded(wanted: "Sequence[Piece]", out: Path, course: "Course", asked: Any) -> "list[Done]":
+def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
+    """Write all that is about the whole class; return its page, and how many works have a result."""
+    from hdrlab.course.classroom import moodle, overview
+    from hdrlab.course.classroom import run as classroom
+
+    course, found, pieces, asked = whole
+    counted = overview.tally(classroom.read(asked.out, pieces))
+    *_, page = overview.write(asked.out, course, found, counted, lost)
+    if asked.moodle:
+        rows = overview.marks_of(course, found, counted)
+        common.say("note", moodle.write(asked.out, asked.moodle, rows, course.roster, course.homework))
+    return page, len(counted.points)
+
+
+def graded(whole: Class, wanted: "Sequence[Piece]", out: Path) -> "list[Done]":
     """Return what became of each submission; its feedback is written as soon as its result is there."""
     from hdrlab.course.classroom import journal
     from hdrlab.course.classroom import run as classroom
 
-    folder = out / "results"
+    folder, course, asked = out / "results", whole.course, whole.asked
     before, rest = ([], [*wanted]) if asked.regrade else journal.parted(folder, wanted)
     done = [classroom.write_feedback(out, one) for one in before]
     if before:
@@ -94,17 +134,3 @@ def _executor(course: "Course", asked: Any) -> "Executor":
     from hdrlab.course.classroom.executors import cluster
 
     return cluster.Cluster(asked.cluster, grader.result, grader.ready)
-
-
-def course_of(
-    homework: plans.Homework, conditions: plans.Conditions, plan: Path | None, asked: Any
-) -> "Course":
-    """Return what a class is graded by, read from the files that were named."""
-    from hdrlab.course.classroom import marks
-    from hdrlab.course.classroom import roster as lists
-    from hdrlab.course.classroom import run as classroom
-
-    if asked.roster is None:
-        raise ValueError("expected --roster, which says who is in the class")
-    late, before = plans.read(plan).late, marks.read(asked.before)
-    return classroom.Course(lists.read(asked.roster), homework, conditions, late, before)

@@ -38,7 +38,7 @@ def check(asked: Any) -> None:
     from hdrlab.course.reports import feedback
     from hdrlab.io.files import write
 
-    homework = _homework(asked.submission, asked.homework, asked.plan)
+    homework = homework_of(asked.submission, asked.homework, asked.plan)
     if asked.task is not None:
         tasks = {one.id: one for one in homework.tasks}
         if asked.task not in tasks:
@@ -90,15 +90,14 @@ def grade(asked: Any) -> None:
         raise ValueError("expected --secret-file with --student: else anybody could draw the same inputs")
     secret, note = secret_of(asked.secret_file)
     conditions = plans.Conditions(asked.tier, asked.student, secret, asked.hidden, asked.timeout)
-    homework = _homework(asked.submission, asked.homework, asked.plan)
     if asked.submission.is_dir():
         from hdrlab.cli import classroom
 
-        course = classroom.course_of(homework, conditions, asked.plan, asked)
         with temporary_folder():
-            classroom.grade_folder(asked.submission, asked.out, course, asked)
+            classroom.grade_folder(classroom.class_of(conditions, asked))
         click.echo(note, nl=bool(note), err=True)
         return
+    homework = homework_of(asked.submission, asked.homework, asked.plan)
     result = _graded(asked.submission, homework, conditions)
     click.echo(feedback.text(result, private=True))
     if not result.for_credit:
@@ -121,7 +120,7 @@ def doctor() -> None:
             click.echo(f"{'':<10}{remedy}")
 
 
-def _homework(submission: Path, name: str | None, plan: Path | None) -> plans.Homework:
+def homework_of(submission: Path, name: str | None, plan: Path | None) -> plans.Homework:
     """Return the homework that is asked for, or the one whose name stands in the file's."""
     homeworks = plans.read(plan).homeworks
     if name is None:

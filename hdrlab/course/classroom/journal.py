@@ -163,14 +163,14 @@ def done_steps(pieces: Sequence[Piece], executor: Executor, folder: Path) -> Ite
     folder : of the results, made where it is missing
     """
     make_private(folder)
-    older = _older(folder, pieces)
+    former = older(folder, pieces)
     for ending in _endings(pieces, executor):
         piece, result = ending.piece, ending.result
         if result is None:
             yield Done(piece, None, plain(f"it ended {TRIES} times without a result: {ending.why}", 400))
             continue
         write(place(folder, piece), result)
-        for path in older.get(piece.owner, ()):
+        for path in former.get(piece.owner, ()):
             path.unlink(missing_ok=True)
         yield Done(piece, place(folder, piece))
 
@@ -196,7 +196,7 @@ def _endings(pieces: Sequence[Piece], executor: Executor) -> Iterator[Ending]:
                 waiting.appendleft(ending.piece)
 
 
-def _older(folder: Path, pieces: Sequence[Piece]) -> dict[str, list[Path]]:
+def older(folder: Path, pieces: Sequence[Piece]) -> dict[str, list[Path]]:
     """Return the results of other keys, by owner."""
     names = {piece.owner: place(folder, piece).name for piece in pieces}
     found: dict[str, list[Path]] = {}

@@ -82,18 +82,22 @@ def write(out: Path, course: Course, found: Found, counted: Tally, lost: Sequenc
     return [*files, out / "class.html"]
 
 
+def histogram(scores: Iterable[float], whole: float) -> list[tuple[int, int]]:
+    """Return from which percent of the points on, and how many of the scores, in BINS parts."""
+    bins = Counter(min(BINS - 1, int(BINS * score / max(whole, 1e-9))) for score in scores)
+    return [(100 // BINS * k, bins[k]) for k in range(BINS)]
+
+
 def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Sequence[Mark] = ()) -> str:
     """Return the class page; each row of the gradebook leads to what its student reads."""
     scores = counted.points.values()
-    whole = max(homework.points, 1e-9)
-    bins = Counter(min(BINS - 1, int(BINS * score / whole)) for score in scores)
     return render_page(
         Path(__file__).parent,
         PAGE,
         homework=homework,
         count=len(scores),
         median=statistics.median(scores) if scores else 0,
-        bins=[(100 // BINS * k, bins[k]) for k in range(BINS)],
+        bins=histogram(scores, homework.points),
         outcomes=counted.outcomes,
         met=counted.met.most_common(),
         notes=list(notes),

@@ -1,0 +1,363 @@
+"""A regrade: seen before it counts, under a policy, whole or not at all, with a signed line."""
+
+import json
+import os
+import random
+import signal
+import warnings
+from fractions import Fraction
+from hashlib import sha256
+from pathlib import Path
+
+import pytest
+from hats import PLAN
+
+from hdrlab import cli
+from hdrlab.cli import classroom as command
+from hdrlab.course.classroom import regrade
+from hdrlab.course.classroom.journal import Ending
+from hdrlab.course.reports import results, sheets
+from hdrlab.course.reports.results import Check, Result
+
+STUDENTS = {"b1": "t", "b2": "t", "b3": "b3", "b4": "b4", "b5": "b5"}
+TEAMS = sorted({*STUDENTS.values()})
+BOOKS = ("gradebook.csv", "canvas.csv", "moodle.csv", "what_if.csv", "class.html")
+HISTORIES = int(os.environ.get("HDRLAB_HISTORIES", "20"))  # a thousand take a quarter of an hour
+WORDS = ["--homework", "hw2", "--plan", "plan.toml", "--roster", "roster.csv", "--received", "times.csv"]
+WORDS += ["--hidden", "checks"]
+OPEN = [*WORDS]
+WORDS += ["--secret-file", "secret.txt"]
+
+
+class Guessing:
+    """An executor whose checks draw lots: by what was handed in, and by the text of the hidden check."""
+
+    def __init__(self, course, asked):
+        self.course, self.waiting, self.check = course, [], Path("checks/test_hat.py").read_bytes()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        pass
+
+    def start(self, piece, *, alone=False):
+        self.waiting.append(piece)
+        return True
+
+    def endings(self):
+        done, self.waiting = self.waiting, []
+        return [Ending(piece, self.result(piece)) for piece in done]
+
+    def result(self, piece):
+        digest = sha256(piece.path.read_bytes() + self.check).digest()
+        checks = []
+        for k, byte in enumerate(digest[:5]):
+            outcome, earned = ("holds", 2) if byte % 2 else ("fails", 0)
+            words = f"test_{k}", f"The {k}. promise", Fraction(earned), Fraction(2), outcome
+            checks.append(Check("hat", *words, hidden=k == 4))
+        handed = sha256(piece.path.read_bytes()).hexdigest()
+        found = Result(
+            piece.owner,
+            "hw2",
+            "T",
+            "strict",
+            tuple(checks),
+            {},
+            (),
+            handed,
+            digest.hex(),
+            "x",
+            {"hdrlab": "1"},
+        )
+        return results.to_json(found)
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    """Make a class of five, two of them a team, and go there; its checks draw lots."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(command, "_executor", Guessing)
+    monkeypatch.setattr(command, "_compare", lambda *_: None)
+    monkeypatch.setattr(os, "fsync", lambda _: None)  # which is for the mains switch: a kill leaves the disk
+    make_class(tmp_path)
+    return tmp_path
+
+
+def make_class(folder):
+    (folder / "in").mkdir()
+    (folder / "checks").mkdir()
+    rows = [f"{who},Student {who},{team if team != who else ''}" for who, team in STUDENTS.items()]
+    (folder / "roster.csv").write_text("\n".join(["student,name,team", *rows]) + "\n")
+    (folder / "plan.toml").write_text(PLAN)
+    (folder / "secret.txt").write_text("a secret of sixteen letters and more\n")
+    correct("0")
+    for team in TEAMS:
+        hand_in(team, "first", 0)
+
+
+def correct(version):
+    Path("checks/test_hat.py").write_text(f"# version {version}\n")
+
+
+def hand_in(team, text, days):
+    Path(f"in/{team}_hw2.py").write_text(f"# {team}: {text}\n")
+    table = Path("times.csv")
+    lines = table.read_text().splitlines() if table.exists() else ["file,received"]
+    times = dict(line.split(",") for line in lines) | {f"{team}_hw2.py": f"2026-10-{23 + days}T12:00Z"}
+    table.write_text("".join(f"{name},{when}\n" for name, when in times.items()))
+
+
+def run(*words, code=None):
+    with pytest.raises(SystemExit) as ended:
+        cli.run([str(word) for word in words])
+    assert ended.value.code == code
+
+
+def grade(out="out", *more):
+    run("grade", "in", *WORDS, "-o", out, *more)
+
+
+def work(out="out"):
+    """Return each student's points before what being late costs."""
+    return {row["student"]: float(row["work"]) for row in sheets.read_csv(Path(out) / "gradebook.csv")}
+
+
+def contents(out, *parts):
+    """Return what stands in a folder, or in parts of it, by name."""
+    found = [path for part in parts for path in (Path(out) / part, *(Path(out) / part).rglob("*"))]
+    return {str(path.relative_to(out)): path.read_bytes() for path in found if path.is_file()}
+
+
+def moved(seed, direction):
+    """Return a version of the check by which some work rises, or falls, against version 0."""
+    for version in range(seed, seed + 50):
+        correct(0)
+        before = {team: json.loads(guessed(team))["score"] for team in TEAMS}
+        correct(version)
+        after = {team: json.loads(guessed(team))["score"] for team in TEAMS}
+        if any(direction * (after[team] - before[team]) > 0 for team in TEAMS):
+            return before, after
+    raise AssertionError("no version moves any work that way")
+
+
+def guessed(team):
+    return Guessing(None, None).result(type("Piece", (), {"owner": team, "path": Path(f"in/{team}_hw2.py")}))
+
+
+def test_who_moves_by_how_much_and_why_is_seen_before_anything_counts(folder, capsys):
+    before, after = moved(1, -1)
+    version = Path("checks/test_hat.py").read_text()
+    correct(0)
+    grade()
+    whole = contents("out", "")
+    Path("checks/test_hat.py").write_text(version)
+    capsys.readouterr()
+    run("regrade", "out", "--homework", "hw2")
+    said = capsys.readouterr().out
+    now = contents("out", "")
+    assert {name: data for name, data in now.items() if not name.startswith("regrade")} == whole
+    for team in TEAMS:
+        line = next((one for one in said.splitlines() if one.startswith(f"{team} ")), "")
+        assert bool(line) == (before[team] != after[team])
+        assert not line or f"{before[team]:g} -> {after[team]:g}" in line and "hat: The" in line
+    up = sum(after[team] > before[team] for team in TEAMS)
+    down = sum(after[team] < before[team] for team in TEAMS)
+    assert f"{len(TEAMS)} were graded anew: {up} would move up, {down} down" in said
+    page = Path("out/regrade/regrade.html").read_text()
+    assert "→" in page and f"{up + down} of {len(TEAMS)} works would get other points" in page
+    assert all(f"feedback/{team}/feedback.html" in page for team in TEAMS if before[team] != after[team])
+
+
+def test_what_is_applied_is_what_grading_from_scratch_gives_and_the_old_results_stay(folder):
+    grade()
+    old = contents("out", "results")
+    correct("other")
+    run("regrade", "out", "--apply", "--why", "the check was wrong")
+    grade("scratch")
+    parts = (*BOOKS, "results", "feedback")
+    assert contents("out", *parts) == contents("scratch", *parts)
+    assert {Path(name).name: data for name, data in contents("out", "history/1").items()} == {
+        Path(name).name: data for name, data in old.items()
+    }
+    assert all(results.from_json(data).homework == "hw2" for data in old.values())
+    grade()
+    assert contents("out", *parts) == contents("scratch", *parts)
+
+
+def test_under_never_lower_nobody_falls_also_not_by_the_next_run(folder):
+    _, after = moved(1, -1)
+    version = Path("checks/test_hat.py").read_text()
+    correct(0)
+    grade()
+    before = work()
+    Path("checks/test_hat.py").write_text(version)
+    run("regrade", "out", "--policy", "never-lower", "--apply")
+    expected = {who: max(before[who], after[team]) for who, team in STUDENTS.items()}
+    assert work() == expected
+    grade()
+    run("regrade", "out", "--apply")
+    assert work() == expected
+
+
+def test_only_who_is_listed_or_has_asked_moves(folder):
+    grade()
+    before = work()
+    while True:
+        correct(random.random())
+        after = {who: json.loads(guessed(team))["score"] for who, team in STUDENTS.items()}
+        if all(before[who] != after[who] for who in STUDENTS):
+            break
+    Path("asked.csv").write_text('student,task,words\nB3,hat,"the middle, please"\n')
+    run("regrade", "out", "--policy", "only-listed", "--only", "b1", "--requests", "asked.csv", "--apply")
+    listed = ("b1", "b2", "b3")  # of a team, both
+    assert work() == {who: (after if who in listed else before)[who] for who in STUDENTS}
+    assert "hat: the middle, please" in Path("out/regrade/regrade.html").read_text()
+
+
+def test_who_asked_and_does_not_move_is_answered_too(folder):
+    grade()
+    Path("asked.csv").write_text("student,task,words\nb4,hat,<script>\n")
+    run("regrade", "out", "--requests", "asked.csv")
+    page = Path("out/regrade/regrade.html").read_text()
+    assert "<h2>Asked, and not moved</h2>" in page and "hat: &lt;script&gt;" in page
+    assert "<li><b>b4</b>" in page
+
+
+def test_the_journal_has_a_line_for_each_regrade_and_one_that_was_changed_is_found(folder, capsys):
+    grade()
+    before = work()
+    for version in ("a", "b"):
+        correct(version)
+        run("regrade", "out", "--apply", "--why", f"version {version}")
+    log = Path("out/journal.jsonl")
+    lines = [json.loads(one) for one in log.read_text().splitlines()]
+    assert [(one["number"], one["why"], one["policy"]) for one in lines] == [
+        (1, "version a", "replace"),
+        (2, "version b", "replace"),
+    ]
+    points = {team: before[who] for who, team in STUDENTS.items()}
+    for line in lines:
+        assert all(points[team] == old for team, (old, _) in line["moved"].items())
+        points |= {team: new for team, (_, new) in line["moved"].items()}
+    assert {who: points[team] for who, team in STUDENTS.items()} == work()
+    assert lines[1]["before"] == lines[0]["signature"]
+    correct("c")
+    whole = contents("out", *BOOKS, "results")
+    for changed in (
+        log.read_text().replace("version a", "version x"),
+        log.read_text().splitlines(keepends=True)[1],
+        log.read_text().replace(lines[1]["signature"], lines[0]["signature"]),
+    ):
+        kept = log.read_text()
+        log.write_text(changed)
+        capsys.readouterr()
+        run("regrade", "out", "--apply", code=2)
+        assert "expected a line that the course's secret has signed" in capsys.readouterr().err
+        assert contents("out", *BOOKS, "results") == whole
+        log.write_text(kept)
+
+
+@pytest.mark.parametrize(
+    ("prepare", "words", "said"),
+    [
+        (lambda: None, [], "expected the results of a class that `hdrlab grade` has graded"),
+        (lambda: grade("out"), ["--requests", "roster.csv"], "expected the columns student, task, words"),
+        (lambda: grade("out"), ["--only", "b9"], "expected a student of the roster, got 'b9'"),
+        (lambda: (run("grade", "in", *OPEN, "-o", "out"), correct("1")), ["--apply"], "with --secret-file"),
+    ],
+)
+def test_what_cannot_be_regraded_is_told_in_a_line(folder, capsys, prepare, words, said):
+    Path("out").mkdir()
+    prepare()
+    capsys.readouterr()
+    run("regrade", "out", *words, code=2)
+    told = capsys.readouterr().err
+    assert said in told and told.count("\n") == 1
+
+
+def killed(rng, *words):
+    """Run a command in a process that kills itself before one of the changes that it makes to the disk.
+
+    Returns whether it was killed.
+    """
+    left = rng.randrange(1, 60)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)  # of forking beside threads
+        child = os.fork()
+    if not child:
+
+        def counted(change):
+            def changed(*args, **kwargs):
+                nonlocal left
+                left -= 1
+                if not left:
+                    os.kill(os.getpid(), signal.SIGKILL)
+                return change(*args, **kwargs)
+
+            return changed
+
+        os.replace, os.unlink, os.rmdir = map(counted, (os.replace, os.unlink, os.rmdir))
+        Path.unlink, Path.mkdir = map(counted, (Path.unlink, Path.mkdir))
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
+        os.dup2(os.open(os.devnull, os.O_WRONLY), 2)
+        try:
+            cli.run([str(word) for word in words])
+        except SystemExit as ended:
+            os._exit(0 if ended.code is None else 1)
+        finally:
+            os._exit(3)
+    status = os.waitpid(child, 0)[1]
+    assert os.WIFSIGNALED(status) or os.WEXITSTATUS(status) == 0, "the command failed"
+    return os.WIFSIGNALED(status)
+
+
+def lived(rng):
+    """Live through a history of a class, and return how often a command was killed in it."""
+    kills, version = 0, 0
+    grade()
+    for _ in range(rng.randrange(2, 7)):
+        event = rng.choice(["correct", "hand in", "grade", "regrade", "regrade", "never-lower"])
+        if event == "hand in":
+            hand_in(rng.choice(TEAMS), rng.random(), rng.randrange(0, 5))
+        elif event == "grade":
+            kills += killed(rng, "grade", "in", *WORDS, "-o", "out")
+        elif event == "regrade":
+            more = rng.choice([[], ["--apply"], ["--apply", "--policy", "only-listed", "--only", "b3"]])
+            kills += killed(rng, "regrade", "out", *more)
+        elif event == "never-lower":
+            grade()
+            before, version = work(), version + 1
+            correct(version)
+            for _ in range(3):
+                if not killed(rng, "regrade", "out", "--policy", "never-lower", "--apply"):
+                    break
+                kills += 1
+            run("regrade", "out", "--policy", "never-lower", "--apply")
+            assert all(after >= before[who] for who, after in work().items())
+        else:
+            version += 1
+            correct(version)
+    return kills
+
+
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="kills processes that it has forked")
+def test_after_any_history_what_is_applied_equals_grading_from_scratch(folder):
+    rng, kills = random.Random(25), 0
+    for number in range(HISTORIES):
+        home = folder / f"class{number}"
+        home.mkdir()
+        os.chdir(home)
+        make_class(home)
+        kills += lived(rng)
+        correct(f"last {number}")  # of which no result is there yet
+        while killed(rng, "regrade", "out", "--apply"):
+            kills += 1
+        run("regrade", "out", "--apply")
+        grade("scratch")
+        parts = (*BOOKS, "results", "feedback")
+        assert contents("out", *parts) == contents("scratch", *parts), f"class {number}"
+        assert not list(Path("out").rglob(".hdrlab-*"))
+        secret = Path("secret.txt").read_text().strip()
+        assert regrade.signed_lines(Path("out"), secret)
+    assert kills > HISTORIES
