@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 from contextlib import contextmanager, suppress
+from functools import partial
 from pathlib import Path
 from unittest import mock
 
@@ -212,3 +213,17 @@ def test_another_hdrlab_on_the_cluster_is_an_error_that_says_both(address, tmp_p
 def test_a_worker_that_cannot_do_the_work_is_named(address, tmp_path):
     with pytest.raises(ValueError, match="tcp://.* cannot do it: no strict tier here"):
         graded(address, tmp_path, ready=unable)
+
+
+def die_once(mark):
+    with suppress(FileExistsError):
+        mark.touch(exist_ok=False)
+        os.kill(os.getpid(), signal.SIGKILL)
+
+
+def test_a_worker_that_is_lost_while_it_is_asked_ends_no_run(tmp_path):
+    with clustered(2, 1, at_once=2) as running:
+        ready = partial(die_once, tmp_path / "died")
+        done, results = graded(running.scheduler_address, tmp_path, ready=ready)
+    assert (tmp_path / "died").exists()
+    assert results == whole(tmp_path) and not any(one.why for one in done)
