@@ -5,10 +5,10 @@ An alpha channel is left out: it says how much a pixel covers, and its radiance 
 The picture is the display window: where the data window is smaller, the rest is 0; where larger, it is cut.
 """
 
-import contextlib
 import errno
 import io
 from collections.abc import Sequence
+from contextlib import redirect_stdout
 from pathlib import Path
 from threading import Lock
 from typing import Any, NamedTuple
@@ -185,9 +185,9 @@ def parts(
     if magic != b"v/1\x01":
         raise ValueError(f"{path}: expected an OpenEXR file, got {magic!r}")
     # the module prints what is wrong with a part, and leaves the part out
-    which, printed = (str(path), separate_channels, header_only), io.StringIO()
+    opened, which = OpenEXR.File, (str(path), separate_channels, header_only)  # that it lacks is no damage
     try:
-        with PRINTING, silence(2), contextlib.redirect_stdout(printed), OpenEXR.File(*which) as file:
+        with PRINTING, silence(2), redirect_stdout(printed := io.StringIO()), opened(*which) as file:
             found = []
             for part in file.parts[:count]:
                 channels = [(one.name, one.xSampling, one.ySampling) for one in part.header["channels"]]
