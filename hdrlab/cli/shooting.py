@@ -12,8 +12,7 @@ from hdrlab.cli import common, photographs
 @click.option("--frames", type=click.IntRange(2), default=7, help="How many photographs.")
 @click.option("--stops", type=click.FloatRange(0, min_open=True), default=2.0, help="From one to the next.")
 @click.option("--assemble", "map_", type=common.OUT, help="Radiance map to make of them: .hdr, .exr, ...")
-@click.pass_context
-def shoot(ctx: click.Context, out: Path, frames: int, stops: float, map_: Path | None) -> None:
+def shoot(out: Path, frames: int, stops: float, map_: Path | None) -> None:
     """Take a bracket with the camera on the USB cable.
 
     Focus, ISO and white balance are fixed, and put back at the end; the aperture stays. The middle time is
@@ -42,4 +41,5 @@ def shoot(ctx: click.Context, out: Path, frames: int, stops: float, map_: Path |
             files.write(out / "exposures.csv", "\n".join(lines) + "\n")
             click.echo(f"{taken[0]}: {dial.names[j]}")
     if map_:
-        ctx.invoke(photographs.assemble, photos=(out,), out=map_, times=str(out / "exposures.csv"))
+        words = ["-o", str(map_), "--times", str(out / "exposures.csv"), "--", str(out)]
+        photographs.assemble.main(words, standalone_mode=False)
