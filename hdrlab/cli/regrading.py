@@ -28,7 +28,7 @@ def regrade(results: Path, requests: Sequence[Path], only: Sequence[str], policy
 
     RESULTS is what `hdrlab grade` has written of the class. Nothing in it changes before --apply.
     """
-    from hdrlab.course.classroom import journal
+    from hdrlab.course.classroom import journal, run
     from hdrlab.course.classroom import regrade as review
     from hdrlab.course.scratch import temporary_folder
 
@@ -47,8 +47,8 @@ def regrade(results: Path, requests: Sequence[Path], only: Sequence[str], policy
             now = datetime.now(UTC).isoformat(timespec="seconds")
             secret, why = course.conditions.secret, how["why"]
             review.apply(results, moves, pieces, secret, policy=policy, why=why, when=now)
-            there = [one.piece for one in journal.parted(results / "results", pieces)[0]]
-            classroom.graded(whole, there, results)  # whose feedback follows
+            for one in journal.parted(results / "results", pieces)[0]:
+                run.write_feedback(results, one)
             click.echo(classroom.write_books(whole)[0])
 
 
@@ -61,6 +61,7 @@ def _as_graded(results: Path, how: dict[str, Any]) -> classroom.Class:
     given = {name: value for name, value in how.items() if value is not None}
     context = grading.grade.make_context("grade", [folder], default_map=said)
     asked = SimpleNamespace(**context.params | given | {"out": results})
-    secret, _ = grading.secret_of(asked.secret_file)
+    # a class's own secret is never made anew: all inputs would be others
+    secret = plans.read_secret(asked.secret_file.resolve(strict=True))[0] if asked.secret_file else ""
     conditions = plans.Conditions(asked.tier, "", secret, asked.hidden, asked.timeout)
     return classroom.class_of(conditions, asked)

@@ -258,6 +258,28 @@ def test_the_journal_has_a_line_for_each_regrade_and_one_that_was_changed_is_fou
         log.write_text(kept)
 
 
+def test_what_cannot_be_graded_anew_keeps_its_points(folder, monkeypatch, capsys):
+    grade()
+    before = work()
+    correct("1")
+    result = Guessing.result
+    monkeypatch.setattr(
+        Guessing, "result", lambda self, one: None if one.owner == "b4" else result(self, one)
+    )
+    run("regrade", "out", "--apply")
+    assert "warning: b4: it ended 3 times without a result" in capsys.readouterr().err
+    expected = {who: json.loads(guessed(team))["score"] for who, team in STUDENTS.items() if team != "b4"}
+    assert work() == expected | {"b4": before["b4"]}
+
+
+def test_a_secret_that_is_gone_is_told_of_and_not_made_anew(folder, capsys):
+    grade()
+    Path("secret.txt").unlink()
+    capsys.readouterr()
+    run("regrade", "out", code=2)
+    assert "secret.txt: No such file" in capsys.readouterr().err and not Path("secret.txt").exists()
+
+
 @pytest.mark.parametrize(
     ("prepare", "words", "said"),
     [

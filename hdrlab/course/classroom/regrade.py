@@ -72,7 +72,7 @@ def requests(paths: Sequence[Path], roster: Roster) -> dict[str, list[str]]:
 def moves(
     out: Path, pieces: Sequence[Piece], policy: str, listed: Collection[str], asked: Mapping[str, list[str]]
 ) -> list[Move]:
-    """Return what new results would change, for each team that has one, or that asked.
+    """Return what new results would change, for each team whose checks have changed, or that asked.
 
     Parameters
     ----------
@@ -85,9 +85,9 @@ def moves(
     for piece in pieces:
         was, old = _read(standing.get(piece.owner)), journal.place(out / "results", piece).exists()
         new = None if old else _read(journal.place(out / "regrade" / "results", piece))
-        if new is None and (was is None or piece.owner not in asked):
+        now: Any = new or was  # what could not be graded anew keeps what it has
+        if now is None or (old and piece.owner not in asked):
             continue
-        now: Any = new or was
         same = was is not None and was.submission == now.submission
         before, changes = (was.score, tuple(_changes(was, now))) if was else (None, ())
         lower, unlisted = now.score < (before or 0), piece.owner not in listed
