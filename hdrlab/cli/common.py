@@ -21,7 +21,7 @@ OUT = click.Path(path_type=Path)  # what is written: it may be nothing that the 
 OPERATORS = ["photograph", *catalogue.names("tonemap")]
 SUFFIXES = ".hdr, .exr, .pfm or .tif"
 PIXELS = 400_000  # of a map, on an even grid, by which its range is told
-MASK = click.option("--mask", metavar="RRGGBB", help="Pixels of exactly this colour are no picture.")
+MASK = click.option("--mask", metavar="RRGGBB", help="Exactly this colour is no picture (borders of scans).")
 CLEAN = click.option(
     "--clean",
     is_flag=True,
