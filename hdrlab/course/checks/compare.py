@@ -29,6 +29,13 @@ class Different(AssertionError):
         self.message, self.expected, self.came, self.kind = message, expected, came, kind
 
 
+def points(n: float, *, needs: str = "") -> Any:
+    """Mark a check: what its promise is worth, 1 otherwise, and the one without which it earns nothing."""
+    import pytest  # which is there where checks run, and slow to import elsewhere
+
+    return pytest.mark.points(n, needs=needs)
+
+
 def require(holds: Any, said: str, **remembered: Any) -> None:
     """Raise Different, with what is said and remembered, where something does not hold."""
     if not holds:

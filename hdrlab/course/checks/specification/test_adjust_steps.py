@@ -1,10 +1,9 @@
 """Ward's trims: adjust_steps(h, db, D) -> states that begin with the histogram h after each trim."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core.steps import last
-from hdrlab.course.checks.compare import finite, require, same, states
+from hdrlab.course.checks.compare import finite, points, require, same, states
 from hdrlab.tonemap import ward
 
 
@@ -35,7 +34,7 @@ def asked(subject, h, db, D, **knobs):
     return found
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_nothing_stays_above_the_ceiling(subject, rng):
     """After a trim T is less, and so is the ceiling: what stood just below it stands above it now.
 
@@ -51,7 +50,7 @@ def test_nothing_stays_above_the_ceiling(subject, rng):
     require(above <= 0.03 * T, said, expected=last(ward.adjust_steps(h, db, D)).h, came=end, kind="curve")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_trimmings_are_not_put_elsewhere(subject, rng):
     """Where do the trimmings go?
 
@@ -66,7 +65,7 @@ def test_trimmings_are_not_put_elsewhere(subject, rng):
     require(after.sum() < h.sum(), "h: expected trims, and nothing was cut off")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_histogram_ends_where_the_trims_lead(subject, rng):
     """The slope of ln Ld over ln L is h D / (T db): above which h does it exceed 1?
 
@@ -79,7 +78,7 @@ def test_the_histogram_ends_where_the_trims_lead(subject, rng):
     same(asked(subject, h, db, D)[-1], truth, 0.05 * truth.max(), what="h after the last trim", kind="curve")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_an_even_histogram_is_left_alone(subject, rng):
     """A scene without any bin above the ceiling: what is there to trim?
 

@@ -1,10 +1,9 @@
 """Ward's alignment: align(images, bits=6) -> offsets (P, 2), 0 for the image of middling brightness."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 MARGIN, H, W = 48, 160, 208
 BITS = 5  # the coarsest level has 10 x 13 pixels: one of 5 x 6 is a matter of ties, which any scan may break
@@ -37,7 +36,7 @@ def drawn(rng, least, most):
     return tuple((rng.choice([-1, 1], 2) * rng.integers(least, most + 1, 2)).tolist())
 
 
-@pytest.mark.points(1, needs="test_photographs_a_pixel_apart_are_told_apart")
+@points(1, needs="test_photographs_a_pixel_apart_are_told_apart")
 def test_identical_photographs_stay_where_they_are(subject, rng):
     """What is there to be moved?
 
@@ -49,7 +48,6 @@ def test_identical_photographs_stay_where_they_are(subject, rng):
     same(subject.align(np.repeat(images, 3, axis=0)), np.zeros((3, 2)), 0, what="the offsets")
 
 
-@pytest.mark.points(1)
 def test_photographs_a_pixel_apart_are_told_apart(subject, rng):
     """Is anything found at all, whatever its sign?
 
@@ -62,7 +60,7 @@ def test_photographs_a_pixel_apart_are_told_apart(subject, rng):
     same(np.abs(came[1] - came[0]), [1, 1], 0, what="the offset's size in y and in x")
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_a_known_offset_is_found_two_stops_apart(subject, rng):
     """Look at the sign first: the offset says where the image must move, not where it has moved to.
 
@@ -77,7 +75,7 @@ def test_a_known_offset_is_found_two_stops_apart(subject, rng):
         same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
-@pytest.mark.points(4, needs="test_photographs_a_pixel_apart_are_told_apart")
+@points(4, needs="test_photographs_a_pixel_apart_are_told_apart")
 def test_in_a_tie_nothing_moves(subject, rng):
     """Which candidate wins where all nine are equally good?
 
@@ -94,7 +92,7 @@ def test_in_a_tie_nothing_moves(subject, rng):
         same(subject.align(images), np.zeros((2, 2)), 0, what="the offsets of upright bars that agree")
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
     """At which level is the picture compared with its median?
 
@@ -109,7 +107,7 @@ def test_fine_texture_does_not_mislead_the_coarse_levels(subject, rng):
         same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_noise_that_stays_on_the_sensor_does_not_count(subject, rng):
     """More than half of the picture is a wall as bright as the median. What does its bitmap show?
 
@@ -124,7 +122,7 @@ def test_noise_that_stays_on_the_sensor_does_not_count(subject, rng):
     same(came[1] - came[0], [dy, dx], 0, what="the offset of the second image from the first")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     """How far can an offset of n levels reach? 1 + 2 + 4 + ...
 
@@ -139,7 +137,7 @@ def test_the_range_is_two_to_the_bits_minus_one(subject, rng):
     same(came[0] - came[1], [1, -1], 0, what="the offset at 1 bit")
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_a_bracket_is_aligned_along_its_neighbours_to_the_one_in_the_middle(subject, rng):
     """Neighbours in brightness have bitmaps that are alike; the darkest and the brightest have not.
 

@@ -1,10 +1,9 @@
 """What a screen makes of a gain map: apply_gain(sdr, g, low, high, W, gamma, k) -> light, 1 = white."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core import gainmap
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
 def agree(subject, rng, channels=(), **knobs):
@@ -15,7 +14,7 @@ def agree(subject, rng, channels=(), **knobs):
     same(came, expected, 1e-3, what="light", picture=True)
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_the_brightest_screen_shows_the_picture_times_its_gain(subject, rng):
     """A map of 0 is the gain low, a map of 1 the gain high. By what is the picture multiplied?
 
@@ -26,7 +25,7 @@ def test_the_brightest_screen_shows_the_picture_times_its_gain(subject, rng):
     agree(subject, rng, k=(0.0, 0.0))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_screen_between_takes_a_part_of_the_stops(subject, rng):
     """A screen with half of the stops, W = 1/2: where the picture is white and the gain 4, what does it show?
 
@@ -37,7 +36,6 @@ def test_a_screen_between_takes_a_part_of_the_stops(subject, rng):
     agree(subject, rng, W=rng.uniform(0.3, 0.7), k=(0.0, 0.0))
 
 
-@pytest.mark.points(1)
 def test_a_screen_no_brighter_than_white_shows_the_picture(subject, rng):
     """W is 0 there. By what is the picture multiplied?
 
@@ -48,7 +46,7 @@ def test_a_screen_no_brighter_than_white_shows_the_picture(subject, rng):
     agree(subject, rng, W=0.0)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_offsets_of_the_map_are_taken_off_again(subject, rng):
     """The gain was that of the picture and the scene with an offset each. Which of them comes off at the end?
 
@@ -60,7 +58,7 @@ def test_the_offsets_of_the_map_are_taken_off_again(subject, rng):
         agree(subject, rng, k=k)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_gamma_is_undone_before_the_range_of_each_channel_is_applied(subject, rng):
     """The map was raised to gamma when it was made. What gives the share of the range back?
 

@@ -1,10 +1,9 @@
 """Fattal's attenuation: attenuation_steps(lL, alpha, beta) -> states k, lL_k, slope, phi, Phi."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import finite, parts, require, same, states
+from hdrlab.course.checks.compare import finite, parts, points, require, same, states
 from hdrlab.tonemap import fattal
 
 INNER = (slice(24, -24), slice(24, -24))
@@ -26,7 +25,6 @@ def asked(subject, lL, **knobs):
     return came, np.log(Phi)
 
 
-@pytest.mark.points(1)
 def test_there_is_a_state_for_each_level(subject, rng):
     """Halve the picture as long as its shorter side stays at 32 or more.
 
@@ -40,7 +38,7 @@ def test_there_is_a_state_for_each_level(subject, rng):
     same(rows, [32, 64, 128], 0, what="rows of phi, state by state")
 
 
-@pytest.mark.points(3, needs="test_phi_of_the_picture_gathers_all_levels")
+@points(3, needs="test_phi_of_the_picture_gathers_all_levels")
 def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
     """On a ramp every slope is the mean slope.
 
@@ -56,7 +54,7 @@ def test_on_a_ramp_each_level_attenuates_alike(subject, rng):
     same(lPhi[INNER], expected[INNER], 0.04, what="ln Phi of a ramp", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
     """With beta = 1 nothing is to change.
 
@@ -72,7 +70,7 @@ def test_beta_of_1_changes_nothing_and_alpha_is_a_factor(subject, rng):
     same(other - one, expected, 0.05, what="what alpha 0.3 instead of 0.1 adds to ln Phi")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
     """Which slope belongs to which phi? Look at each level's picture beside its phi.
 
@@ -96,7 +94,7 @@ def test_each_level_is_attenuated_by_its_own_slopes(subject, rng):
         same(steps, expected, 0.25, what="the slope", picture=True)
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_phi_of_the_picture_gathers_all_levels(subject, rng):
     """Compare with the picture: dark in Phi is where the light jumps, at every scale.
 

@@ -1,10 +1,9 @@
 """Pixels that no frame measures: bound(Z, B, g, top, shown) -> E (M,) and flags (M,)."""
 
 import numpy as np
-import pytest
 
 from hdrlab.capture import responses
-from hdrlab.course.checks.compare import finite, parts, same
+from hdrlab.course.checks.compare import finite, parts, points, same
 from hdrlab.radiance.merge import bound
 
 G, TOP = responses.true_g("gamma"), 250
@@ -24,7 +23,6 @@ def asked(subject, Z, B, shown=None):
         return np.log(np.asarray(E, float)), flags
 
 
-@pytest.mark.points(1)
 def test_every_pixel_has_a_radiance_and_a_flag(subject, rng):
     """Two things come back: E, and how it is known.
 
@@ -37,7 +35,7 @@ def test_every_pixel_has_a_radiance_and_a_flag(subject, rng):
     finite(E, (40,), what="E"), finite(flags, (40,), what="the flags")
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
     """Clipped in a frame of t seconds: the radiance is at least f^-1(top) / t.
 
@@ -54,7 +52,7 @@ def test_clipped_in_all_frames_is_the_bound_of_the_shortest(subject, rng):
     same(lE, np.full(20, G[TOP] - B[0]), 1e-3, what="ln E of clipped pixels, frames in another order")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_dark_in_all_frames_is_the_bound_of_the_longest(subject, rng):
     """Dark in a frame of t seconds: the radiance is at most f^-1(1) / t.
 
@@ -67,7 +65,7 @@ def test_dark_in_all_frames_is_the_bound_of_the_longest(subject, rng):
     same(lE, np.full(20, G[1] - B[-1]), 1e-3, what="ln E of dark pixels")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_between_two_bounds_is_the_middle_of_their_logarithms(subject, rng):
     """Dark in one frame and clipped in the next: the truth lies between two bounds.
 
@@ -80,7 +78,7 @@ def test_between_two_bounds_is_the_middle_of_their_logarithms(subject, rng):
     same(asked(subject, Z, B)[0], np.log(truth), 1e-3, what="ln E")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
     """A frame that does not show the pixel says nothing of it.
 
@@ -95,7 +93,6 @@ def test_a_frame_that_does_not_show_the_pixel_says_nothing(subject, rng):
     same(asked(subject, Z, B, shown)[0], np.log(truth), 1e-3, what="ln E")
 
 
-@pytest.mark.points(1)
 def test_the_flags_say_what_stood_in_the_way(subject, rng):
     """The second answer says how each pixel is known.
 

@@ -1,10 +1,9 @@
 """Brightness transfer from histograms: brightness_transfer(h_A, h_B) -> T (n,), NaN where not known."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core.transfer import brightness_transfer
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
@@ -20,7 +19,7 @@ def sure(T, n):
     return (T > 0.6) & (T < n - 1.6)
 
 
-@pytest.mark.points(8)
+@points(8)
 def test_the_darkest_of_one_are_the_darkest_of_the_other(subject, rng):
     """Which level has the hundredth pixel of A, counted from the dark? And of B?
 
@@ -34,7 +33,7 @@ def test_the_darkest_of_one_are_the_darkest_of_the_other(subject, rng):
     same(came, T, 0.02, what="T", kind="curve", where=sure(T, len(T)))
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_photograph_and_itself_have_the_same_levels(subject, rng):
     """What is T where both are one photograph?
 
@@ -47,7 +46,7 @@ def test_a_photograph_and_itself_have_the_same_levels(subject, rng):
     same(came[1:-1], levels, 0.02, what="T of one photograph", kind="curve")
 
 
-@pytest.mark.points(2, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")
+@points(2, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")
 def test_the_outer_levels_of_b_say_nothing(subject, rng):
     """How bright is a pixel of B's highest level?
 
@@ -62,7 +61,7 @@ def test_the_outer_levels_of_b_say_nothing(subject, rng):
     same(subject.brightness_transfer(h_A, h_B)[-3:], T[-3:], 0.02, what="T of the brightest")
 
 
-@pytest.mark.points(1, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")
+@points(1, needs="test_the_darkest_of_one_are_the_darkest_of_the_other")
 def test_a_photograph_of_more_pixels_has_the_same_transfer(subject, rng):
     """B may come from a larger sensor. What does that do to ranks?
 

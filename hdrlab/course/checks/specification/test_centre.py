@@ -1,10 +1,9 @@
 """A centre-weighted meter: centre(shape, inside, share, at) -> w (H, W)."""
 
 import numpy as np
-import pytest
 
 from hdrlab.capture import metering
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def asked(subject, rng):
@@ -16,7 +15,7 @@ def asked(subject, rng):
     return finite(came, shape, what="w"), metering.centre(shape, inside=inside, share=share, at=at)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_most_of_the_weight_lies_in_the_middle_and_fades_like_a_gaussian(subject, rng):
     """How wide is a Gaussian of which `inside` lies in the disc?
 
@@ -29,7 +28,7 @@ def test_most_of_the_weight_lies_in_the_middle_and_fades_like_a_gaussian(subject
         same(came / came.max(), w / w.max(), 0.01, what="w, in shares of the largest", picture=True)
 
 
-@pytest.mark.points(1, needs="test_most_of_the_weight_lies_in_the_middle_and_fades_like_a_gaussian")
+@points(1, needs="test_most_of_the_weight_lies_in_the_middle_and_fades_like_a_gaussian")
 def test_all_weights_together_are_one(subject, rng):
     """Which is the reading of a picture that is 0.5 everywhere?
 

@@ -1,9 +1,8 @@
 """Durand's compression: compress(base, low, high, contrast) -> m (base - high)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
 def drawn(rng):
@@ -13,7 +12,7 @@ def drawn(rng):
     return rng.uniform(low + 0.4, high - 0.6, (20, 30)).astype(np.float32), low, high
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
     """The range of the base, high - low decades, is to become c = log10(contrast) decades.
 
@@ -29,7 +28,7 @@ def test_the_base_keeps_the_contrast_that_is_asked_for(subject, rng):
         same(came - np.mean(came), m * (base - base.mean()), 1e-3, what=what, picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_bright_end_becomes_white(subject, rng):
     """Where does the bright end of the base go?
 
@@ -42,7 +41,7 @@ def test_the_bright_end_becomes_white(subject, rng):
     same(subject.compress(ends, low, high, contrast=50.0), [[-np.log10(50), 0]], 1e-3, what="low and high")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_scene_of_little_contrast_is_not_stretched(subject, rng):
     """A scene of little contrast: what does your m do to it?
 

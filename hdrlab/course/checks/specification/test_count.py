@@ -2,9 +2,7 @@
 
 import math
 
-import pytest
-
-from hdrlab.course.checks.compare import require, same
+from hdrlab.course.checks.compare import points, require, same
 
 
 def drawn(rng):
@@ -13,7 +11,6 @@ def drawn(rng):
     return float(rng.uniform(12, 24)), usable, float(rng.uniform(1, usable - 1))
 
 
-@pytest.mark.points(1)
 def test_a_scene_of_a_stop_takes_one_photograph(subject, rng):
     """How many photographs can there be at least?
 
@@ -25,7 +22,7 @@ def test_a_scene_of_a_stop_takes_one_photograph(subject, rng):
     same(subject.count(0.4, usable, overlap), 1, 0, what="photographs for 0.4 stops")
 
 
-@pytest.mark.points(3, needs="test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many")
+@points(3, needs="test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many")
 def test_a_scene_that_one_photograph_holds_takes_one(subject, rng):
     """What does one photograph hold, if the scene has no more stops than that?
 
@@ -38,7 +35,7 @@ def test_a_scene_that_one_photograph_holds_takes_one(subject, rng):
         same(subject.count(scene, usable, overlap), 1, 0, what=f"photographs for {scene:.2f} stops")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many(subject, rng):
     """Lay the photographs' ranges along the scene's: how far does each next one reach beyond the last?
 
@@ -56,7 +53,7 @@ def test_the_photographs_hold_the_whole_scene_and_none_is_one_too_many(subject, 
         require(reach - (usable - overlap) < scene, said)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_more_overlap_takes_more_photographs(subject, rng):
     """Neighbours share the overlap, or nothing ties them together.
 

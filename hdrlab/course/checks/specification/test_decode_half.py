@@ -1,9 +1,8 @@
 """Half floats: decode_half(bits) -> their values, of bits uint16 of any shape."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import as_shape, numbers, require, same
+from hdrlab.course.checks.compare import as_shape, numbers, points, require, same
 
 
 def asked(subject, rng, e):
@@ -14,7 +13,7 @@ def asked(subject, rng, e):
     return subject.decode_half(bits), bits.view(np.float16).astype(np.float64)
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_a_half_is_its_mantissa_times_a_power_of_two(subject, rng):
     """16 bits: the sign, five of the exponent e, ten of the mantissa m. What is the number?
 
@@ -27,7 +26,6 @@ def test_a_half_is_its_mantissa_times_a_power_of_two(subject, rng):
     same(shares, np.ones(values.shape), 1e-6, what="sizes, in shares of the right ones", picture=True)
 
 
-@pytest.mark.points(1)
 def test_the_first_bit_is_the_sign(subject, rng):
     """Which bit says that a number is below 0?
 
@@ -39,7 +37,7 @@ def test_the_first_bit_is_the_sign(subject, rng):
     same(np.sign(as_shape(numbers(came), values.shape)), np.sign(values), 0, what="signs", picture=True)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_the_smallest_have_no_hidden_one(subject, rng):
     """What are the numbers of e = 0? With a hidden 1 none of them could be 0.
 
@@ -52,7 +50,7 @@ def test_the_smallest_have_no_hidden_one(subject, rng):
     same(subject.decode_half(np.zeros(3, np.uint16)), np.zeros(3), 0, what="three zeros")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_the_largest_exponent_is_infinite_or_no_number(subject, rng):
     """e = 31 stands for no power. For what, then?
 

@@ -1,10 +1,9 @@
 """The margin of a ghost mask: dilate(mask, margin) -> mask (H, W)."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import distance_transform_edt
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.radiance.deghosting import regions
 
 
@@ -15,7 +14,7 @@ def drawn(rng):
     return mask, int(rng.integers(3, 6))
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_all_within_the_margin_belongs_to_the_mask(subject, rng):
     """How far is a pixel from the nearest one of the mask?
 
@@ -29,7 +28,7 @@ def test_all_within_the_margin_belongs_to_the_mask(subject, rng):
     same(subject.dilate(mask, margin), near, 0, what="the mask", picture=True, where=near == widened)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_inside_of_a_figure_belongs_to_it(subject, rng):
     """Somebody who moved is found by the outline. And the inside?
 
@@ -48,7 +47,7 @@ def test_the_inside_of_a_figure_belongs_to_it(subject, rng):
         same(came, regions.dilate(mask, margin), 0, what="the mask of a ring", picture=True)
 
 
-@pytest.mark.points(1, needs="test_all_within_the_margin_belongs_to_the_mask")
+@points(1, needs="test_all_within_the_margin_belongs_to_the_mask")
 def test_where_nothing_moved_there_is_no_mask(subject, rng):
     """A mask may be empty. How far is the nearest pixel of it then?
 

@@ -1,16 +1,15 @@
 """Reinhard's curve: display(Lm, adaptation, white) -> Ld; the adaptation is Lm or its neighbourhood."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
     return np.exp(1.5 * rng.standard_normal((20, 30)) - 1).astype(np.float32)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_without_a_white_it_is_lm_over_one_plus_adaptation(subject, rng):
     """Without a white, Ld stays below 1, and a Lm of 1 becomes a half.
 
@@ -22,7 +21,7 @@ def test_without_a_white_it_is_lm_over_one_plus_adaptation(subject, rng):
     same(subject.display(Lm, Lm), Lm / (1 + Lm), 1e-4, what="Ld", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_white_becomes_1_and_what_is_brighter_stays_there(subject, rng):
     """Put Lm = white into your formula: it should come out as 1.
 
@@ -36,7 +35,7 @@ def test_white_becomes_1_and_what_is_brighter_stays_there(subject, rng):
     same(subject.display(Lm, Lm, white), expected, 1e-4, what="Ld", picture=True)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_pixel_is_held_back_by_its_neighbourhood(subject, rng):
     """Dodge and burn: whose brightness holds a pixel back?
 

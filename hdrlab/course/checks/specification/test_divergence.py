@@ -1,9 +1,8 @@
 """The divergence of a gradient field: divergence(G) -> div G (H, W), G = (Gy, Gx) of forward differences."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def field(rng, shape=(12, 17)):
@@ -20,7 +19,6 @@ def gradient(u):
     return G
 
 
-@pytest.mark.points(1)
 def test_every_pixel_has_a_finite_divergence(subject, rng):
     """Two components go in, one number for each pixel comes out.
 
@@ -32,7 +30,7 @@ def test_every_pixel_has_a_finite_divergence(subject, rng):
     same(subject.divergence(np.zeros((2, 5, 6))), np.zeros((5, 6)), 1e-9, what="the divergence of nothing")
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_the_divergence_of_a_gradient_is_the_laplacian_of_its_picture(subject, rng):
     """The gradient looks forward: in which direction must the divergence look?
 
@@ -46,7 +44,7 @@ def test_the_divergence_of_a_gradient_is_the_laplacian_of_its_picture(subject, r
     same(subject.divergence(gradient(u)), laplacian, 1e-4, what="div grad u", picture=True)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_it_sums_to_0_and_is_minus_the_transpose_of_the_gradient(subject, rng):
     """Nothing flows through the edges: what flows out of one pixel flows into the next.
 

@@ -1,9 +1,8 @@
 """The same exposure with other settings: equivalent_time(T, F, F_new, S, S_new) -> seconds."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
 def drawn(rng):
@@ -13,7 +12,7 @@ def drawn(rng):
     return float(2.0 ** rng.uniform(-10, 2)), float(F), float(F_new), float(S), float(S_new)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_two_stops_of_aperture_are_four_times_the_time(subject, rng):
     """A larger f-number is a smaller hole: does your time become longer?
 
@@ -26,7 +25,7 @@ def test_two_stops_of_aperture_are_four_times_the_time(subject, rng):
     same(subject.equivalent_time(T, F, F_new) / T, (F_new / F) ** 2, 1e-4 * (F_new / F) ** 2, what="T' / T")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_twice_the_speed_is_half_the_time(subject, rng):
     """Twice the speed needs half the time.
 
@@ -39,7 +38,7 @@ def test_twice_the_speed_is_half_the_time(subject, rng):
     same(came / T, S / (2 * S_new), 1e-4 * S / S_new, what="T' / T")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_there_and_back_is_the_time_one_began_with(subject, rng):
     """Change the settings, and change them back.
 

@@ -1,12 +1,10 @@
 """Exposure value: ev(F, T, S) -> stops."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
-@pytest.mark.points(1)
 def test_every_setting_has_a_finite_value(subject, rng):
     """Return the number, do not print it.
 
@@ -18,7 +16,7 @@ def test_every_setting_has_a_finite_value(subject, rng):
     finite(subject.ev(8.0, T), (5,), what="EV of five times")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_a_whole_aperture_and_half_the_time_are_a_stop_each(subject, rng):
     """EV 0 is f/1 for one second.
 
@@ -32,7 +30,7 @@ def test_a_whole_aperture_and_half_the_time_are_a_stop_each(subject, rng):
     same(subject.ev(F, T), np.log2(F * F / T), 1e-4, what=f"EV of f/{F:.3g} and {T:.3g} s")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_twice_the_speed_takes_a_stop(subject, rng):
     """Twice the speed needs half the light.
 
@@ -45,7 +43,7 @@ def test_twice_the_speed_takes_a_stop(subject, rng):
         same(subject.ev(F, T, S=100.0 * 2**n), np.log2(F * F / T) - n, 1e-4, what=f"EV at ISO {100 * 2**n:g}")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_bracket_of_times_gives_a_value_each(subject, rng):
     """The settings may be arrays.
 

@@ -1,14 +1,12 @@
 """The exclusion bitmap: exclusion(Y, t) -> True where a pixel is compared."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 
 CODES = np.arange(256, dtype=np.uint8)[None]
 
 
-@pytest.mark.points(1)
 def test_it_says_yes_or_no_for_every_pixel(subject, rng):
     """The answer has the shape of the picture.
 
@@ -21,7 +19,7 @@ def test_it_says_yes_or_no_for_every_pixel(subject, rng):
     require(np.isin(came, [0, 1]).all(), f"expected True or False, got values up to {came.max():g}")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
     """Is the bitmap True where a pixel is compared, or where it is left out?
 
@@ -35,7 +33,7 @@ def test_pixels_close_to_the_threshold_are_not_compared(subject, rng):
     same(subject.exclusion(CODES, t), far, 0, what="where Y is compared", where=far | close)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_it_leaves_out_the_four_codes_on_either_side(subject, rng):
     """Write down by hand what happens to the codes t - 5, t - 4, t + 4 and t + 5.
 
@@ -47,7 +45,7 @@ def test_it_leaves_out_the_four_codes_on_either_side(subject, rng):
     same(subject.exclusion(CODES, t), np.abs(CODES.astype(int) - t) > 4, 0, what="where Y is compared")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_bytes_do_not_wrap_around(subject, rng):
     """What is 3 - 5 in uint8?
 

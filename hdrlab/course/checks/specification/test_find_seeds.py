@@ -1,10 +1,9 @@
 """The threshold of a ghost mask: find_seeds(score) -> mask (H, W)."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.radiance.deghosting import regions
 
 
@@ -15,7 +14,7 @@ def drawn(rng):
     return score.astype(np.float32)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_what_is_above_1_in_a_whole_square_is_marked(subject, rng):
     """Something that moved has a width. And an edge, and noise?
 
@@ -28,7 +27,6 @@ def test_what_is_above_1_in_a_whole_square_is_marked(subject, rng):
         same(subject.find_seeds(score), regions.find_seeds(score), 0, what="the mask", picture=True)
 
 
-@pytest.mark.points(1)
 def test_exactly_1_is_no_contradiction(subject, rng):
     """Is a score of 1 above 1?
 
@@ -41,7 +39,7 @@ def test_exactly_1_is_no_contradiction(subject, rng):
     same(subject.find_seeds(score), score > 1, 0, what="the mask of one block", picture=True)
 
 
-@pytest.mark.points(1, needs="test_what_is_above_1_in_a_whole_square_is_marked")
+@points(1, needs="test_what_is_above_1_in_a_whole_square_is_marked")
 def test_a_line_and_a_dot_are_no_motion(subject, rng):
     """A line of one pixel, or of two, is above 1. Which square lies in it?
 

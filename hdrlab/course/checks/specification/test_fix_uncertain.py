@@ -1,10 +1,9 @@
 """Durand's uncertain pixels: fix_uncertain(mean, k, sigma_s) -> base (H, W)."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.tonemap import durand
 
 INNER = np.s_[10:-10, 10:-10]
@@ -18,7 +17,7 @@ def drawn(rng):
     return (mean + 2 * lone).astype(np.float32), k.astype(np.float32)
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood(subject, rng):
     """A pixel unlike all around it is its own base. What is a better one?
 
@@ -35,7 +34,7 @@ def test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood(subject, r
         same(came, base, 0.02, what="the base", picture=True, where=inner)
 
 
-@pytest.mark.points(2, needs="test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood")
+@points(2, needs="test_a_base_that_rests_on_few_pixels_is_that_of_its_neighbourhood")
 def test_a_base_that_rests_on_many_stays(subject, rng):
     """And a pixel with many of its kind around it?
 
@@ -48,7 +47,7 @@ def test_a_base_that_rests_on_many_stays(subject, rng):
     same(came, mean, 1e-4, what="the base of certain pixels", picture=True, where=k > 150)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_pixel_alone_has_no_say(subject, rng):
     """What is u of a pixel that only itself is like, k = 1?
 

@@ -1,9 +1,8 @@
 """Flat patches by chi-square: flat(A, size, psi, sigma) -> mask (H, W)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.response import selection
 
 
@@ -20,7 +19,7 @@ def same_patches(subject, A, psi, **knobs):
     same(subject.flat(A, psi=psi, **knobs), low, 0, what="flat", picture=True, where=low == high)
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_a_patch_is_flat_where_noise_explains_its_spread(subject, rng):
     """An even surface has a spread, too: that of the noise. How large may it be?
 
@@ -32,7 +31,7 @@ def test_a_patch_is_flat_where_noise_explains_its_spread(subject, rng):
         same_patches(subject, drawn(rng, sigma=sigma), psi, size=size, sigma=sigma)
 
 
-@pytest.mark.points(7)
+@points(7)
 def test_the_average_of_frames_is_held_against_its_own_noise(subject, rng):
     """Of t frames you have the average. How large is its noise?
 
@@ -44,7 +43,7 @@ def test_the_average_of_frames_is_held_against_its_own_noise(subject, rng):
         same_patches(subject, drawn(rng, t), 0.05, size=5, sigma=1.0)
 
 
-@pytest.mark.points(1, needs="test_a_patch_is_flat_where_noise_explains_its_spread")
+@points(1, needs="test_a_patch_is_flat_where_noise_explains_its_spread")
 def test_a_patch_that_is_cut_is_not_flat(subject, rng):
     """At the edge a patch is not whole. Is it flat?
 

@@ -1,9 +1,8 @@
 """Reading a portable float map: from_bytes(data) -> E."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
 def drawn(rng, channels=()):
@@ -17,7 +16,7 @@ def file(E, scale="-1.0", order="<f4", gap=b"\n"):
     return head + b"\n" + E[::-1].astype(order).tobytes()
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_first_row_of_the_file_is_the_lowest(subject, rng):
     """Is your picture upside down?
 
@@ -29,7 +28,7 @@ def test_the_first_row_of_the_file_is_the_lowest(subject, rng):
     same(subject.from_bytes(file(E)), E, 1e-6 * E.max(), what="E", picture=True)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_map_in_colour_has_three_channels(subject, rng):
     """PF has three values for each pixel.
 
@@ -41,7 +40,7 @@ def test_a_map_in_colour_has_three_channels(subject, rng):
     same(subject.from_bytes(file(E)), E, 1e-6 * E.max(), what="E")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_positive_scale_is_big_endian(subject, rng):
     """What does a positive scale say?
 
@@ -53,7 +52,6 @@ def test_a_positive_scale_is_big_endian(subject, rng):
     same(subject.from_bytes(file(E, "1.0", ">f4")), E, 1e-6 * E.max(), what="E", picture=True)
 
 
-@pytest.mark.points(1)
 def test_a_first_value_that_looks_like_white_space_is_a_value(subject):
     """Where does the header end, and where do the values begin?
 

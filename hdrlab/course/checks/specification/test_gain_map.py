@@ -1,9 +1,7 @@
 """The gain map of ISO 21496-1: gain_map(sdr, hdr, low, high, gamma, k) -> g, 0 to 1."""
 
-import pytest
-
 from hdrlab.core import gainmap
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
 def agree(subject, rng, stops, low, high, *, black=0.0, **knobs):
@@ -15,7 +13,7 @@ def agree(subject, rng, stops, low, high, *, black=0.0, **knobs):
     same(came, expected, 1e-3, what="g", picture=True)
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_the_map_says_in_shares_of_its_range_how_many_stops_are_gained(subject, rng):
     """Where the scene is twice as bright as the picture, the gain is one stop. Where is it in the range?
 
@@ -26,7 +24,7 @@ def test_the_map_says_in_shares_of_its_range_how_many_stops_are_gained(subject, 
     agree(subject, rng, (-1, 3), rng.uniform(-3, -1.5), rng.uniform(3.5, 5), k=(0.0, 0.0))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_black_has_a_gain_that_is_finite(subject, rng):
     """Where the picture is black the quotient would be infinite, or nothing by nothing. What are offsets for?
 
@@ -38,7 +36,7 @@ def test_black_has_a_gain_that_is_finite(subject, rng):
         agree(subject, rng, (-1, 1), -10.0, 10.0, black=0.5, k=k)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_what_is_gained_beyond_the_range_takes_its_ends(subject, rng):
     """The map is kept in whole numbers from 0 to 255. What of a gain below low, and above high?
 
@@ -50,7 +48,7 @@ def test_what_is_gained_beyond_the_range_takes_its_ends(subject, rng):
         agree(subject, rng, stops, -1.0, 3.0, k=(0.0, 0.0))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_gamma_bends_what_lies_between_the_ends_of_each_channel(subject, rng):
     """Each channel may have a range of its own, and gamma bends what is between its ends.
 

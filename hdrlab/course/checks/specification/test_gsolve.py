@@ -1,12 +1,11 @@
 """Debevec and Malik's system: gsolve(Z, B, smoothness, w) -> g, lE. Any gauge and any solver will do."""
 
 import numpy as np
-import pytest
 
 from hdrlab.capture import responses
 from hdrlab.core import weights
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import finite, parts, require, same
+from hdrlab.course.checks.compare import finite, parts, points, require, same
 from hdrlab.fast import debevec
 
 HAT = weights.hat()
@@ -27,7 +26,6 @@ def asked(subject, Z, B, smoothness, w):
     return g - g[len(w) // 2], lE - g[len(w) // 2]
 
 
-@pytest.mark.points(1)
 def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
     """Two things come back: g and lE.
 
@@ -39,7 +37,7 @@ def test_every_level_has_a_g_and_every_sample_an_lE(subject, rng):
     asked(subject, Z, B, 30.0, HAT)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_curve_of_a_camera_comes_out(subject, rng):
     """Every sample in every frame gives one row, w (g(Z) - lE) = w B.
 
@@ -54,7 +52,7 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
     same(g, responses.true_g(response), 0.12, what="g", kind="curve", where=middle)
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
     """Weights multiply whole rows: the left-hand side and the right-hand side.
 
@@ -69,7 +67,7 @@ def test_g_and_lE_minimise_the_sum_of_squares(subject, rng):
     same(lE, truth.lE, 0.02, what="lE")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_more_smoothness_makes_a_straighter_curve_at_the_cost_of_the_data(subject, rng):
     """What happens to your curve when the knob is turned from 1 to 300?
 
@@ -93,7 +91,7 @@ def _few(numbers):
     return ", ".join(f"{one:.3g}" for one in numbers)
 
 
-@pytest.mark.points(2, needs="test_the_curve_of_a_camera_comes_out")
+@points(2, needs="test_the_curve_of_a_camera_comes_out")
 def test_the_order_of_the_frames_does_not_matter(subject, rng):
     """Does any line of yours look at the order of the frames?
 
@@ -107,7 +105,7 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
     same(g, asked(subject, Z, B, 30.0, HAT)[0], 0.02, what="g of the frames in another order")
 
 
-@pytest.mark.points(2, needs="test_the_curve_of_a_camera_comes_out")
+@points(2, needs="test_the_curve_of_a_camera_comes_out")
 def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
     """Twice the time in every frame is half the irradiance, and the same curve.
 
@@ -121,7 +119,7 @@ def test_another_unit_of_time_moves_lE_and_leaves_g_alone(subject, rng):
     same(less, lE - np.log(1000.0), 0.03, what="lE with times in milliseconds")
 
 
-@pytest.mark.points(2, needs="test_the_curve_of_a_camera_comes_out")
+@points(2, needs="test_the_curve_of_a_camera_comes_out")
 def test_any_number_of_levels_will_do(subject, rng):
     """Is there a 256 in your code? The weights say how many levels there are.
 

@@ -1,10 +1,9 @@
 """The guided filter: guided(I, p, radius, epsilon) -> q, lines of windows, averaged."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core.filters.guided import guided
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 SHAPE = (36, 48)
 
@@ -23,7 +22,7 @@ def inside(radius):
     return mask
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_a_picture_is_smoothed_along_its_guide(subject, rng):
     """Each window has a line, p = a I + b. A pixel lies in many windows: which line is its own?
 
@@ -36,7 +35,7 @@ def test_a_picture_is_smoothed_along_its_guide(subject, rng):
     same(subject.guided(guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_a_picture_that_guides_itself_keeps_its_edge(subject, rng):
     """Where no p is given, I takes its place.
 
@@ -49,7 +48,7 @@ def test_a_picture_that_guides_itself_keeps_its_edge(subject, rng):
     same(subject.guided(guide, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
-@pytest.mark.points(1, needs="test_a_picture_is_smoothed_along_its_guide")
+@points(1, needs="test_a_picture_is_smoothed_along_its_guide")
 def test_where_every_edge_is_small_only_means_are_left(subject, rng):
     """With an eps far above every variance, what is left of a?
 
@@ -63,7 +62,7 @@ def test_where_every_edge_is_small_only_means_are_left(subject, rng):
     same(subject.guided(guide, p, **knobs), expected, 1e-3, what="q", picture=True, where=where)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_another_unit_and_zero_of_p_are_those_of_q(subject, rng):
     """Filter p, and then 2 p + 3. What should the second answer be?
 

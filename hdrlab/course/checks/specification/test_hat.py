@@ -1,9 +1,8 @@
 """The weights of pixel levels: hat(n) -> w (n,). Their scale is free; what counts is one against another."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 
 
 def asked(subject, n):
@@ -23,7 +22,6 @@ def some(rng):
     return 2 * int(rng.integers(100, 140))
 
 
-@pytest.mark.points(1)
 def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
     """As many weights as levels.
 
@@ -36,7 +34,7 @@ def test_every_level_has_a_weight_that_is_not_negative(subject, rng):
     require((w >= 0).all(), f"w: expected weights of at least 0, got {float(w.min()):.3g}", came=w)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng):
     """Which levels does a photograph tell best: the ends of its range, or the middle?
 
@@ -53,7 +51,7 @@ def test_the_middle_counts_most_and_the_weight_falls_to_either_side(subject, rng
     same(w, hat(n), 0.02, what="w", kind="curve")  # ends that count are another promise
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_clipped_levels_do_not_count(subject, rng):
     """What does a pixel of the lowest level say of the light? And one of the highest?
 
@@ -66,7 +64,7 @@ def test_clipped_levels_do_not_count(subject, rng):
     same(w[[0, -1]], [0, 0], 1e-6, what=f"the weights of levels 0 and {n - 1}")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_any_number_of_levels_will_do(subject, rng):
     """How many levels has a RAW photograph of 12 bits?
 

@@ -1,9 +1,8 @@
 """The surest mean: inverse_variance_merge(X, D, measured, t, N, R) -> E and s, each (H, W)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, parts, same
+from hdrlab.course.checks.compare import finite, parts, points, same
 from hdrlab.radiance.uncertainty import inverse_variance_merge, variance
 
 TIMES, SHAPE = np.array([1.0, 4.0, 16.0]), (30, 40)
@@ -31,7 +30,7 @@ def alike(came, expected, tolerance, what, unit=1.0):
     same(came / unit, expected / unit, tolerance, what=what, picture=True)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_one_photograph_alone_is_as_sure_as_its_own_noise(subject, rng):
     """Of one photograph the mean is its own answer, X / t.
 
@@ -46,7 +45,7 @@ def test_one_photograph_alone_is_as_sure_as_its_own_noise(subject, rng):
     alike(s, true, 0.02, "s over that of one photograph", true)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_of_equal_times_it_is_the_plain_mean(subject, rng):
     """Four photographs of one light and one time. One of them caught more photons than the others, by chance.
 
@@ -62,7 +61,7 @@ def test_of_equal_times_it_is_the_plain_mean(subject, rng):
     alike(s, true, 0.02, "s over half that of one photograph", true)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_photograph_that_does_not_measure_a_pixel_has_no_say_in_it(subject, rng):
     """Where `measured` is False, what stands in X is no measurement.
 
@@ -77,7 +76,7 @@ def test_a_photograph_that_does_not_measure_a_pixel_has_no_say_in_it(subject, rn
     alike(s, before[1], 1e-3, "s with other values there, over s before", before[1])
 
 
-@pytest.mark.points(9)
+@points(9)
 def test_each_answer_counts_by_the_inverse_of_its_variance(subject, rng):
     """The longest photograph knows most, if it is not clipped. How much do the others count beside it?
 
@@ -91,7 +90,7 @@ def test_each_answer_counts_by_the_inverse_of_its_variance(subject, rng):
     alike(s, true[1], 0.05, "s over what it should be", true[1])
 
 
-@pytest.mark.points(7)
+@points(7)
 def test_no_other_mean_errs_less(subject, rng):
     """A mean is as good as its errors are small. Hold yours against the scene that was photographed.
 
@@ -105,7 +104,7 @@ def test_no_other_mean_errs_less(subject, rng):
     same(max(came / least, 1.0), 1.0, 0.02, what="root mean square error, over the least")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_of_100_pixels_95_lie_within_1_96_deviations(subject, rng):
     """To say E +- 1.96 s is to say something that can be wrong: hold it against the scene.
 

@@ -1,10 +1,9 @@
 """Robertson's irradiance: irradiance(Z, t, f_inv, w) -> E (N,)."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core import weights
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.response import robertson
 
 HAT = weights.hat()
@@ -15,7 +14,6 @@ def drawn(rng, N=300, P=4):
     return rng.integers(0, 256, (N, P)), rng.uniform(0.1, 2, P), np.sort(rng.uniform(0.01, 2, 256))
 
 
-@pytest.mark.points(1)
 def test_every_sample_has_an_irradiance(subject, rng):
     """One number for each sample, and not for each frame.
 
@@ -27,7 +25,7 @@ def test_every_sample_has_an_irradiance(subject, rng):
     finite(subject.irradiance(Z.clip(20, 230), t, f_inv, HAT), (300,), what="E")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
     """Divide one sum by another, both over the frames.
 
@@ -41,7 +39,7 @@ def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
     same(subject.irradiance(Z, t, f_inv, HAT), truth, 2e-3 * np.nanmax(truth), what="E", where=seen)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_frames_that_agree_give_what_they_agree_on(subject, rng):
     """Where every frame says the same E, the mean is that E.
 
@@ -55,7 +53,7 @@ def test_frames_that_agree_give_what_they_agree_on(subject, rng):
     same(subject.irradiance(Z, t, f_inv, HAT), x / 128, 1e-4, what="E")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_twice_the_time_is_half_the_irradiance(subject, rng):
     """Twice the time for the same photographs is half the light.
 
@@ -69,7 +67,6 @@ def test_twice_the_time_is_half_the_irradiance(subject, rng):
     same(subject.irradiance(Z, 2 * t, f_inv, HAT), truth / 2, 1e-3 * np.nanmax(truth), what="E", where=seen)
 
 
-@pytest.mark.points(1)
 def test_a_sample_that_no_frame_saw_well_is_nan(subject, rng):
     """What is known of a sample that is clipped in all frames?
 

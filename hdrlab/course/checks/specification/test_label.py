@@ -1,9 +1,8 @@
 """The parts of a ghost mask: label(mask) -> labels (H, W). Which part has which number is free."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.radiance.deghosting import regions
 
 
@@ -26,7 +25,7 @@ def compared(subject, mask, what):
     same(numbered(came), numbered(regions.label(mask)), 0, what=what, picture=True)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_pixels_that_connect_have_one_label_and_others_do_not(subject, rng):
     """Which pixels belong to one ghost?
 
@@ -37,7 +36,7 @@ def test_pixels_that_connect_have_one_label_and_others_do_not(subject, rng):
     compared(subject, drawn(rng), "the parts, numbered row by row")
 
 
-@pytest.mark.points(3, needs="test_pixels_that_connect_have_one_label_and_others_do_not")
+@points(3, needs="test_pixels_that_connect_have_one_label_and_others_do_not")
 def test_a_line_across_corners_is_one_part(subject, rng):
     """Do two pixels connect that touch in a corner?
 
@@ -49,7 +48,7 @@ def test_a_line_across_corners_is_one_part(subject, rng):
     compared(subject, np.pad(np.eye(n, dtype=bool)[:, ::-1], 2), "the parts of a line")
 
 
-@pytest.mark.points(2, needs="test_pixels_that_connect_have_one_label_and_others_do_not")
+@points(2, needs="test_pixels_that_connect_have_one_label_and_others_do_not")
 def test_labels_are_1_to_r_and_0_elsewhere(subject, rng):
     """Which numbers have the parts? And what belongs to none?
 

@@ -1,10 +1,9 @@
 """Durand's two layers: layers(lL, sigma_s, sigma_r) -> base, detail, in decades."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core.filters.bilateral import bilateral
-from hdrlab.course.checks.compare import finite, parts, require, same
+from hdrlab.course.checks.compare import finite, parts, points, require, same
 
 SIGMA = {"sigma_s": 4.0, "sigma_r": 0.4}
 
@@ -22,7 +21,7 @@ def asked(subject, lL, **knobs):
     return finite(base, lL.shape, what="the base"), finite(detail, lL.shape, what="the detail")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_the_layers_add_up_to_the_picture(subject, rng):
     """Base and detail together are the picture.
 
@@ -37,7 +36,7 @@ def test_the_layers_add_up_to_the_picture(subject, rng):
     require(detail.std() > 0.01, said, came=detail, kind="image")
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_the_base_is_the_bilateral_filter(subject, rng):
     """Each pixel of the base is a weighted mean of its neighbours.
 
@@ -51,7 +50,7 @@ def test_the_base_is_the_bilateral_filter(subject, rng):
     same(base, found.mean, 0.02, what="the base", picture=True, where=found.k > 20)
 
 
-@pytest.mark.points(3, needs="test_the_base_is_the_bilateral_filter")
+@points(3, needs="test_the_base_is_the_bilateral_filter")
 def test_an_edge_of_light_stays_in_the_base_and_out_of_the_detail(subject, rng):
     """Plot a row of the base across the edge.
 
@@ -65,7 +64,7 @@ def test_an_edge_of_light_stays_in_the_base_and_out_of_the_detail(subject, rng):
     same(detail, np.zeros(lL.shape), 0.03, what="the detail of two even walls", picture=True)
 
 
-@pytest.mark.points(2, needs="test_the_base_is_the_bilateral_filter")
+@points(2, needs="test_the_base_is_the_bilateral_filter")
 def test_another_exposure_moves_the_base_and_leaves_the_detail(subject, rng):
     """Twice the light adds a constant to lL. What should it add to the base?
 

@@ -1,9 +1,8 @@
 """The photon transfer line: line(S, V) -> its slope 1 / K, one per electron and level."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng, M=9):
@@ -12,7 +11,7 @@ def drawn(rng, M=9):
     return S, S / rng.uniform(1, 4) + rng.uniform(3, 12)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_the_slope_of_a_line_is_found_from_the_dark_pair_on(subject, rng):
     """How much does the variance grow with the signal, beyond that of the dark?
 
@@ -25,7 +24,7 @@ def test_the_slope_of_a_line_is_found_from_the_dark_pair_on(subject, rng):
     same(subject.line(S, V), slope, 1e-3 * slope, what="1 / K")
 
 
-@pytest.mark.points(7)
+@points(7)
 def test_a_pair_counts_the_less_the_more_its_variance_errs(subject, rng):
     """Which of the variances is known best?
 
@@ -39,7 +38,7 @@ def test_a_pair_counts_the_less_the_more_its_variance_errs(subject, rng):
     same(subject.line(S, V), slope, 2e-3 * slope, what="1 / K of scattered pairs")
 
 
-@pytest.mark.points(1, needs="test_the_slope_of_a_line_is_found_from_the_dark_pair_on")
+@points(1, needs="test_the_slope_of_a_line_is_found_from_the_dark_pair_on")
 def test_levels_half_as_large_double_the_slope(subject, rng):
     """With one bit more, S doubles. And V?
 

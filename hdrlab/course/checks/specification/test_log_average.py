@@ -1,16 +1,14 @@
 """How bright a scene is on the whole: log_average(L) -> Lav."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 
 
 def drawn(rng):
     return np.exp(1.5 * rng.standard_normal((40, 50))).astype(np.float32)
 
 
-@pytest.mark.points(1)
 def test_a_scene_has_one_average(subject, rng):
     """One number for the whole picture.
 
@@ -21,7 +19,7 @@ def test_a_scene_has_one_average(subject, rng):
     finite(subject.log_average(drawn(rng) + np.float32(1)), (), what="Lav")
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_it_is_the_geometric_mean(subject, rng):
     """One lamp must not decide how bright the whole scene is.
 
@@ -36,7 +34,7 @@ def test_it_is_the_geometric_mean(subject, rng):
         same(np.log(came), np.log(one, dtype=float).mean(), 1e-3, what=what)
 
 
-@pytest.mark.points(2, needs="test_it_is_the_geometric_mean")
+@points(2, needs="test_it_is_the_geometric_mean")
 def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
     """What is log 0?
 
@@ -51,7 +49,7 @@ def test_black_pixels_leave_it_finite_and_above_0(subject, rng):
     require(0 < came < 0.9 * np.exp(np.log(L[4:], dtype=float).mean()), said)
 
 
-@pytest.mark.points(2, needs="test_it_is_the_geometric_mean")
+@points(2, needs="test_it_is_the_geometric_mean")
 def test_ten_times_the_light_is_ten_times_the_average(subject, rng):
     """Ten times the light: which number should come?
 

@@ -1,12 +1,11 @@
 """The radiance map: merge(images, times, g, w) -> E (H, W[, 3])."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.capture import camera, responses
 from hdrlab.core import weights
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 from hdrlab.radiance.merge import merge
 
 G = responses.true_g("gamma")
@@ -32,7 +31,6 @@ def same_map(came, truth, tolerance=0.01, **knobs):
     same(np.log(E), np.log(truth), tolerance, what="ln E", picture=truth.ndim == 2, **knobs)
 
 
-@pytest.mark.points(1)
 def test_every_pixel_has_a_finite_radiance(subject, rng):
     """The map has the size of a photograph.
 
@@ -45,7 +43,7 @@ def test_every_pixel_has_a_finite_radiance(subject, rng):
     require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}", came=E)
 
 
-@pytest.mark.points(8)
+@points(8)
 def test_it_is_the_weighted_mean_of_the_logarithms(subject, rng):
     """Divide by the sum of the weights, not by the number of frames.
 
@@ -57,7 +55,7 @@ def test_it_is_the_weighted_mean_of_the_logarithms(subject, rng):
     same_map(subject.merge(images, TIMES, G), merge(images, TIMES, G))
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
     """Compare your map with the scene that the photographs were made of, not only by its looks.
 
@@ -75,7 +73,7 @@ def test_the_radiance_of_a_simulated_camera_comes_back(subject, rng):
     same(step, came - np.log(8), 1e-3, what="ln E with times 8 times as long", picture=True)
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_the_weights_that_are_given_are_used(subject, rng):
     """Two frames may disagree. Whom does the map believe, and how much?
 
@@ -88,7 +86,7 @@ def test_the_weights_that_are_given_are_used(subject, rng):
         same_map(subject.merge(images, TIMES, G, w), merge(images, TIMES, G, w))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_order_of_the_frames_does_not_matter(subject, rng):
     """Does any line of yours take the first frame for the shortest?
 
@@ -101,7 +99,7 @@ def test_the_order_of_the_frames_does_not_matter(subject, rng):
     same_map(subject.merge(images[order], TIMES[order], G), merge(images, TIMES, G))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_each_channel_is_read_by_its_own_curve(subject, rng):
     """Colour photographs are (P, H, W, 3).
 

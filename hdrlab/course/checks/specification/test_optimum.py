@@ -1,12 +1,11 @@
 """The exposure that a meter asks for: optimum(EV_pre, B_pre, B_opt) -> EV_opt."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_reading_too_bright_by_so_many_stops_asks_for_as_many(subject, rng):
     """The reading is four times what it should be. How many stops are that?
 
@@ -19,7 +18,7 @@ def test_a_reading_too_bright_by_so_many_stops_asks_for_as_many(subject, rng):
         same(subject.optimum(EV, 0.18 * 2**n), EV + n, 1e-3, what=f"EV after a reading off by {n:g} stops")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_what_the_reading_should_be_is_asked(subject, rng):
     """Not every meter takes the world for 18 % gray. Where does B_opt stand in your formula?
 

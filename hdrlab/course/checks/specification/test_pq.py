@@ -1,13 +1,12 @@
 """The code of BT.2100's PQ: pq(FD) -> v, from cd/m2 to a signal of 0 to 1."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.tonemap import transfer
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_a_luminance_has_the_code_of_the_standard(subject, rng):
     """Is it the curve of the standard? 100 cd/m2 has the signal 0.508.
 
@@ -19,7 +18,7 @@ def test_a_luminance_has_the_code_of_the_standard(subject, rng):
     same(subject.pq(FD), transfer.pq(FD), 1e-4, what="v", kind="curve")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_white_of_an_old_display_lies_in_the_middle(subject, rng):
     """Where do 10,000 and 100 cd/m2, and none at all, get their codes?
 
@@ -31,7 +30,7 @@ def test_the_white_of_an_old_display_lies_in_the_middle(subject, rng):
     same(subject.pq(FD), np.interp(FD, [0, 100, 10_000], [0, 0.508, 1]), 1e-3, what="v of black and whites")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_picture_is_coded_pixel_by_pixel(subject, rng):
     """A picture has rows, columns and channels. What does each of them change?
 

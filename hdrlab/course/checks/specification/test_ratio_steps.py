@@ -1,8 +1,6 @@
 """The ratio of two exposures: ratio_steps(found, limit, tolerance, rounds) -> states (k, used, V)."""
 
-import pytest
-
-from hdrlab.course.checks.compare import parts, same, states
+from hdrlab.course.checks.compare import parts, points, same, states
 from hdrlab.radiance import ratios
 
 
@@ -20,7 +18,7 @@ def asked(subject, found, **knobs):
     return [parts(one, 3, what="a state") for one in came], list(ratios.ratio_steps(found, **knobs))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_first_ratio_is_that_of_least_squares(subject, rng):
     """Which k makes the sum of (v (y - k x))^2 smallest?
 
@@ -33,7 +31,7 @@ def test_the_first_ratio_is_that_of_least_squares(subject, rng):
     same(came[2], expected.V, 1e-3 * expected.V, what="the first V")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_a_round_leaves_out_what_misses_by_much_more_than_the_rest(subject, rng):
     """Which pairs are those of something that moved?
 
@@ -47,7 +45,7 @@ def test_a_round_leaves_out_what_misses_by_much_more_than_the_rest(subject, rng)
         same(came[-1][0], expected[1].k, 1e-4 * expected[1].k, what="k after one round")
 
 
-@pytest.mark.points(2, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
+@points(2, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
 def test_a_pair_that_fits_again_comes_back(subject, rng):
     """The first k was drawn aside by what moved. Who was left out for that alone?
 
@@ -60,7 +58,7 @@ def test_a_pair_that_fits_again_comes_back(subject, rng):
         same(came[-1][1], expected[-1].used, 0, what="the pairs in use after four rounds", kind="values")
 
 
-@pytest.mark.points(1, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
+@points(1, needs="test_a_round_leaves_out_what_misses_by_much_more_than_the_rest")
 def test_there_is_a_state_before_the_first_round_and_one_after_each(subject, rng):
     """How many states are there after three rounds?
 

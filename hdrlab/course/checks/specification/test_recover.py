@@ -1,11 +1,10 @@
 """Mitsunaga and Nayar's response: recover(images, times) -> g, ln exposure of each level, g[128] = 0."""
 
 import numpy as np
-import pytest
 
 from hdrlab.capture import camera, responses
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import as_shape, finite, numbers, require, same
+from hdrlab.course.checks.compare import as_shape, finite, numbers, points, require, same
 from hdrlab.response import mitsunaga
 
 SHOWN = slice(25, 246)
@@ -49,7 +48,6 @@ def same_curve(g, response, tolerance):
     require(error <= tolerance, said, expected=truth, came=g, kind="curve")
 
 
-@pytest.mark.points(1)
 def test_every_level_above_0_has_a_finite_g(subject, rng):
     """One number for each of 256 levels.
 
@@ -61,7 +59,7 @@ def test_every_level_above_0_has_a_finite_g(subject, rng):
     asked(subject, taken.images, taken.times, order=3)
 
 
-@pytest.mark.points(7)
+@points(7)
 def test_the_curve_of_a_camera_comes_out(subject, rng):
     """Plot f^-1 over M, from 0 to 1: it goes through (0, 0) and (1, 1).
 
@@ -74,7 +72,7 @@ def test_the_curve_of_a_camera_comes_out(subject, rng):
         same_curve(asked(subject, taken.images, taken.times, order=5), response, 0.025)
 
 
-@pytest.mark.points(5, needs="test_the_curve_of_a_camera_comes_out")
+@points(5, needs="test_the_curve_of_a_camera_comes_out")
 def test_frames_in_another_order_give_the_same_curve(subject, rng):
     """The ratio in eq. 5 is that of a frame to the next longer one: below 1.
 
@@ -88,7 +86,7 @@ def test_frames_in_another_order_give_the_same_curve(subject, rng):
     same_curve(shuffled, response, 0.025)
 
 
-@pytest.mark.points(5, needs="test_the_curve_of_a_camera_comes_out")
+@points(5, needs="test_the_curve_of_a_camera_comes_out")
 def test_rough_times_are_corrected(subject, rng):
     """The method takes the times for rough. Which quantity does it correct?
 
@@ -103,7 +101,7 @@ def test_rough_times_are_corrected(subject, rng):
         same_curve(asked(subject, taken.images, rough, order=3), "linear", 0.015)
 
 
-@pytest.mark.points(4, needs="test_the_curve_of_a_camera_comes_out")
+@points(4, needs="test_the_curve_of_a_camera_comes_out")
 def test_the_curve_rises_at_all_levels(subject, rng):
     """A level that is brighter can never mean less light.
 
@@ -119,7 +117,7 @@ def test_the_curve_rises_at_all_levels(subject, rng):
         same_curve(g, response, 0.05)
 
 
-@pytest.mark.points(4, needs="test_the_curve_of_a_camera_comes_out")
+@points(4, needs="test_the_curve_of_a_camera_comes_out")
 def test_three_equal_channels_have_the_curve_of_gray(subject, rng):
     """Each channel has its own curve.
 

@@ -1,13 +1,12 @@
 """Robertson's iterations: recover_steps(Z, times, w) -> states that begin with f^-1 (256,)."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter1d
 
 from hdrlab.capture import responses
 from hdrlab.core import weights
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import finite, require, same, states
+from hdrlab.course.checks.compare import finite, points, require, same, states
 from hdrlab.response import robertson
 
 W = weights.cut(weights.gaussian(), below=0.02)
@@ -39,7 +38,7 @@ def asked(subject, Z, t, **knobs):
     return found
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
     """Plot f^-1 after every iteration: where does it go?
 
@@ -55,7 +54,7 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
         same_curve(scale * f, truth, 0.02)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     """An iteration is two means, one after the other. Which of them has weights?
 
@@ -73,7 +72,7 @@ def test_one_iteration_is_a_weighted_mean_and_then_a_plain_one(subject, rng):
     same(found[1][shown], expected, 0.01, what="f^-1 after the first iteration", kind="curve")
 
 
-@pytest.mark.points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
+@points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
 def test_the_truth_is_where_the_iterations_rest(subject, rng):
     """A linear camera is the initial guess: what should the iterations change?
 
@@ -89,7 +88,7 @@ def test_the_truth_is_where_the_iterations_rest(subject, rng):
         same(f, truth, 2e-3, what="f^-1 of a linear camera", kind="curve", where=~np.isnan(truth))
 
 
-@pytest.mark.points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
+@points(3, needs="test_the_iterations_end_at_the_curve_of_the_camera")
 def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng):
     """Some levels no pixel has. What is their mean?
 
@@ -102,7 +101,7 @@ def test_levels_that_no_pixel_has_are_filled_from_their_neighbours(subject, rng)
     same_curve(even, whole, 0.05)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_each_iteration_is_a_state_and_moves_the_curve_less(subject, rng):
     """Yield a state before the first iteration, and one after each.
 
@@ -117,7 +116,7 @@ def test_each_iteration_is_a_state_and_moves_the_curve_less(subject, rng):
     require(len(found) >= 8 and 0 < moved[-1] < 0.5 * moved[0], said)
 
 
-@pytest.mark.points(2, needs="test_the_iterations_end_at_the_curve_of_the_camera")
+@points(2, needs="test_the_iterations_end_at_the_curve_of_the_camera")
 def test_the_unit_of_time_does_not_matter(subject, rng):
     """Seconds or milliseconds: who could tell from the photographs?
 

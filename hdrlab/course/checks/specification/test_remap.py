@@ -1,9 +1,8 @@
 """The remapping of a local Laplacian filter: remap(lL, g, sigma, alpha, beta) -> r, nats."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
@@ -12,7 +11,7 @@ def drawn(rng):
     return (g + rng.uniform(-3, 3, (24, 30))).astype(np.float32), g, float(rng.uniform(0.4, 0.75))
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_sigma_tells_details_from_edges(subject, rng):
     """In a picture there are both. What differs from g by less than sigma is detail, the rest is an edge.
 
@@ -27,7 +26,7 @@ def test_sigma_tells_details_from_edges(subject, rng):
     same(came, g + np.sign(lL - g) * far, 1e-3, what="r", picture=True)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_details_take_the_power(subject, rng):
     """What differs from g by less than sigma is detail, and stays on its side of g.
 
@@ -43,7 +42,7 @@ def test_details_take_the_power(subject, rng):
         same(came, expected, 1e-3, what=f"r of details, alpha = {alpha:g}", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_of_an_edge_beta_is_left(subject, rng):
     """What differs by more than sigma is an edge. Where the two meet, r makes no jump.
 
@@ -60,7 +59,6 @@ def test_of_an_edge_beta_is_left(subject, rng):
         same(came, expected, 1e-3, what=f"r of edges, beta = {beta:g}", picture=True)
 
 
-@pytest.mark.points(1)
 def test_twice_the_light_moves_r_and_changes_nothing_else(subject, rng):
     """Twice the light adds ln 2 to lL and to g. What does it add to r?
 

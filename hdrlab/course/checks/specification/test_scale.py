@@ -1,10 +1,9 @@
 """Chiu's scale: scale(L, headroom, sigma) -> s (H, W), so that s L is the picture."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 
 SIGMA = 4.0
 INNER = (slice(16, -16), slice(16, -16))  # away from the border, where a blur may do this or that
@@ -21,7 +20,6 @@ def asked(subject, L, k=8.0):
     return finite(subject.scale(L, headroom=k, sigma=SIGMA), L.shape, what="s").astype(float)
 
 
-@pytest.mark.points(1)
 def test_every_pixel_has_a_scale_above_0(subject, rng):
     """A scale for each pixel: the shape of L.
 
@@ -33,7 +31,7 @@ def test_every_pixel_has_a_scale_above_0(subject, rng):
     require((s > 0).all(), f"s: expected scales above 0, got {s.min():.3g}", came=s)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
     """An even wall of luminance L: how bright should it be shown?
 
@@ -47,7 +45,7 @@ def test_an_even_wall_is_shown_at_one_over_k(subject, rng):
         same(asked(subject, L, k) * L, np.full(L.shape, 1 / k), 0.01 / k, what="s L", picture=True)
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_it_is_one_over_k_times_the_blur(subject, rng):
     """Blur first, and divide then: the mean of 1 / L is another thing.
 
@@ -61,7 +59,7 @@ def test_it_is_one_over_k_times_the_blur(subject, rng):
     same(shares, np.ones(shares.shape), 0.08, what="s k blur(L)", picture=True)
 
 
-@pytest.mark.points(2, needs="test_it_is_one_over_k_times_the_blur")
+@points(2, needs="test_it_is_one_over_k_times_the_blur")
 def test_the_unit_of_luminance_cancels_in_the_picture(subject, rng):
     """Ten times the light in the whole scene: what becomes of s, and what of s L?
 

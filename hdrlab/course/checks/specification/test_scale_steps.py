@@ -1,10 +1,9 @@
 """Reinhard's neighbourhoods: scale_steps(blurred) -> states (width, centre, response, even, adaptation)."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.course.checks.compare import parts, same, states
+from hdrlab.course.checks.compare import parts, points, same, states
 from hdrlab.tonemap import reinhard
 
 CLOSE = 2e-4  # a response so close to the threshold may fall on either side
@@ -34,7 +33,7 @@ def same_adaptation(came, truth, what, sure):
     same(came[-1][4] / scale, truth[-1].adaptation / scale, 1e-3, what=what, picture=True, where=sure)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_each_response_compares_a_width_with_the_next(subject, rng):
     """The surround of one width is the centre of the next: eight responses out of nine blurs.
 
@@ -49,7 +48,7 @@ def test_each_response_compares_a_width_with_the_next(subject, rng):
         same(one[2], true.response, 1e-3, what=f"V at width {true.width:.3g}", picture=True)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
     """The widths are tried from small to large. When does a pixel stop?
 
@@ -65,7 +64,6 @@ def test_a_pixel_takes_the_largest_width_that_is_still_even(subject, rng):
         same(one[3], true.even, 0, what=f"what is even at {true.width:.3g}", picture=True, where=sure)
 
 
-@pytest.mark.points(1)
 def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
     """What does an even wall say at any width?
 
@@ -79,7 +77,7 @@ def test_an_even_wall_takes_the_widest_neighbourhood(subject, rng):
     same(came[-1][4], blurred[7], 2e-4 * level, what="the adaptation of an even wall")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_knobs_are_used(subject, rng):
     """The knobs are the key a, the sharpening phi, and the threshold.
 

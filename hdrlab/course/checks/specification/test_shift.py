@@ -1,9 +1,8 @@
 """Moving photographs: shift(images, offsets) -> the images moved, and cut to what all of them show."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 
 
 def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
@@ -16,7 +15,7 @@ def agree(subject, rng, offsets, *, channels=(), what="the moved images"):
     same(subject.shift(np.stack(images), offsets), np.stack([common] * len(offsets)), 0, what=what)
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_moved_images_lie_on_each_other(subject, rng):
     """An offset (dy, dx) says where the image must move: down, and to the right.
 
@@ -27,7 +26,7 @@ def test_moved_images_lie_on_each_other(subject, rng):
     agree(subject, rng, np.array([[0, 0], [3, -5]]))
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_nothing_comes_in_from_the_other_side(subject, rng):
     """Where do the pixels at the border come from?
 
@@ -38,7 +37,7 @@ def test_nothing_comes_in_from_the_other_side(subject, rng):
     agree(subject, rng, rng.integers(-9, 10, (4, 2)))
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_colour_moves_like_gray(subject, rng):
     """Three channels move together.
 
@@ -49,7 +48,6 @@ def test_colour_moves_like_gray(subject, rng):
     agree(subject, rng, rng.integers(-6, 7, (3, 2)), channels=(3,))
 
 
-@pytest.mark.points(1)
 def test_images_that_need_not_move_stay_whole(subject, rng):
     """What is to be done where all offsets are the same?
 

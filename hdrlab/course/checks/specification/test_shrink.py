@@ -1,9 +1,8 @@
 """A level of the pyramid: shrink(Y) -> half the size."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def means(Y):
@@ -12,7 +11,6 @@ def means(Y):
     return Y[: 2 * rows, : 2 * columns].reshape(rows, 2, columns, 2).mean(axis=(1, 3))
 
 
-@pytest.mark.points(1)
 def test_a_level_has_half_the_rows_and_columns(subject, rng):
     """How many rows has the next level?
 
@@ -24,7 +22,7 @@ def test_a_level_has_half_the_rows_and_columns(subject, rng):
     finite(subject.shrink(Y), (8, 10), what="the level")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_a_level_is_the_rounded_mean_of_four_pixels(subject, rng):
     """Every pixel of the photograph counts: none is skipped.
 
@@ -36,7 +34,7 @@ def test_a_level_is_the_rounded_mean_of_four_pixels(subject, rng):
     same(subject.shrink(Y), means(Y), 0.5, what="the level", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_bright_sky_does_not_overflow(subject, rng):
     """What is 200 + 100 in uint8?
 
@@ -48,7 +46,7 @@ def test_a_bright_sky_does_not_overflow(subject, rng):
     same(subject.shrink(Y), means(Y), 0.5, what="the level", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_an_odd_row_or_column_is_left_out(subject, rng):
     """Half of 7 rows are 3.
 

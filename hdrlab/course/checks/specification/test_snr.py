@@ -1,10 +1,9 @@
 """The weight of the signal over the noise: snr(g, least, span) -> w (n,). Its scale is free."""
 
 import numpy as np
-import pytest
 
 from hdrlab.core import weights
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.course.checks.laws import drawn_response
 
 
@@ -20,7 +19,7 @@ def asked(subject, g, **knobs):
     return w / w[len(g) // 2]
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_a_level_counts_as_its_signal_over_its_slope(subject, rng):
     """Noise of one size in the levels: what does it do to the exposure?
 
@@ -35,7 +34,7 @@ def test_a_level_counts_as_its_signal_over_its_slope(subject, rng):
     same(came[1:-1], expected[1:-1], 0.02 * expected.max(), what="w", kind="curve")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_clipped_levels_do_not_count(subject, rng):
     """What does a pixel of the lowest level say? And one of the highest?
 
@@ -47,7 +46,7 @@ def test_clipped_levels_do_not_count(subject, rng):
     same(asked(subject, g, least=0.01, span=4)[[0, -1]], [0, 0], 1e-6, what="the weights of the ends")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_where_the_curve_is_level_the_weight_is_bounded(subject, rng):
     """Where the curve is level, f' is 0. And f / f'?
 
@@ -62,7 +61,7 @@ def test_where_the_curve_is_level_the_weight_is_bounded(subject, rng):
     same(came, expected, 0.02 * expected.max(), what="w of a level", kind="curve")
 
 
-@pytest.mark.points(1, needs="test_a_level_counts_as_its_signal_over_its_slope")
+@points(1, needs="test_a_level_counts_as_its_signal_over_its_slope")
 def test_the_unit_of_the_exposure_cancels(subject, rng):
     """g is known but for a constant. What does a constant do to f? And to f'?
 

@@ -1,9 +1,8 @@
 """The picture that has a divergence: solve(divG) -> u, Laplacian u = div G. A constant in u is free."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def laplacian(u):
@@ -18,7 +17,6 @@ def asked(subject, divG):
     return u - u.mean()
 
 
-@pytest.mark.points(1)
 def test_an_even_picture_is_what_no_divergence_belongs_to(subject):
     """Which picture has no slopes at all?
 
@@ -29,7 +27,7 @@ def test_an_even_picture_is_what_no_divergence_belongs_to(subject):
     same(asked(subject, np.zeros((9, 12))), np.zeros((9, 12)), 1e-9, what="u less its mean")
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_its_laplacian_is_the_divergence(subject, rng):
     """Take the Laplacian of what you found: is it div G?
 
@@ -42,7 +40,7 @@ def test_its_laplacian_is_the_divergence(subject, rng):
     same(asked(subject, laplacian(u)), u, 5e-3, what="u", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_ramp_of_light_does_not_wrap_around(subject, rng):
     """Look at the borders: does the left one continue at the right one?
 
@@ -54,7 +52,7 @@ def test_a_ramp_of_light_does_not_wrap_around(subject, rng):
     same(asked(subject, laplacian(u)), u - u.mean(), 5e-3, what="u of a ramp", picture=True)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_tall_and_wide_pictures_are_solved_alike(subject, rng):
     """A picture is as high as it is wide only now and then.
 

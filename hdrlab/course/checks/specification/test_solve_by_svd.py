@@ -1,9 +1,8 @@
 """Least squares by the SVD: solve_by_svd(A, b, rtol) -> the shortest x (k,)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.response.debevec import solve_by_svd
 
 
@@ -20,7 +19,7 @@ def same_x(subject, A, b, **knobs):
     same(subject.solve_by_svd(A, b, **knobs), x, 1e-5 * np.abs(x).max(), what="x", kind="values")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_x_minimises_the_sum_of_squares(subject, rng):
     """A = U Sigma V^T. What is the x that comes closest to A x = b?
 
@@ -32,7 +31,7 @@ def test_x_minimises_the_sum_of_squares(subject, rng):
         same_x(subject, *drawn(rng, np.geomspace(1, 1e-4, k)), rtol=1e-8)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_of_many_answers_it_is_the_shortest(subject, rng):
     """A direction in which A measures nothing has sigma = 0. How far is x to go along it?
 
@@ -45,7 +44,7 @@ def test_of_many_answers_it_is_the_shortest(subject, rng):
     same_x(subject, A, b, rtol=1e-8)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_rtol_says_which_singular_values_count(subject, rng):
     """Which singular values are as good as 0?
 

@@ -1,9 +1,7 @@
 """A spot meter: spot(shape, at, share) -> w (H, W)."""
 
-import pytest
-
 from hdrlab.capture import metering
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
@@ -13,7 +11,7 @@ def drawn(rng):
     return (H, W), {"at": at, "share": int(rng.integers(20, 60)) / (H * W)}
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_the_pixels_that_are_nearest_count(subject, rng):
     """Which pixels lie in a disc around a place?
 
@@ -26,7 +24,7 @@ def test_the_pixels_that_are_nearest_count(subject, rng):
         same(w > 0, metering.spot(shape, **knobs) > 0, 0, what="the pixels of weight above 0", picture=True)
 
 
-@pytest.mark.points(3, needs="test_the_pixels_that_are_nearest_count")
+@points(3, needs="test_the_pixels_that_are_nearest_count")
 def test_they_count_alike_and_together_one(subject, rng):
     """Which weight has each of k pixels that count alike?
 

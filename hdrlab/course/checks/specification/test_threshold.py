@@ -1,9 +1,8 @@
 """The threshold of a bitmap: threshold(h, q) -> the code that a fraction q of the pixels does not exceed."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import numbers, same
+from hdrlab.course.checks.compare import numbers, points, same
 
 
 def drawn(rng):
@@ -15,7 +14,7 @@ def histogram(Y):
     return np.bincount(Y.ravel(), minlength=256)
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_the_threshold_is_the_median(subject, rng):
     """The median is not the mean: in a dark picture with a lamp they are far apart.
 
@@ -28,7 +27,7 @@ def test_the_threshold_is_the_median(subject, rng):
         same(subject.threshold(histogram(Y), 0.5), np.median(Y), 0, what="t")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_any_fraction_can_be_asked_for(subject, rng):
     """The argument q is the fraction, 0.5 for the median.
 
@@ -42,7 +41,7 @@ def test_any_fraction_can_be_asked_for(subject, rng):
         same(subject.threshold(histogram(Y), q), expected, 0, what=f"t of q = {q}")
 
 
-@pytest.mark.points(1, needs="test_any_fraction_can_be_asked_for")
+@points(1, needs="test_any_fraction_can_be_asked_for")
 def test_several_fractions_give_a_code_each(subject, rng):
     """The sheet asks for one more thing of q: may it be an array?
 
@@ -55,7 +54,7 @@ def test_several_fractions_give_a_code_each(subject, rng):
     same(subject.threshold(histogram(Y), q), expected, 0, what="the codes of three fractions")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_larger_photograph_of_the_same_codes_has_the_same_threshold(subject, rng):
     """A photograph twice as large of the same scene has the same median.
 
@@ -67,7 +66,6 @@ def test_a_larger_photograph_of_the_same_codes_has_the_same_threshold(subject, r
     same(subject.threshold(7 * histogram(Y), 0.5), np.median(Y), 0, what="t")
 
 
-@pytest.mark.points(1)
 def test_the_threshold_of_an_even_wall_is_its_code(subject, rng):
     """An even wall: what else could its threshold be?
 

@@ -1,9 +1,8 @@
 """Writing a portable float map: to_bytes(E) -> the file's bytes."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import Different, require, same
+from hdrlab.course.checks.compare import Different, points, require, same
 from hdrlab.io.maps import pfm
 
 
@@ -26,7 +25,6 @@ def as_read(data):
         raise Different(f"the file cannot be read: {error}") from None
 
 
-@pytest.mark.points(1)
 def test_the_file_begins_with_the_kind_of_map(subject, rng):
     """Two letters say what follows.
 
@@ -38,7 +36,7 @@ def test_the_file_begins_with_the_kind_of_map(subject, rng):
         require(asked(subject, E)[:2] == kind, f"expected a file that begins with {kind.decode()}")
 
 
-@pytest.mark.points(6)
+@points(6)
 def test_what_is_written_is_read_again_and_stands_upright(subject, rng):
     """Look at the file with another program: where is the sky?
 
@@ -50,7 +48,7 @@ def test_what_is_written_is_read_again_and_stands_upright(subject, rng):
     same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the picture read again", picture=True)
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_a_map_in_colour_is_read_again(subject, rng):
     """A gray map is Pf, a map in colour is PF.
 
@@ -62,7 +60,7 @@ def test_a_map_in_colour_is_read_again(subject, rng):
     same(as_read(asked(subject, E)), E, 1e-6 * E.max(), what="the map read again")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_file_holds_four_bytes_a_value_and_no_more(subject, rng):
     """The values are float32: 4 bytes each, no more.
 
@@ -76,7 +74,7 @@ def test_the_file_holds_four_bytes_a_value_and_no_more(subject, rng):
     same(len(data) - start, 4 * E.size, 0, what="bytes after the header's three lines")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_the_sign_of_the_scale_is_the_order_of_the_bytes(subject, rng):
     """Which byte of a number comes first? The third line says so.
 

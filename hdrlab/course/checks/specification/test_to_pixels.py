@@ -1,9 +1,8 @@
 """Radiance as RGBE: to_pixels(E) -> (H, W, 4), three mantissas and the exponent that they share."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 from hdrlab.io.maps import rgbe
 
 
@@ -21,7 +20,6 @@ def asked(subject, E):
     return pixels
 
 
-@pytest.mark.points(1)
 def test_every_pixel_is_four_bytes(subject, rng):
     """Three mantissas and an exponent.
 
@@ -32,7 +30,7 @@ def test_every_pixel_is_four_bytes(subject, rng):
     asked(subject, drawn(rng))
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
     """Decode what you encoded: E = m / 256 2^(e - 128).
 
@@ -47,7 +45,7 @@ def test_decoding_gives_the_radiance_back_to_a_part_in_128(subject, rng):
     same(m / 256 * 2.0 ** (e - 128) / brightest, E / brightest, 1 / 127, what="E per its brightest channel")
 
 
-@pytest.mark.points(3, needs="test_decoding_gives_the_radiance_back_to_a_part_in_128")
+@points(3, needs="test_decoding_gives_the_radiance_back_to_a_part_in_128")
 def test_the_largest_mantissa_is_128_or_more(subject, rng):
     """How many of the mantissa's 256 values do you use?
 
@@ -61,7 +59,7 @@ def test_the_largest_mantissa_is_128_or_more(subject, rng):
     require((largest >= 128).all(), said)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_twice_the_light_is_one_more_in_the_exponent_and_black_is_zero(subject, rng):
     """Twice the light: what happens to the four bytes?
 

@@ -1,9 +1,8 @@
 """RGBE as radiance: to_radiance(pixels) -> E (H, W, 3)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, require, same
+from hdrlab.course.checks.compare import finite, points, require, same
 
 
 def drawn(rng):
@@ -12,7 +11,6 @@ def drawn(rng):
     return pixels
 
 
-@pytest.mark.points(1)
 def test_every_pixel_is_three_radiances(subject, rng):
     """The exponent is no channel of the answer.
 
@@ -24,7 +22,7 @@ def test_every_pixel_is_three_radiances(subject, rng):
     require((E >= 0).all(), f"E: expected radiance of at least 0, got {float(E.min()):.3g}")
 
 
-@pytest.mark.points(5)
+@points(5)
 def test_a_mantissa_is_a_fraction_of_256(subject):
     """The pixel (145, 215, 87, 103) can be read as 4.32e-06 and more: which factor is missing?
 
@@ -37,7 +35,7 @@ def test_a_mantissa_is_a_fraction_of_256(subject):
     same(subject.to_radiance(pixels), expected, 0.005, what="E")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
     """What is 110 - 128 in uint8?
 
@@ -51,7 +49,7 @@ def test_dark_and_bright_exponents_are_powers_of_two(subject, rng):
     same(came / scale, pixels[..., :3] / 256, 0.003, what="E 2^(128 - e)")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_the_exponent_0_is_black(subject, rng):
     """The exponent 0 has a meaning of its own.
 

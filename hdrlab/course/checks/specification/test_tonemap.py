@@ -1,11 +1,10 @@
 """The photographic operator: tonemap(L, key, white, local, phi, threshold) -> Ld in [0, 1]."""
 
 import numpy as np
-import pytest
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.course.checks import laws
-from hdrlab.course.checks.compare import finite, numbers, require, same
+from hdrlab.course.checks.compare import finite, numbers, points, require, same
 from hdrlab.tonemap import reinhard
 
 SHOWN = "test_it_shows_the_scene_within_what_a_display_has"
@@ -23,7 +22,7 @@ def drawn(rng, shape=(96, 128)):
     return np.exp(1.5 * soft / soft.std() + 0.2 * rng.standard_normal(shape)).astype(np.float32)
 
 
-@pytest.mark.points(14)
+@points(14)
 def test_it_is_the_photographic_operator(subject, rng):
     """Which Lm has a pixel that is as bright as the log average? And which Ld?
 
@@ -39,7 +38,7 @@ def test_it_is_the_photographic_operator(subject, rng):
         same(came, expected, 0.01, what=what, picture=True)
 
 
-@pytest.mark.points(6, needs=OPERATOR)
+@points(6, needs=OPERATOR)
 def test_the_white_is_the_brightest_but_for_a_few_pixels(subject, rng):
     """Without a white, which luminance becomes white?
 
@@ -55,7 +54,7 @@ def test_the_white_is_the_brightest_but_for_a_few_pixels(subject, rng):
         same(subject.tonemap(one), expected, 0.01, what="Ld without a white", picture=True)
 
 
-@pytest.mark.points(6, needs=OPERATOR)
+@points(6, needs=OPERATOR)
 def test_local_holds_back_each_pixel_by_its_neighbourhood(subject, rng):
     """With local=True, whose brightness stands below the fraction?
 
@@ -72,7 +71,7 @@ def test_local_holds_back_each_pixel_by_its_neighbourhood(subject, rng):
         require(off <= 0.03, said, expected=expected, came=came, kind="image")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_it_shows_the_scene_within_what_a_display_has(subject):
     """Look at the picture: can more than half of the scene be seen?
 
@@ -83,7 +82,7 @@ def test_it_shows_the_scene_within_what_a_display_has(subject):
     laws.shows_the_scene(asked(subject))
 
 
-@pytest.mark.points(3, needs=SHOWN)
+@points(3, needs=SHOWN)
 def test_it_stays_in_range_whatever_the_scene(subject):
     """Try your operator on black, on one lamp in the dark, on a single pixel.
 
@@ -94,7 +93,7 @@ def test_it_stays_in_range_whatever_the_scene(subject):
     laws.stays_in_range(asked(subject))
 
 
-@pytest.mark.points(1, needs=SHOWN)
+@points(1, needs=SHOWN)
 def test_it_answers_the_same_twice(subject):
     """Does your operator remember anything?
 
@@ -105,7 +104,7 @@ def test_it_answers_the_same_twice(subject):
     laws.answers_the_same_twice(asked(subject))
 
 
-@pytest.mark.points(3, needs=OPERATOR)
+@points(3, needs=OPERATOR)
 def test_it_shrugs_off_a_hot_pixel(subject, rng):
     """One pixel of a million times the light: what happens to all the others?
 
@@ -119,7 +118,7 @@ def test_it_shrugs_off_a_hot_pixel(subject, rng):
         same(medians[1], medians[0], 0.02, what="the median of Ld with a hot pixel")
 
 
-@pytest.mark.points(2, needs=SHOWN)
+@points(2, needs=SHOWN)
 def test_it_keeps_the_light_the_right_way_up(subject):
     """Is what was bright still bright?
 
@@ -130,7 +129,7 @@ def test_it_keeps_the_light_the_right_way_up(subject):
     laws.keeps_the_light_the_right_way_up(asked(subject))
 
 
-@pytest.mark.points(2, needs=OPERATOR)
+@points(2, needs=OPERATOR)
 def test_the_unit_of_luminance_cancels(subject):
     """Radiance has no unit that is sacred: watts or candelas show the same scene.
 
@@ -141,7 +140,7 @@ def test_the_unit_of_luminance_cancels(subject):
     laws.exposure(asked(subject))
 
 
-@pytest.mark.points(1, needs=SHOWN)
+@points(1, needs=SHOWN)
 def test_it_takes_any_memory_layout(subject):
     """Which orders in memory does your code count on?
 

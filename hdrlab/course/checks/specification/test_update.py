@@ -1,9 +1,8 @@
 """Robertson's new inverse response: update(Z, t, E, n) -> f^-1 (n,)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 from hdrlab.response import robertson
 
 
@@ -13,7 +12,6 @@ def drawn(rng, N=4000, P=4):
     return Z, rng.uniform(0.1, 2, P), rng.uniform(0.2, 3, N)
 
 
-@pytest.mark.points(1)
 def test_every_level_has_a_response(subject, rng):
     """One number for each level.
 
@@ -25,7 +23,7 @@ def test_every_level_has_a_response(subject, rng):
     finite(subject.update(Z, t, E), (256,), what="f^-1")
 
 
-@pytest.mark.points(4)
+@points(4)
 def test_each_level_gets_the_mean_exposure_of_its_pixels(subject, rng):
     """For each level m: which samples in which frames have it?
 
@@ -37,7 +35,7 @@ def test_each_level_gets_the_mean_exposure_of_its_pixels(subject, rng):
     same(subject.update(Z, t, E), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_mean_is_a_plain_one(subject):
     """Does it matter in your mean whether m is close to the ends of the range?
 
@@ -52,7 +50,7 @@ def test_the_mean_is_a_plain_one(subject):
     same(subject.update(Z, t, E), expected, 1e-4, what="f^-1 at the levels 7 and 200", where=told)
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_a_sample_without_irradiance_is_left_out(subject, rng):
     """What is an E that is NaN worth in a sum?
 
@@ -65,7 +63,6 @@ def test_a_sample_without_irradiance_is_left_out(subject, rng):
     same(subject.update(more, t, nan), robertson.update(Z, t, E), 2e-3, what="f^-1", kind="curve")
 
 
-@pytest.mark.points(1)
 def test_a_level_without_pixels_is_nan(subject, rng):
     """Which f^-1 has a level that no pixel has?
 

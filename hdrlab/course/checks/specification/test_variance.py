@@ -1,9 +1,8 @@
 """The noise of one photograph: variance(X, D, N, R) -> V of the exposure, of the shape of X."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
@@ -18,7 +17,6 @@ def alike(came, V, what):
     same(ratio, np.ones(V.shape), 0.01, what=f"{what}, over what it should be", picture=True)
 
 
-@pytest.mark.points(1)
 def test_no_light_no_amplifier_and_no_rounding_have_no_noise(subject, rng):
     """Where would noise come from, if nothing makes any?
 
@@ -30,7 +28,7 @@ def test_no_light_no_amplifier_and_no_rounding_have_no_noise(subject, rng):
     same(subject.variance(0 * X, 0 * X, N, 0.0), 0 * X, 1e-12, what="V of nothing", picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_photons_have_a_variance_that_grows_with_the_light(subject, rng):
     """X N electrons were counted. By how many do counts of photons differ?
 
@@ -42,7 +40,7 @@ def test_photons_have_a_variance_that_grows_with_the_light(subject, rng):
     alike(subject.variance(X, 0 * X, N, 0.0), X / N, "V of photons alone")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_the_amplifier_adds_as_much_in_the_dark(subject, rng):
     """Without any light, what is left?
 
@@ -54,7 +52,7 @@ def test_the_amplifier_adds_as_much_in_the_dark(subject, rng):
     alike(subject.variance(0 * X, 0 * X, N, R), np.full(X.shape, (R / N) ** 2), "V of the amplifier alone")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_rounding_spreads_the_light_evenly_over_a_step(subject, rng):
     """All exposures of a step D are rounded to one level, so the light lay anywhere in it.
 
@@ -66,7 +64,7 @@ def test_rounding_spreads_the_light_evenly_over_a_step(subject, rng):
     alike(subject.variance(0 * X, D, N, 0.0), D**2 / 12, "V of rounding alone")
 
 
-@pytest.mark.points(2)
+@points(2)
 def test_variances_of_what_knows_nothing_of_each_other_add(subject, rng):
     """Three causes, and none knows of the others.
 

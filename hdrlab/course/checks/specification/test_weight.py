@@ -1,9 +1,8 @@
 """The weight of a photograph in exposure fusion: weight(F, powers) -> W (H, W)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import same
+from hdrlab.course.checks.compare import points, same
 from hdrlab.enhance import mertens
 
 INNER = (slice(1, -1), slice(1, -1))
@@ -22,7 +21,7 @@ def compared(subject, F, powers, what):
     same(came, expected, 2e-3 * float(expected.max()), what=what, picture=True)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_contrast_is_the_size_of_the_laplacian_of_gray(subject, rng):
     """Where is detail? Where a pixel differs from its neighbours, above or below.
 
@@ -33,7 +32,7 @@ def test_contrast_is_the_size_of_the_laplacian_of_gray(subject, rng):
     compared(subject, drawn(rng), (1, 0, 0), "W by contrast alone")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_saturation_is_the_deviation_of_red_green_and_blue(subject, rng):
     """How far are R, G and B from each other?
 
@@ -44,7 +43,7 @@ def test_saturation_is_the_deviation_of_red_green_and_blue(subject, rng):
     compared(subject, drawn(rng), (0, 1, 0), "W by saturation alone")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_exposedness_is_a_product_over_the_channels(subject, rng):
     """Which value is exposed best? And a pixel of which one channel is clipped?
 
@@ -55,7 +54,7 @@ def test_exposedness_is_a_product_over_the_channels(subject, rng):
     compared(subject, drawn(rng), (0, 0, 1), "W by exposedness alone")
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_a_pixel_is_to_be_good_in_all_three(subject, rng):
     """A pixel of fine contrast may be clipped. What should it weigh?
 

@@ -1,9 +1,8 @@
 """The contradiction of frames at a pixel: weighted_variance(x, w) -> v (H, W)."""
 
 import numpy as np
-import pytest
 
-from hdrlab.course.checks.compare import finite, same
+from hdrlab.course.checks.compare import finite, points, same
 
 
 def drawn(rng):
@@ -13,7 +12,7 @@ def drawn(rng):
     return x, rng.uniform(0, 1, x.shape) * (rng.uniform(size=x.shape) > 0.2)
 
 
-@pytest.mark.points(3)
+@points(3)
 def test_frames_contradict_each_other_by_the_weighted_variance(subject, rng):
     """By how much do the answers of the frames differ from their mean?
 
@@ -27,7 +26,7 @@ def test_frames_contradict_each_other_by_the_weighted_variance(subject, rng):
     same(subject.weighted_variance(x, w), v, 1e-3 * v.max(), what="v", picture=True)
 
 
-@pytest.mark.points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
+@points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
 def test_one_frame_alone_contradicts_nobody(subject, rng):
     """Where all frames but one are clipped, what does v say? And where all are?
 
@@ -42,7 +41,7 @@ def test_one_frame_alone_contradicts_nobody(subject, rng):
     same(came, 0 * x[0], 1e-6, what="v where at most one frame measures", picture=True, where=alone)
 
 
-@pytest.mark.points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
+@points(1, needs="test_frames_contradict_each_other_by_the_weighted_variance")
 def test_the_unit_of_light_and_of_the_weights_cancels(subject, rng):
     """In another unit of light all x are larger by one number. And their differences?
 
