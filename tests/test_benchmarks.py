@@ -13,8 +13,7 @@ import pytest
 
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
-from benchmarks import __main__ as command
-from benchmarks import experiments, measure, peers, table
+from benchmarks import __main__ as command, experiments, measure, peers, table
 from benchmarks.experiments import Experiment, Skipped, at_least, at_most, near
 from benchmarks.rows import (
     OURS,

@@ -9,8 +9,7 @@ import pytest
 
 pytest.importorskip("benchmarks", reason="the benchmarks are no part of the installed package")
 
-from benchmarks import __main__ as command
-from benchmarks import fuzz
+from benchmarks import __main__ as command, fuzz
 from benchmarks.fuzz import minimise, mutations, process, readers, worker
 
 SEEDS = [b"width 12\nheight 7\n" + bytes(40), b"another 3.5"]

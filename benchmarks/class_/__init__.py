@@ -27,9 +27,7 @@ from benchmarks.class_.grading import TIMEOUT, Used, grade
 from benchmarks.class_.workers import cluster
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from hdrlab.course import plan
-from hdrlab.course.classroom import handins, journal
-from hdrlab.course.classroom import roster as lists
-from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom import handins, journal, roster as lists, run as classroom
 from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import results
 

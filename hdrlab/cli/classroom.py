@@ -34,9 +34,7 @@ class Class(NamedTuple):
 
 def class_of(conditions: plans.Conditions, asked: Any) -> Class:
     """Return a class with what it has handed in, as the options of `hdrlab grade` name it."""
-    from hdrlab.course.classroom import handins, marks
-    from hdrlab.course.classroom import roster as lists
-    from hdrlab.course.classroom import run as classroom
+    from hdrlab.course.classroom import handins, marks, roster as lists, run as classroom
 
     if asked.roster is None:
         raise ValueError("expected --roster, which says who is in the class")
@@ -50,8 +48,7 @@ def class_of(conditions: plans.Conditions, asked: Any) -> Class:
 
 def grade_folder(whole: Class) -> None:
     """Grade what a class has handed in; what was graded before is not graded again."""
-    from hdrlab.course.classroom import journal
-    from hdrlab.course.classroom import run as classroom
+    from hdrlab.course.classroom import journal, run as classroom
 
     course, found, pieces, asked = whole
     common.say("note", found.notes)
@@ -72,8 +69,7 @@ def grade_folder(whole: Class) -> None:
 
 def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
     """Write all that is about the whole class; return its page, and how many works have a result."""
-    from hdrlab.course.classroom import moodle, overview
-    from hdrlab.course.classroom import run as classroom
+    from hdrlab.course.classroom import moodle, overview, run as classroom
 
     course, found, pieces, asked = whole
     counted = overview.tally(classroom.read(asked.out, pieces))
@@ -86,8 +82,7 @@ def write_books(whole: Class, lost: Sequence[str] = ()) -> tuple[Path, int]:
 
 def graded(whole: Class, wanted: "Sequence[Piece]", out: Path) -> "list[Done]":
     """Return what became of each submission; its feedback is written as soon as its result is there."""
-    from hdrlab.course.classroom import journal
-    from hdrlab.course.classroom import run as classroom
+    from hdrlab.course.classroom import journal, run as classroom
 
     folder, course, asked = out / "results", whole.course, whole.asked
     before, rest = ([], [*wanted]) if asked.regrade else journal.parted(folder, wanted)

@@ -42,8 +42,7 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Pat
 @PLAN
 def export(asked: Any) -> None:
     """Write the course in the form of another system, whose tests call the same checks."""
-    from hdrlab.course.export import gradescope as to_gradescope
-    from hdrlab.course.export import nbgrader as to_nbgrader
+    from hdrlab.course.export import gradescope as to_gradescope, nbgrader as to_nbgrader
 
     if asked.nbgrader is None and asked.gradescope is None:
         raise ValueError("expected --nbgrader DIR or --gradescope DIR")

@@ -44,8 +44,7 @@ def tonemap(asked: Any) -> None:
     """
     from hdrlab import pipeline
     from hdrlab.cli.terminal import elapsed
-    from hdrlab.io import photos as files
-    from hdrlab.io import screens as codes
+    from hdrlab.io import photos as files, screens as codes
     from hdrlab.io.maps import ultrahdr
     from hdrlab.pipeline import screens
     from hdrlab.pipeline.pictures import find_operator

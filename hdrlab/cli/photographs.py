@@ -66,8 +66,7 @@ def assemble(asked: Any) -> None:
     import numpy as np
 
     from hdrlab import pipeline
-    from hdrlab.io import photos as files
-    from hdrlab.io import radiance
+    from hdrlab.io import photos as files, radiance
     from hdrlab.io.files import require_suffix
     from hdrlab.io.maps import layers
     from hdrlab.show.pages import wording
@@ -119,8 +118,7 @@ def assemble(asked: Any) -> None:
 def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None) -> "Bracket":
     """Return the bracket of PHOTOS with times by --times or --stops; all are 1 where there are none."""
     from hdrlab import pipeline
-    from hdrlab.io import album
-    from hdrlab.io import photos as files
+    from hdrlab.io import album, photos as files
     from hdrlab.io.decode import look
 
     colour, (paths, _) = common.colour(mask), album.select(photos)

@@ -28,8 +28,7 @@ def regrade(results: Path, requests: Sequence[Path], only: Sequence[str], policy
 
     RESULTS is what `hdrlab grade` has written of the class. Nothing in it changes before --apply.
     """
-    from hdrlab.course.classroom import journal, run
-    from hdrlab.course.classroom import regrade as review
+    from hdrlab.course.classroom import journal, regrade as review, run
     from hdrlab.course.scratch import temporary_folder
 
     whole = _as_graded(results, how)

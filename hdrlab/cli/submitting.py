@@ -19,8 +19,7 @@ def report(project: Path, example: bool) -> None:
     (map.hdr) are placed by themselves. The page travels alone.
     """
     from hdrlab.cli.terminal import elapsed
-    from hdrlab.course.projects import project as projects
-    from hdrlab.course.projects import report as reports
+    from hdrlab.course.projects import project as projects, report as reports
 
     words = project / projects.WORDS[0]
     if example:
@@ -46,9 +45,7 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     Pictures go in without location, serial numbers and the notes of their makers; their pixels and exposures
     stay as they are.
     """
-    from hdrlab.course.projects import project as projects
-    from hdrlab.course.projects import review
-    from hdrlab.course.projects import submit as handing
+    from hdrlab.course.projects import project as projects, review, submit as handing
 
     if out.exists() and not handing.is_archive(out):
         raise ValueError(f"{out}: expected a new name or an archive of before, this is another file")

@@ -3,8 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike as ArrayLike
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike as ArrayLike, NDArray
 
 Array = NDArray[Any]
 F32 = NDArray[np.float32]

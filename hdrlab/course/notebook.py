@@ -7,8 +7,7 @@ the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and
 from collections.abc import Sequence
 from pathlib import Path
 
-from hdrlab.course import grading
-from hdrlab.course import plan as plans
+from hdrlab.course import grading, plan as plans
 from hdrlab.course.code import closure
 from hdrlab.course.code.names import imported
 from hdrlab.course.material import handouts

@@ -11,8 +11,7 @@ import numpy as np
 
 from hdrlab.align import light, mtb
 from hdrlab.core.arrays import levels
-from hdrlab.core.bracket import Bracket
-from hdrlab.core.bracket import bracket as make_bracket
+from hdrlab.core.bracket import Bracket, bracket as make_bracket
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import exposure_times, plausibility

@@ -26,8 +26,7 @@ from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response import likelihood
 from hdrlab.response.mitsunaga import curve
 from hdrlab.response.polynomial import GRID, limit_slope, slope
-from hdrlab.response.self_calibration import HIGHEST, levels_by_time
-from hdrlab.response.self_calibration import calibrate as self_calibrate
+from hdrlab.response.self_calibration import HIGHEST, calibrate as self_calibrate, levels_by_time
 
 # slope of f^-1
 LEAST = 2e-3

@@ -15,8 +15,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.optional import skimage_data as data
-from hdrlab.core.optional import skimage_transform as transform
+from hdrlab.core.optional import skimage_data as data, skimage_transform as transform
 
 Points = NDArray[np.floating[Any]]
 

@@ -4,8 +4,7 @@ import cv2
 import numpy as np
 import pytest
 from brackets import bracket
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from hdrlab.align import mtb
 from hdrlab.align.shift import shift

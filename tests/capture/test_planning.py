@@ -4,8 +4,7 @@ from itertools import combinations_with_replacement
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from hdrlab.capture import exposure, planning
 from hdrlab.radiance.uncertainty import inverse_variance_merge

@@ -3,8 +3,7 @@
 import numpy as np
 import OpenEXR
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from hdrlab.core import gamut
 from hdrlab.core.colour import LUMINANCE, decode_srgb, luminance

@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from hypothesis import example, given
-from hypothesis import strategies as st
+from hypothesis import example, given, strategies as st
 
 from hdrlab.core.arrays import to_256
 from hdrlab.core.sampling import by_grid, by_rank

@@ -15,8 +15,7 @@ import hostile
 import siege
 from traps import TRAPS
 
-from benchmarks import __main__ as command
-from benchmarks import class_
+from benchmarks import __main__ as command, class_
 from benchmarks.class_ import costs, grading, handed, judged, mixed
 from benchmarks.class_.grading import Used
 from benchmarks.class_.handed import Handed

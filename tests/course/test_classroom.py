@@ -12,8 +12,7 @@ from hats import GOOD, PLAN
 
 from hdrlab import cli
 from hdrlab.course import submission
-from hdrlab.course.classroom import marks, overview
-from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom import marks, overview, run as classroom
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster, Student

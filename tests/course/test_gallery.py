@@ -8,8 +8,7 @@ from pathlib import Path
 
 import gallery_class as small
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from hdrlab import cli
 from hdrlab.course.gallery import ballots, collect, counting, export, store, tokens

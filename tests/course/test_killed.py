@@ -23,8 +23,7 @@ import test_cluster
 from hats import GOOD, PLAN
 
 from hdrlab.course import grading
-from hdrlab.course.classroom import journal
-from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom import journal, run as classroom
 from hdrlab.course.plan import Conditions, Homework, Task
 from hdrlab.course.reports import results
 from hdrlab.course.sandbox import doctor

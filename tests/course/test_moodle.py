@@ -7,8 +7,7 @@ from datetime import UTC, datetime, timedelta
 
 import pytest
 
-from hdrlab.course.classroom import marks, moodle
-from hdrlab.course.classroom import run as classroom
+from hdrlab.course.classroom import marks, moodle, run as classroom
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.plan import Conditions, Homework, Late, Task

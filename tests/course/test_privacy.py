@@ -6,13 +6,11 @@ import struct
 
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from PIL import Image
 from PIL.PngImagePlugin import PngInfo
 
-from hdrlab.course.projects import exif as parts
-from hdrlab.course.projects import privacy
+from hdrlab.course.projects import exif as parts, privacy
 from hdrlab.io.decode import look
 
 SECRETS = (b"SERIAL-4711", b"LENS-0815", b"Ada Owner", b"MAKERNOTE", b"gps:51.5N", b"home address", b"THUMB")

@@ -1,8 +1,7 @@
 """The class list, its teams, and tables that spreadsheets cannot run."""
 
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from hdrlab.course.classroom import roster
 from hdrlab.course.reports import sheets

@@ -19,8 +19,7 @@ import numpy as np
 import pytest
 
 from hdrlab import pipeline, scenes
-from hdrlab.course.site import live, reference
-from hdrlab.course.site import pages as build
+from hdrlab.course.site import live, pages as build, reference
 from hdrlab.diagnostics import doubts
 from hdrlab.io import web
 from hdrlab.io.photos import read_bracket, write_picture

@@ -15,9 +15,7 @@ from hdrlab.capture import camera
 from hdrlab.course.archives.unpack import unpack
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.gallery import collect
-from hdrlab.course.projects import project, review, words
-from hdrlab.course.projects import report as reports
-from hdrlab.course.projects import submit as handing
+from hdrlab.course.projects import project, report as reports, review, submit as handing, words
 from hdrlab.io import radiance, response_files
 from hdrlab.io.decode import look
 

@@ -5,8 +5,7 @@ import imageio.v3 as iio
 import numpy as np
 import pytest
 from brackets import bracket
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.ndimage import gaussian_filter1d, rotate
 from skimage.data import astronaut, coffee
 

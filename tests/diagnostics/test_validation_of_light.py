@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 import scipy
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from skimage.data import astronaut
 
 from hdrlab import scenes

@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from computed_skin import synthetic
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from skimage import data
 
 from hdrlab.capture import exposure

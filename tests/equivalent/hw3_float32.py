@@ -2,8 +2,7 @@
 
 # %%
 import numpy as np
-from scipy.ndimage import binary_fill_holes
-from scipy.ndimage import label as connected
+from scipy.ndimage import binary_fill_holes, label as connected
 from scipy.signal import convolve2d
 
 f32 = np.float32

@@ -4,8 +4,7 @@ import numpy as np
 import pytest
 
 from hdrlab.core.filters import pyramid as lesson
-from hdrlab.fast import _bands as bands
-from hdrlab.fast import pyramid as quick
+from hdrlab.fast import _bands as bands, pyramid as quick
 
 
 def noise(shape, seed=0):

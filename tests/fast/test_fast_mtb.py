@@ -3,8 +3,7 @@
 import numpy as np
 import pytest
 from brackets import bracket
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.ndimage import zoom
 from skimage.data import camera
 

@@ -7,8 +7,7 @@ import numpy as np
 import OpenEXR
 import pytest
 import tifffile
-from hypothesis import HealthCheck, given, settings
-from hypothesis import strategies as st
+from hypothesis import HealthCheck, given, settings, strategies as st
 from PIL import Image
 
 from hdrlab.io.maps import rgbe

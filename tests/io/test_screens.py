@@ -12,8 +12,7 @@ from PIL import Image
 from hdrlab import pipeline, scenes
 from hdrlab.cli import run
 from hdrlab.core import colour
-from hdrlab.io import radiance
-from hdrlab.io import screens as files
+from hdrlab.io import radiance, screens as files
 from hdrlab.io.photos import read_bracket
 from hdrlab.pipeline import screens
 from hdrlab.show.describe import describe_file

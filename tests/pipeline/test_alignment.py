@@ -2,8 +2,7 @@
 
 import numpy as np
 import pytest
-from brackets import MARGIN, H, W, photograph, radiance
-from brackets import bracket as shoot
+from brackets import MARGIN, H, W, bracket as shoot, photograph, radiance
 from skimage.data import astronaut, coffee
 
 from hdrlab import pipeline, scenes

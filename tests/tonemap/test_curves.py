@@ -5,8 +5,7 @@ from functools import partial
 import laws
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from hdrlab.core import colour
 from hdrlab.core.extremes import robust_maximum, robust_minimum

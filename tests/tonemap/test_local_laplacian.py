@@ -3,8 +3,7 @@
 import laws
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from hdrlab.core.filters import pyramid
 from hdrlab.core.steps import last

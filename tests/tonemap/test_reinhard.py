@@ -8,8 +8,7 @@ import cv2
 import laws
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scipy.ndimage import gaussian_filter
 
 from hdrlab.core.colour import luminance

@@ -10,8 +10,7 @@ from importlib import import_module
 import laws
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from hypothesis.extra.numpy import array_shapes, arrays
 
 from hdrlab.pipeline import catalogue

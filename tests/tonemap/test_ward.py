@@ -3,8 +3,7 @@
 import laws
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last

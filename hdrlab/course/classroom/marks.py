@@ -9,8 +9,7 @@ from types import MappingProxyType
 from typing import NamedTuple
 
 from hdrlab.course.classroom.handins import Handin
-from hdrlab.course.classroom.late import Account, Handed, accounts, lateness
-from hdrlab.course.classroom.late import what_if as late_days
+from hdrlab.course.classroom.late import Account, Handed, accounts, lateness, what_if as late_days
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets

@@ -11,8 +11,7 @@ share    covered / signs: (n, n), of a in b, so not symmetric
 
 import copy
 import io
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from collections.abc import Set as AbstractSet
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set as AbstractSet
 from typing import NamedTuple
 
 import numpy as np

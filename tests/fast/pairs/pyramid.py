@@ -2,8 +2,7 @@
 
 import numpy as np
 
-from hdrlab.core.filters.pyramid import half_shape
-from hdrlab.core.filters.pyramid import laplacian as plain
+from hdrlab.core.filters.pyramid import half_shape, laplacian as plain
 from pairs import luminance, photographs
 
 

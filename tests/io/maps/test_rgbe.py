@@ -4,8 +4,7 @@ import cv2
 import imageio.v3 as iio
 import numpy as np
 import pytest
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 from hdrlab.io.maps import rgbe
 from hdrlab.io.maps.rgbe_header import read_header

@@ -14,8 +14,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from hdrlab.align.cerman import State
-from hdrlab.align.light import differences as compare
-from hdrlab.align.light import error, lattice
+from hdrlab.align.light import differences as compare, error, lattice
 from hdrlab.core.arrays import describe
 from hdrlab.core.types import F64, ArrayLike
 from hdrlab.show.plots import bare, picture_axes
