@@ -4,17 +4,21 @@ What the page says is in `sections`, how it says it in the template `report.html
 Nothing on the page is fetched, and nothing on it runs.
 """
 
+import platform
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+import scipy
 from numpy.typing import ArrayLike
 
+import hdrlab
 from hdrlab.core.arrays import describe
 from hdrlab.core.metrics import Truth
 from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly
+from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages import sections, wording
 from hdrlab.show.pages.templates import render_page
 from hdrlab.show.plots import figures
@@ -80,10 +84,10 @@ def _page(
         Path(__file__).parent,
         PAGE,
         wording=wording,
+        Quality=Quality,
         notes=notes,
         doubts=doubts,
         picture=figures.photograph(picture, 1600, seen),
-        facts=sections.facts(E, quality, medians),
         bracket=sections.bracket(bracket, offsets),
         response=sections.response(g, truth),
         radiance=sections.radiance(E),
@@ -92,5 +96,7 @@ def _page(
         moving=sections.moving(assembly.moving, picture),
         agreement=sections.agreement(bracket, medians),
         errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
-        recipe=sections.recipe(bracket, recipe),
+        recipe={"how": recipe} if recipe and isinstance(recipe, str) else recipe,
+        photographs=bracket,
+        modules={one.__name__: one for one in (hdrlab, np, scipy, platform)},
     )

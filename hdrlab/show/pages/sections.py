@@ -3,14 +3,10 @@
 The letters are those of `pipeline.Assembly`; the template `report.html` calls what is returned by its names.
 """
 
-import platform
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
-import scipy
 
-import hdrlab
 from hdrlab.core import colour, metrics
 from hdrlab.core.arrays import to_256
 from hdrlab.core.bracket import Bracket
@@ -21,17 +17,6 @@ from hdrlab.radiance.merge import Quality
 from hdrlab.show import plots
 from hdrlab.show.pages import wording
 from hdrlab.show.plots import figures
-
-
-def facts(E: Array, quality: Flags, medians: F64) -> list[tuple[str, str]]:
-    """Return the figures that stand beside the picture: (value, what it is)."""
-    low, high = np.nanpercentile(figures.stops(E), [0.1, 99.9])
-    spread = consistency.measure_spread(medians)
-    return [
-        (f"{high - low:.1f} stops", f"of luminance, or {(high - low) * np.log10(2):.1f} decades"),
-        (wording.share(quality == Quality.MEASURED), "of the pixels measured by at least one frame"),
-        (wording.stops(spread), f"between what the frames say of the same light: {wording.verdict(spread)}"),
-    ]
 
 
 def bracket(photographs: Bracket, offsets: Array) -> list[dict[str, Any]]:
@@ -61,11 +46,12 @@ def response(g: F64, truth: metrics.Truth | None) -> dict[str, Any]:
 
 
 def radiance(E: Array) -> dict[str, Any]:
-    """Return the map in false colour and its scale."""
+    """Return the map in false colour, its scale, and how many stops lie between its ends."""
     ev = figures.stops(E)
     low, high = figures.limits(ev)
     ends = f"from {wording.signed(low)} to {wording.signed(high)} stops around the median luminance"
-    return _coloured(ev, low, high, f"The radiance map in false colour, {ends}")
+    stops = np.ptp(np.nanpercentile(ev, [0.1, 99.9]))
+    return {**_coloured(ev, low, high, f"The radiance map in false colour, {ends}"), "stops": stops}
 
 
 def _coloured(
@@ -79,13 +65,11 @@ def _coloured(
 
 def known(quality: Flags, picture: Image) -> dict[str, Any]:
     """Return how many pixels are known in which way, and where those stand that were not measured."""
-    masks = {flag: quality == flag for flag in wording.KINDS}
-    met = [flag for flag, mask in masks.items() if flag == Quality.MEASURED or mask.any()]
-    rows = [(*wording.KINDS[flag], figures.KNOWN.get(flag), masks[flag]) for flag in met]
-    if len(rows) == 1:
-        return {"rows": rows, "picture": None}
+    masks = {flag: quality == flag for flag in (Quality.MEASURED, *figures.KNOWN)}
+    met = {flag: mask for flag, mask in masks.items() if flag == Quality.MEASURED or mask.any()}
     alt = "The picture in pale gray, with dots where a pixel was not measured"
-    return {"rows": rows, "picture": figures.photograph(figures.known(picture, quality), 1000, alt)}
+    shown = figures.photograph(figures.known(picture, quality), 1000, alt) if len(met) > 1 else None
+    return {"masks": met, "colours": figures.KNOWN, "picture": shown}
 
 
 def certainty(E: F32, s: F32 | None) -> dict[str, Any] | None:
@@ -152,20 +136,3 @@ def error_map(truth: metrics.Truth, E: Array, well: Mask) -> dict[str, Any]:
     reach = figures.round_up(np.nanpercentile(np.abs(stops), 99))
     ends = f"from {wording.signed(-reach, 2)} to {wording.signed(reach, 2)} stops"
     return _coloured(stops, -reach, reach, f"Errors of luminance in false colour, {ends}", "PuOr_r", 2)
-
-
-def recipe(photographs: Bracket, given: str | Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Return what one must know to make it again: (name, value)."""
-    images = photographs.images
-    knobs = ({"how": given} if given else {}) if isinstance(given, str) else given
-    colours, curve = "RGB" if images.ndim == 4 else "gray", ", linear" if photographs.linear else ""
-    kind = f"{colours}, {8 * images.itemsize} bits{curve}"
-    return [
-        *((str(knob), str(value)) for knob, value in knobs.items()),
-        ("photographs", ", ".join(photographs.names)),
-        ("times, s", ", ".join(f"{time:.6g}" for time in photographs.times)),
-        ("size", f"{images.shape[2]} × {images.shape[1]} pixels, {kind}"),
-        ("hdrlab", hdrlab.__version__),
-        ("numpy, scipy", f"{np.__version__}, {scipy.__version__}"),
-        ("Python", platform.python_version()),
-    ]

@@ -5,20 +5,8 @@ import numpy as np
 from hdrlab.core.colour import LUMINANCE, luminance
 from hdrlab.core.types import F32, ArrayLike
 from hdrlab.pipeline.stages import CONTRADICTION
-from hdrlab.radiance.merge import Quality
 
 CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach
-KINDS = {
-    Quality.MEASURED: ("measured", "at least one frame shows it neither clipped nor dark"),
-    Quality.CLIPPED: (
-        "clipped in every frame",
-        "at least this bright: the map holds the shortest frame’s bound",
-    ),
-    Quality.DARK: ("dark in every frame", "at most this bright: the map holds the longest frame’s bound"),
-    Quality.CLIPPED | Quality.DARK: ("clipped or dark in every frame", "bounded, but measured by none"),
-    Quality.STUCK: ("stuck", "do not follow the exposure: the map holds the median of the neighbours"),
-    Quality.UNSEEN: ("shown by no frame", "the map holds 0"),
-}
 
 
 def share(mask: ArrayLike) -> str:
