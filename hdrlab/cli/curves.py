@@ -77,7 +77,7 @@ def calibrate(asked: Any) -> None:
     common.say("warning", found.doubts)
     g, medians, (_, seconds, names, *_) = found.g, found.medians, found.bracket
     click.echo(f"{asked.response}, from {len(seconds)} photographs")
-    click.echo("\n".join(calibration.summary(g, medians, names)))
+    click.echo(calibration.summary(g, medians, names))
     for path in asked.out:
         response_files.write_curve(path, g)
         click.echo(path)

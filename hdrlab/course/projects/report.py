@@ -66,7 +66,7 @@ def write_report(project: Project) -> Written:
     notes += [f"the words have no section about: {name}" for name in said.missing()]
     title = said.title or project.about.title or project.folder.resolve().name
     shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
-    text = render_page(Path(__file__).parent, TEMPLATE, **shown)
+    text = render_page(Path(__file__).parent, TEMPLATE, in_words=plots.seconds, **shown)
     return Written(write(project.folder / PAGE, text), tuple(found), tuple(notes))
 
 
@@ -101,22 +101,13 @@ def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
         time = header.exposure.seconds
         alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")
         shown = figures.photograph(small, 400, alt)
-        light = _light(header.exposure)
-        frames.append({"name": path.name, "light": light, "said": _said(header.exposure), "picture": shown})
-    return sorted(frames, key=lambda one: (one["light"], one["name"]))
+        frames.append({"name": path.name, "exposure": header.exposure, "picture": shown})
+    return sorted(frames, key=lambda one: (_light(one["exposure"]), one["name"]))
 
 
 def _light(exposure: Exposure) -> float:
     seconds, f_number, iso = exposure
     return (seconds or 0.0) * (iso or 100.0) / (f_number or 1.0) ** 2
-
-
-def _said(exposure: Exposure) -> list[str]:
-    """Return an exposure as a photographer says it."""
-    seconds, f_number, iso = exposure
-    said = [plots.seconds(seconds)] if seconds else ["exposure unknown"]
-    said += [f"f/{f_number:g}"] if f_number else []
-    return said + ([f"ISO {iso:g}"] if iso else [])
 
 
 def _curves(path: Path) -> dict[str, Any]:

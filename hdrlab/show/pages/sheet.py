@@ -22,11 +22,7 @@ from hdrlab.tonemap.quality import Quality
 DPI = 100  # dots per inch: a matplotlib inch is a hundred pixels of the sheet
 SIDE = 480  # pixels, the longer side of a picture on the sheet
 TEXT, CAPTION, GAP = 320, 86, 14  # pixels: least width and height of the text under a picture, and margins
-LEGEND = (
-    "TMQI [Yeganeh and Wang 2013], 1 is best: Q overall, S structural fidelity, N naturalness.\n"
-    "It sees luminance alone. Times are the operators' own. Black: no channel above 0. Clipped: one at 255.\n"
-    "Mean and contrast (standard deviation) are in gray levels of 0 to 255."
-)
+LEGEND = Path(__file__).with_name("sheet_legend.txt")
 
 
 class Entry(NamedTuple):
@@ -128,7 +124,7 @@ def draw(
         raise ValueError(f"expected side >= 16 and columns >= 1, got {side} and {columns}")
     columns, picture, cell = grid(entries[0].picture.shape, len(entries), columns=columns, side=side)
     width = columns * cell[0] + GAP
-    head, foot = _broken(title or "Tone mapping", width, 12), _broken(LEGEND, width, 7)
+    head, foot = _broken(title or "Tone mapping", width, 12), _broken(LEGEND.read_text("utf8"), width, 7)
     top = 24 + 20 * len(head)
     below = top + -(-len(entries) // columns) * cell[1]
     size = (width / DPI, (below + 16 + 14 * len(foot)) / DPI)

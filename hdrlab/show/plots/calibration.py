@@ -20,6 +20,7 @@ from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show import plots
+from hdrlab.show.pages.templates import render_page
 from hdrlab.show.pages.wording import signed
 from hdrlab.show.pictures import require_alt
 
@@ -46,25 +47,17 @@ def reach(g: ArrayLike) -> float:
     return float(np.mean(curve[HIGH_LEVEL] - curve[LOW_LEVEL]) / np.log(2))
 
 
-def summary(g: F64, medians: F64, names: Sequence[str]) -> list[str]:
+def summary(g: F64, medians: F64, names: Sequence[str]) -> str:
     """Return the lines that describe a response and how well it explains the photographs."""
-    channels = plots.CHANNELS if g.ndim == 2 else (("gray", "", ""),)
-    found = [doublings(one) for one in np.atleast_2d(g.T)]
-    stops = sorted(set().union(*found))
-    lines = ["stops   " + "".join(f"{signed(k):>5}" for k in stops)]
-    for (name, *_), levels in zip(channels, found, strict=True):
-        row = "".join(f"{levels[k]:5.0f}" if k in levels else 5 * " " for k in stops)
-        lines.append(f"{name:<8}{row}".rstrip())
-    spread, off = consistency.measure_spread(medians), np.nan_to_num(consistency.measure_deviations(medians))
+    channels = [name for name, *_ in plots.CHANNELS] if g.ndim == 2 else ["gray"]
+    rows = dict(zip(channels, map(doublings, np.atleast_2d(g.T)), strict=True))
+    off = np.nan_to_num(consistency.measure_deviations(medians))
     worst = int(np.argmax(np.abs(off)))
-    return [
-        *lines,
-        f"range      {reach(g):.2f} stops between the levels {LOW_LEVEL} and {HIGH_LEVEL}",
-        f"spread     {f'{spread:.3f} stops' if np.isfinite(spread) else 'unknown'} between the frames' "
-        "measurements of the same light",
-        f"residuals  {_rms(consistency.measure_residuals(medians, g)):.3f} stops rms; furthest off is "
-        f"{names[worst]}, by {signed(off[worst], 2)}",
-    ]
+    words = {"worst": names[worst], "off": off[worst], "low": LOW_LEVEL, "high": HIGH_LEVEL, "rows": rows}
+    words |= {"stops": sorted(set().union(*rows.values())), "reach": reach(g), "signed": signed}
+    words |= {"spread": consistency.measure_spread(medians)}
+    words |= {"rms": _rms(consistency.measure_residuals(medians, g))}
+    return render_page(Path(__file__).parent, "calibration.plain", **words).rstrip()
 
 
 def _rms(r: F64) -> float:
