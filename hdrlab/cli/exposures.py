@@ -40,6 +40,7 @@ def plan(asked: Any) -> None:
 
     from hdrlab.capture import planning
     from hdrlab.core.colour import luminance
+    from hdrlab.show.pages.templates import render_page
 
     low, high = asked.low_ or asked.low, asked.high_ or asked.high
     camera = {name: getattr(asked, name) for name in ("aperture", "iso", "usable", "overlap")}
@@ -49,25 +50,18 @@ def plan(asked: Any) -> None:
     elif asked.source is not None or low is None or high is None:
         raise ValueError("expected LOW and HIGH in cd/m^2, or --map FILE")
     made = planning.plan(low, high, per_stop=3 if asked.thirds else 1, **camera)
-    scene = np.log2(high / low)
-    held = f"one photograph holds {camera['usable']:g}"
-    click.echo(f"scene: {low:.3g} to {high:.3g} cd/m^2, {scene:.1f} stops; {held}")
-    count = len(made.times)
-    shots = "1 photograph" if count == 1 else f"{count} photographs, {made.step:.3g} stops apart"
-    click.echo(f"{shots}, f/{camera['aperture']:g}, ISO {camera['iso']:g}:")
-    for name, time, (dark, bright) in zip(made.names, made.times, made.holds, strict=True):
-        click.echo(f"  {name:>7} s  (really {time:.6g} s) holds {dark:.3g} to {bright:.3g} cd/m^2")
+    usual = planning.Model(speeds=(camera["iso"],), aperture=camera["aperture"])
+    maker = usual._replace(**_camera(asked.model, usual._fields)) if asked.model else usual
+    ways = []
     if asked.snr:
-        usual = planning.Model(speeds=(camera["iso"],), aperture=camera["aperture"])
-        maker = usual._replace(**_camera(asked.model, usual._fields)) if asked.model else usual
         quick = planning.plan_by_noise(low, high, asked.snr, maker)
-        stops = made.names, made.times, np.full(count, camera["iso"])
+        stops = made.names, made.times, np.full(len(made.times), camera["iso"])
         for way, (names, times, speeds) in (("by stops", stops), ("by noise", quick)):
             worst = planning.worst_snr(low, high, times, speeds, maker)
-            took = f"{times.sum():.4g} s and {len(names)} pauses of {maker.pause:g} s"
-            click.echo(f"{way}: {len(names)} photographs in {took}; signal over noise {worst:.3g} at worst")
-        for name, time, speed in zip(*quick, strict=True):
-            click.echo(f"  {name:>7} s  (really {time:.6g} s) at ISO {speed:g}")
+            ways.append((way, (names, times, speeds), worst))
+    words = {"low": low, "high": high, "scene": np.log2(high / low), "camera": camera, "made": made}
+    text = render_page(Path(__file__).parent, "plan.plain", ways=ways, pause=maker.pause, **words)
+    click.echo(text.rstrip())
 
 
 @common.command()
