@@ -22,11 +22,7 @@ OPERATORS = ["photograph", *catalogue.names("tonemap")]
 SUFFIXES = ".hdr, .exr, .pfm or .tif"
 PIXELS = 400_000  # of a map, on an even grid, by which its range is told
 MASK = click.option("--mask", metavar="RRGGBB", help="Exactly this colour is no picture (borders of scans).")
-CLEAN = click.option(
-    "--clean",
-    is_flag=True,
-    help="Repair even a map of which most is NaN, infinite or below 0; without it, a part is repaired.",
-)
+CLEAN = click.option("--clean", is_flag=True, help="Repair even a map of which most is NaN or below 0.")
 
 
 def choice(name: str, values: Sequence[str], default: str | None = None, help: str | None = None) -> Option:

@@ -101,7 +101,7 @@ def meter(photo: Path, mode: str, at: str) -> None:
 @common.command()
 @click.argument("photo", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Picture to write: .png, .jpg or .tif.")
-@common.choice("--by", ["auto", "skin", "blocks"], help="What matters, see below.")
+@common.choice("--by", ["auto", "skin", "blocks"], help="What matters, see above.")
 @common.choice("--way", ["chrominance", "locus"], help="How skin is found.")
 @click.option("--target", default=128.0, help="Mean level of what matters, 1 to 254.")
 def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:

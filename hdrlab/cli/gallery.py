@@ -25,9 +25,7 @@ def gallery() -> None:
 @gallery.command()
 @FOLDER
 @click.option("--title", default="Which artifact is best?", help="Over the wall.")
-@click.option(
-    "--closes", required=True, metavar="TIME", help="End of the vote, with its zone: 2026-12-01T23:59+01:00."
-)
+@click.option("--closes", required=True, metavar="TIME", help="Of the vote, as 2026-12-01T23:59+01:00.")
 @click.option("--marks", type=click.IntRange(1, 20), default=3, help="Votes on a ballot, at most.")
 def init(folder: Path, title: str, closes: str, marks: int) -> None:
     """Make a gallery in FOLDER."""

@@ -17,9 +17,7 @@ PLAN = click.option("--plan", type=FILE, help="A plan of your own instead of the
 HOMEWORK = click.option("--homework", metavar="NAME", help="Such as hw2; by default the file's name says it.")
 
 SECRET = click.option(
-    "--secret-file",
-    type=common.FILE,
-    help="A line that nobody else knows; made on first use. Draws each student's inputs, for credit.",
+    "--secret-file", type=common.FILE, help="Draws each student's inputs, for credit; made on first use."
 )
 
 
@@ -59,12 +57,7 @@ def check(asked: Any) -> None:
 @click.option("-o", "--out", type=common.OUT, default="results", help="Folder for the results.")
 @click.option("--student", default="", help="Draws this student's own inputs; needs --secret-file.")
 @SECRET
-@click.option(
-    "--timeout",
-    type=click.FloatRange(0.1),
-    default=10.0,
-    help="Seconds for one answer; a check has 3 times, a submission 20 times as many.",
-)
+@click.option("--timeout", type=click.FloatRange(0.1), default=10.0, help="Seconds for an answer, see above.")
 @click.option("--roster", type=FILE, help="Of a class: CSV with student, and name, team where wanted.")
 @click.option("--received", type=FILE, help="Of a class: CSV with file and received, for files' own times.")
 @click.option("--before", type=FILE, multiple=True, help="Gradebook of an earlier homework. Repeatable.")
@@ -78,7 +71,10 @@ def check(asked: Any) -> None:
 def grade(asked: Any) -> None:
     """Grade SUBMISSION, a notebook or a Python file, and write the results in every form.
 
-    Its code never runs in the process that scores it. A tier that this machine cannot give is an error.
+    Its code never runs in the process that scores it. A tier that this machine cannot give is an error. An
+    answer may take the seconds of --timeout, a check 3 times and a submission 20 times as many.
+
+    The file of --secret-file holds a line that nobody else knows, and is not to be lost.
 
     A folder is a class: with --roster, every submission in it is graded, several at a time, and a gradebook
     and a page about the class are written. Stopped at any moment, the next run finishes the rest.

@@ -12,20 +12,18 @@ from hdrlab.cli.terminal import visible
 from hdrlab.pipeline import catalogue
 
 TO = ["picture", "ultrahdr", "png", "avif", "jxl"]
-WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see below.")
+WAY = common.choice("--way", ["hue", "ratio"], help="Of colour, see above.")
 
 
 @common.command()
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Picture: .png, .jpg, .tif; .avif, .jxl.")
-@common.choice("--to", TO, help="All but picture light up on a bright screen, see below.")
+@common.choice("--to", TO, help="All but picture light up on a bright screen, see above.")
 @click.option("--headroom", default=8.0, help="Of a bright screen: the brightest light over white.")
-@common.choice("--primaries", ["bt2020", "p3"], help="Of png and avif, see below.")
+@common.choice("--primaries", ["bt2020", "p3"], help="Of png and avif, see above.")
 @common.operator("--operator")
 @click.option("--set", "knobs", multiple=True, metavar="KNOB=VALUE", help="A knob of the operator: key=0.36.")
-@click.option(
-    "--saturation", type=float, help="1 keeps the colours' ratios, 0 is gray.  [default: the operator's]"
-)
+@click.option("--saturation", type=float, help="1: the colours' ratios, 0: gray.  [default: the operator's]")
 @WAY
 @common.CLEAN
 def tonemap(asked: Any) -> None:
@@ -83,7 +81,7 @@ def check_knobs(chapter: str, name: str | Callable[..., Any], knobs: dict[str, A
 @click.argument("source", type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help="Contact sheet to write: .png.")
 @click.option("--operators", metavar="NAME,...", help="Which of them, in which order. [default: all]")
-@click.option("--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see below.")
+@click.option("--size", type=click.IntRange(16), default=1024, help="Most pixels along a side, see above.")
 @WAY
 @common.CLEAN
 def compare(source: Path, out: Path, operators: str | None, size: int, way: str, clean: bool) -> None:

@@ -20,37 +20,17 @@ FUSION = "the picture is an exposure fusion of the photographs"
 @common.command()
 @click.argument("photos", nargs=-1, required=True, type=common.FILE)
 @click.option("-o", "--out", required=True, type=common.OUT, help=f"Radiance map: {common.SUFFIXES}.")
-@click.option(
-    "--times",
-    metavar="exif|stated|estimate|FILE",
-    default="exif",
-    help="Exposure times: EXIF's, or a list's in the folder, corrected by the pixels; these as they are; "
-    "those of the pixels; or those of a list with lines such as `a.jpg 1/60`.",
-)
+@click.option("--times", metavar="exif|stated|estimate|FILE", default="exif", help="Exposure, see above.")
 @click.option("--keep-times", is_flag=True, help="Take the times of a FILE as they are, too.")
 @click.option("--stops", type=click.FloatRange(0, min_open=True), help="No times, but frames so far apart.")
 @common.MASK
-@common.choice(
-    "--align",
-    ["auto", *catalogue.names("align"), "none"],
-    help="mtb shifts; cerman rotates, too; homography tilts; auto: mtb, and more where that is too little.",
-)
+@common.choice("--align", ["auto", *catalogue.names("align"), "none"], help="What may move, see above.")
 @click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
 @common.choice("--weight", ["gaussian", "hat", "flat", "snr"])
 @common.choice("--merge", ["log", "likelihood", "mean", "shot"])
-@common.choice(
-    "--ghosts",
-    ["none", "auto", "regions", "reference"],
-    "auto",
-    help="What moved: as it is; each region by its best exposure, if much moved (auto) or always; "
-    "all of them by the middle photograph.",
-)
+@common.choice("--ghosts", ["none", "auto", "regions", "reference"], "auto", help="What moved, see above.")
 @common.choice("--flare", ["none", "glare"], help="Remove veiling glare, the light that the lens scattered.")
-@click.option(
-    "--calibrate",
-    metavar="X,Y=CD",
-    help="A meter read CD cd/m^2 at this pixel of the map: the map's unit becomes cd/m^2.",
-)
+@click.option("--calibrate", metavar="X,Y=CD", help="What a meter read at a pixel, cd/m^2: the map's unit.")
 @common.operator("--tonemap")
 @click.option("--picture", type=common.OUT, help="Picture to write as well, tone-mapped: .png, .jpg or .tif.")
 @click.option("--report", type=common.FILE, help="Folder for report.html: bracket, response, map, picture.")
@@ -59,9 +39,17 @@ FUSION = "the picture is an exposure fusion of the photographs"
 def assemble(asked: Any) -> None:
     """Assemble PHOTOS (files, or one folder) into a radiance map.
 
-    Exposure comes from EXIF (time, ISO, f-number), or from --times. A file that is called exif or estimate is
-    reached as ./exif. The map is written even where it is doubtful: then warnings say why and what to do, the
-    report and the header of .hdr and .exr repeat them, and --strict makes them an exit code.
+    Exposure comes from EXIF (time, ISO, f-number), or from a list in the folder. The pixels correct its times
+    (--times exif), or leave them as they are (stated), or are asked for all of them (estimate). A FILE is a
+    list with lines such as `a.jpg 1/60`; one that is called exif or estimate is reached as ./exif.
+
+    By --align mtb the photographs are shifted onto each other; cerman rotates them, too, and homography tilts
+    them; auto is mtb, and more where that is too little. By --ghosts regions, what moved is taken region by
+    region from the photograph that exposed it best, with auto only if much moved; by reference, all of it
+    from the middle photograph.
+
+    The map is written even where it is doubtful: then warnings say why and what to do, the report and the
+    header of .hdr and .exr repeat them, and --strict makes them an exit code.
     """
     import numpy as np
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import click
 
 from hdrlab.cli import common
+from hdrlab.cli.grading import FILE
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 
@@ -13,17 +14,10 @@ NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 @common.command()
 @click.option("--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before.")
 @click.option(
-    "--notebooks",
-    metavar="FILE",
-    multiple=True,
-    type=click.Path(path_type=Path, exists=True, dir_okay=False),
-    help="Notebook to take in instead of all of the package's. Repeatable.",
+    "--notebooks", metavar="FILE", multiple=True, type=FILE, help="One in place of all. Repeatable."
 )
 @click.option(
-    "--jobs",
-    type=click.IntRange(1),
-    default=min(4, os.cpu_count() or 1),
-    help="How many notebooks run at a time.",
+    "--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Notebooks at a time."
 )
 @click.option("--address", default="", help="Where it will stand, https:// and all, for a link's preview.")
 def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:

@@ -12,7 +12,7 @@ from hdrlab.cli import common, curves
 
 @common.command()
 @click.argument("frames", type=common.FILE)
-@click.option("-o", "--out", required=True, type=common.OUT, help="Film to write, .gif or .mp4; see below.")
+@click.option("-o", "--out", required=True, type=common.OUT, help="Film to write, .gif or .mp4; see above.")
 @click.option("--times", required=True, metavar="SECONDS,...", help="Exposure times of a turn: 1/1000,1/60.")
 @click.option("--response", type=curves.Response(), default="auto", help="A method, or a saved curve.")
 @click.option("--rate", type=float, default=25.0, help="Frames a second of the film that is written.")
