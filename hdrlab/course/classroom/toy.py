@@ -19,16 +19,14 @@ from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.classroom import imitation
 from hdrlab.course.reports import sheets
+from hdrlab.show.pages.templates import render_page
 
 HOMEWORK = "hw2"
 TEAM, MEMBERS = "t1", ("s03", "s04")
 STUDENTS = tuple(f"s{k:02d}" for k in range(1, 15))
 ATTACKS = Path(__file__).parent / "toy_attacks.txt"  # in place of functions
-HANDED: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_name("toy.toml").read_text("utf8"))
-COMMAND = (
-    "hdrlab grade {folder}/submissions --homework hw2 --roster {folder}/roster.csv"
-    " --received {folder}/received.csv --secret-file {folder}/secret.txt -o {folder}/results"
-)
+TOY: dict[str, Any] = tomllib.loads(Path(__file__).with_name("toy.toml").read_text("utf8"))
+COMMAND, HANDED = TOY["command"], TOY["handed"]
 
 
 class Handed(NamedTuple):
@@ -70,17 +68,11 @@ def write(folder: Path) -> list[Path]:
     roster = [(who, f"Student {who[1:]}", TEAM if who in MEMBERS else "") for who in STUDENTS]
     sheets.write_csv(folder / "roster.csv", ("student", "name", "team"), roster)
     sheets.write_csv(folder / "received.csv", ("file", "received"), received(each, homework))
-    (folder / "README.md").write_text(_about(folder, each), encoding="utf8")
+    text = render_page(Path(__file__).parent, "toy.plain", command=COMMAND.format(folder=folder), each=each)
+    (folder / "README.md").write_text(text + "\n", encoding="utf8")
     return [folder / "submissions" / one.name for one in each]
 
 
 def received(each: Sequence[Handed], homework: plan.Homework) -> list[tuple[str, str]]:
     """Return when each file came, as the rows of a table."""
     return [(one.name, (homework.due + timedelta(hours=one.hours)).isoformat()) for one in each]
-
-
-def _about(folder: Path, each: Sequence[Handed]) -> str:
-    """Return what is in the folder, in words."""
-    rows = [f"| {one.name} | {one.about} |" for one in each]
-    head = ["| file | what it is |", "|---|---|"]
-    return "\n".join(["# A toy class", "", f"    {COMMAND.format(folder=folder)}", "", *head, *rows, ""])
