@@ -11,14 +11,10 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course.projects import exif
+from hdrlab.course.projects.project import FILES
 from hdrlab.io.codecs import jpeg_parts
 
-PLAIN_CHUNKS = {
-    *(b"IHDR", b"PLTE", b"IDAT", b"IEND", b"gAMA", b"cHRM", b"sRGB", b"iCCP", b"sBIT", b"pHYs", b"tRNS"),
-    *(b"cICP", b"mDCv", b"cLLi", b"bKGD", b"hIST"),
-}
-PICTURES = {".jpg", ".jpeg", ".png", ".tif", ".tiff"}
-TIFF_LIKE = {".dng", ".nef", ".arw", ".cr2", ".pef"}
+PICTURES, TIFF_LIKE, PLAIN_CHUNKS = ({*FILES["cleaned"][one]} for one in ("pictures", "raw", "chunks"))
 SIGNATURE = b"\x89PNG\r\n\x1a\n"
 
 
@@ -102,7 +98,7 @@ def _png(data: bytes) -> Cleaned:
         if kind == b"eXIf":
             body, told = _exif(body)
             removed |= told
-        elif kind not in PLAIN_CHUNKS:
+        elif kind.decode("latin-1") not in PLAIN_CHUNKS:
             removed.add("location" if b"GPS" in body else "what programs added")
             body = b""
         if body or kind == b"IEND":

@@ -20,14 +20,8 @@ from hdrlab.course.wording import plain
 from hdrlab.io import response_files
 from hdrlab.io.album import SUFFIXES
 
-ALBUMS = ("photographs", "photos", "bracket", "pictures")
-MAPS = (".hdr", ".exr", ".pfm", ".pic", ".rgbe")
-ARTIFACTS = (".jpg", ".jpeg", ".png", ".tif", ".tiff")
-SOURCES = {
-    *(".py", ".ipynb", ".m", ".jl", ".c", ".cc", ".cpp", ".cxx", ".h", ".hpp", ".cu", ".rs", ".java", ".go"),
-    *(".js", ".ts", ".cs", ".swift", ".kt", ".pyx", ".f90", ".r"),
-}
-LEFT_OUT = {"__pycache__", "node_modules", "venv", "env", "build", "dist"}  # and all that begins with a dot
+FILES: dict[str, Any] = tomllib.loads(Path(__file__).with_name("files.toml").read_text("utf8"))
+ALBUMS, MAPS, ARTIFACTS = (tuple(FILES[one]) for one in ("albums", "maps", "artifacts"))
 ABOUT, PAGE, WORDS = "project.toml", "report.html", ("report.md", "report.ipynb")
 MANIFEST = "submission.json"  # of an archive
 EXAMPLE = 'students = ["b0123", "b0456"]\ntitle = "Dusk at the harbour"\ncaption = "Seven frames, by hand."\n'
@@ -85,14 +79,14 @@ def look(folder: str | Path) -> Project:
         _one(top, ("artifact",), ARTIFACTS, strict=True),
         words,
         folder / PAGE if folder / PAGE in files else None,
-        tuple(path for path in files if path.suffix.lower() in SOURCES and path != words),
+        tuple(path for path in files if path.suffix.lower() in FILES["sources"] and path != words),
     )
 
 
 def _files(folder: Path) -> Iterator[Path]:
     """Yield the plain files of a folder and those below, without caches, hidden ones and links."""
     for home, folders, names in os.walk(folder):
-        folders[:] = [one for one in folders if one not in LEFT_OUT and one[0] != "."]
+        folders[:] = [one for one in folders if one not in FILES["left_out"] and one[0] != "."]
         for name in names:
             path = Path(home, name)
             if name[0] != "." and not path.is_symlink() and path.is_file() and not name.endswith(".pyc"):
