@@ -1,6 +1,6 @@
 """The report on a radiance map: one page that travels alone, with what was found and how far to trust it.
 
-What the page says is in `sections`, how it says it in the template `report.html`; its pictures travel in it.
+The template `report.html` asks `sections` for what it says; its pictures travel in it.
 Nothing on the page is fetched, and nothing on it runs.
 """
 
@@ -64,39 +64,18 @@ def write_report(
     >>> write_report(tempfile.mkdtemp(), assembly, picture, recipe={"tonemap": "reinhard"}).name
     'report.html'
     """
-    page = Path(folder) / PAGE
-    text = _page(assembly, np.asarray(picture), recipe, truth)
-    page.parent.mkdir(parents=True, exist_ok=True)
-    return write(page, text)
-
-
-def _page(
-    assembly: Assembly, picture: np.ndarray, recipe: str | Mapping[str, Any], truth: Truth | None
-) -> str:
-    stage, bracket, offsets, g, E, quality, medians, notes, doubts, *_ = assembly
-    if g is None or E is None or quality is None or medians is None:
-        raise ValueError(f"expected a finished assembly, got one after the stage {stage!r}")
+    picture, quality = np.asarray(picture), assembly.quality
+    if quality is None or assembly.medians is None:
+        raise ValueError(f"expected a finished assembly, got one after the stage {assembly.stage!r}")
     if picture.dtype != np.uint8 or picture.shape[:2] != quality.shape or picture.shape[2:] not in ((), (3,)):
         raise ValueError(f"expected a uint8 picture of {quality.shape} pixels, got {describe(picture)}")
     seen = "fused without a map" if assembly.fallback else "tone-mapped for a display"
     seen = f"The picture: the {'photographs' if assembly.fallback else 'radiance map'}, {seen}"
-    return render_page(
-        Path(__file__).parent,
-        PAGE,
-        wording=wording,
-        Quality=Quality,
-        notes=notes,
-        doubts=doubts,
-        picture=figures.photograph(picture, 1600, seen),
-        bracket=sections.bracket(bracket, offsets),
-        response=sections.response(g, truth),
-        radiance=sections.radiance(E),
-        known=sections.known(quality, picture),
-        certainty=sections.certainty(E, assembly.s),
-        moving=sections.moving(assembly.moving, picture),
-        agreement=sections.agreement(bracket, medians),
-        errors=None if truth is None else sections.against(truth, bracket, offsets, g, E),
-        recipe={"how": recipe} if recipe and isinstance(recipe, str) else recipe,
-        photographs=bracket,
-        modules={one.__name__: one for one in (hdrlab, np, scipy, platform)},
-    )
+    words: dict[str, Any] = {"assembly": assembly, "picture": picture, "truth": truth}
+    words |= {"shown": figures.photograph(picture, 1600, seen), "sections": sections, "wording": wording}
+    words |= {"recipe": {"how": recipe} if recipe and isinstance(recipe, str) else recipe}
+    words |= {"modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)}, "Quality": Quality}
+    text = render_page(Path(__file__).parent, PAGE, **words)
+    page = Path(folder) / PAGE
+    page.parent.mkdir(parents=True, exist_ok=True)
+    return write(page, text)

@@ -1,6 +1,6 @@
 """What a report says, a function per section: numbers as a reader wants them, pictures with alt texts.
 
-The letters are those of `pipeline.Assembly`; the template `report.html` calls what is returned by its names.
+The letters are those of `pipeline.Assembly`; the template `report.html` calls these functions.
 """
 
 from typing import Any
