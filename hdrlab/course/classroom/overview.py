@@ -91,15 +91,6 @@ def histogram(scores: Iterable[float], whole: float) -> list[tuple[int, int]]:
 def page(homework: Homework, counted: Tally, notes: Iterable[str] = (), rows: Sequence[Mark] = ()) -> str:
     """Return the class page; each row of the gradebook leads to what its student reads."""
     scores = counted.points.values()
-    return render_page(
-        Path(__file__).parent,
-        PAGE,
-        homework=homework,
-        count=len(scores),
-        median=statistics.median(scores) if scores else 0,
-        bins=histogram(scores, homework.points),
-        outcomes=counted.outcomes,
-        met=counted.met.most_common(),
-        notes=list(notes),
-        rows=rows,
-    )
+    bins, median = histogram(scores, homework.points), statistics.median(scores) if scores else 0
+    words = {"homework": homework, "counted": counted, "bins": bins, "median": median, "notes": list(notes)}
+    return render_page(Path(__file__).parent, PAGE, rows=rows, **words)

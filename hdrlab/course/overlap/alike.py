@@ -85,12 +85,11 @@ def page(homework: Homework, each: Sequence[similarity.Printed], found: similari
     environment.filters["percent"] = lambda share: int(100 * share + 1e-9)
     return environment.get_template(PAGE).render(
         homework=homework,
-        teams=[one.work.team for one in each],
+        works=[one.work for one in each],
         bins=[(100 * k // similarity.BINS, int(n)) for k, n in enumerate(found.counts)],
         found=found,
         shown=[(pair, rows(found, pair)) for pair in found.pairs[:SHOWN]],
-        library={task: all for task, all in library.items() if all},
-        notes=[(one.work.team, note) for one in each for note in one.work.notes],
+        library=library,
         measure=similarity,
         most=ROWS,
     )
