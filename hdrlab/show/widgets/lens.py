@@ -96,12 +96,6 @@ def brush(
         raise ValueError(f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}")
     data, scale = web.encode_halves(E)
     traits: dict[str, Any] = {"size": size, "magnification": magnification, "limit": limit, "bins": bins}
-    return Brush(
-        radiance=data,
-        scale=scale,
-        shape=[*E.shape[:2], 3 if E.ndim == 3 else 1],
-        picture=web.encode_webp(around, quality=90),
-        alt=require_alt(alt),
-        centre=[E.shape[0] // 2, E.shape[1] // 2],
-        **traits,
-    )
+    traits |= {"shape": [*E.shape[:2], 3 if E.ndim == 3 else 1], "radiance": data, "scale": scale}
+    traits |= {"centre": [E.shape[0] // 2, E.shape[1] // 2], "alt": require_alt(alt)}
+    return Brush(picture=web.encode_webp(around, quality=90), **traits)

@@ -54,24 +54,18 @@ def draw_curve(rng: np.random.Generator, *, order: int = 5, least: float = 0.02)
 
 
 def draw_trial(
-    rng: np.random.Generator,
-    *,
-    order: int = 5,
-    ratios: ArrayLike | None = None,
-    pixels: int = 10_000,
-    decades: float = 2.0,
-    sigma: float = 0.005,
+    rng: np.random.Generator, *, ratios: ArrayLike | None = None, pixels: int = 10_000, sigma: float = 0.005
 ) -> Trial:
     """Return a trial of [Mitsunaga99 sec. 5]: a random rising curve, four frames, noise, 256 levels.
 
     The paper leaves the distributions open. Here: ratios uniform in 0.45 ... 0.55; radiance uniform in its
-    logarithm, `decades` wide, the brightest just filling the longest exposure; the curve as
+    logarithm, two decades wide, the brightest just filling the longest exposure; the curve as
     `draw_curve` draws it.
     """
-    c = draw_curve(rng, order=order)
+    c = draw_curve(rng)
     R = rng.uniform(0.45, 0.55, 3) if ratios is None else np.asarray(ratios, dtype=np.float64)
     exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
-    E = 10 ** rng.uniform(-decades, 0, pixels)
+    E = 10 ** rng.uniform(-2, 0, pixels)
     M = brightness(E[:, None] * exposures, c)
     M = M + sigma * rng.standard_normal(M.shape)
     return Trial(c, R, np.rint(255 * np.clip(M, 0, 1)).astype(np.intp))
