@@ -3,6 +3,7 @@
 import inspect
 import os
 import re
+import sys
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.util import find_spec
 from pathlib import Path
@@ -112,9 +113,11 @@ def list_files(files: Iterable[Path]) -> None:
 
 def progress(items: Iterable[Item], what: str, total: int | None = None) -> Iterable[Item]:
     """Return `items` behind a progress bar that appears after a second, on a terminal alone."""
+    if not sys.stderr.isatty():  # where tqdm would say nothing, it takes a tenth of a second to import
+        return items
     from tqdm import tqdm
 
-    return tqdm(items, what, total, leave=False, delay=1, disable=None)
+    return tqdm(items, what, total, leave=False, delay=1)
 
 
 def one_by_one(items: Iterable[Item], names: Sequence[str]) -> Iterator[Item]:

@@ -186,12 +186,16 @@ def _tile_medians(r: F64, tile: Indices) -> tuple[F64, F64]:
 
     That of a median is 1.25 sigma / sqrt(n), and sigma 1.48 times the median deviation, for normal errors.
     """
-    order = np.argsort(tile, kind="stable")
-    groups = np.split(r[order], np.flatnonzero(np.diff(tile[order])) + 1)
-    large = [group for group in groups if len(group) >= FEWEST]
-    medians = np.array([np.median(group) for group in large])
-    sigma = np.array([1.48 * np.median(np.abs(group - np.median(group))) for group in large])
-    return medians, np.maximum(1.25 * sigma / np.sqrt([len(group) for group in large]), SMALLEST_ERROR)
+    _, place, n = np.unique(tile, return_inverse=True, return_counts=True)
+    first = np.cumsum(n) - n
+
+    def find_medians(values: F64) -> F64:
+        ordered = values[np.lexsort((values, place))]  # tile after tile, each from low to high
+        return (ordered[first + (n - 1) // 2] + ordered[first + n // 2]) / 2
+
+    medians, large = find_medians(r), n >= FEWEST
+    sigma = 1.48 * find_medians(np.abs(r - medians[place]))
+    return medians[large], np.maximum(1.25 * sigma / np.sqrt(n), SMALLEST_ERROR)[large]
 
 
 def warn_of_contradictions(found: Contradictions, names: Sequence[str], spread: float = np.inf) -> str:
