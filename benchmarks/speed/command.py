@@ -1,6 +1,7 @@
 """The whole command: seven JPEGs of 12 megapixels to a map and a picture, beside a script of OpenCV.
 
-Larger ones are made of these: beside and below each photograph stand its mirror images.
+Larger ones are made of these: beside and below each photograph stands the same once more, which the hand
+moved as well, and not its mirror image, which would have moved the other way.
 """
 
 import sys
@@ -58,15 +59,13 @@ def growing(folder: Path, one: bool) -> Case:
 
 
 def enlarge(photographs: Path, folder: Path, down: int, across: int) -> Path:
-    """Return a folder with the photographs, each `down` and `across` times, mirrored at the seams."""
+    """Return a folder with the photographs, each `down` and `across` times."""
     if (down, across) == (1, 1):
         return photographs
     folder.mkdir(exist_ok=True)
     for path in sorted(photographs.iterdir()):
         if not (folder / path.name).exists():
-            image = np.asarray(Image.open(path))
-            image = np.concatenate([image, image[:, ::-1]][:across], axis=1)
-            image = np.concatenate([image, image[::-1]][:down])
+            image = np.tile(np.asarray(Image.open(path)), (down, across, 1))
             Image.fromarray(image).save(folder / path.name, quality=95)
     return folder
 
