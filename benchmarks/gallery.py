@@ -27,7 +27,7 @@ import numpy as np
 
 from benchmarks.experiments import Experiment, at_least, at_most
 from benchmarks.measure import ROOT
-from hdrlab.course.gallery import access_tokens, ballots, collect, store
+from hdrlab.course.gallery import ballots, collect, store, tokens
 from hdrlab.io import photos
 
 VOTERS, WITHIN, TEAM, PICTURES = 300, 10.0, 2, 8
@@ -99,7 +99,7 @@ def build(folder: Path, voters: int) -> tuple[Path, dict[str, str]]:
                 db, room, collect.Entry(f"team{team}", f"View {team}", "A caption of a few words.", picture)
             )
         with store.transaction(db):
-            links = {f"v{k}": access_tokens.new_link(db, f"v{k}") for k in range(voters)}
+            links = {f"v{k}": tokens.new_link(db, f"v{k}") for k in range(voters)}
     return room, links
 
 

@@ -11,7 +11,7 @@ from urllib.parse import unquote_to_bytes, urlencode, urlsplit
 
 import numpy as np
 
-from hdrlab.course.gallery import access_tokens, collect, store
+from hdrlab.course.gallery import collect, store, tokens
 from hdrlab.io import photos
 
 ADDRESS = "http://vote.test"
@@ -58,7 +58,7 @@ def make(folder, teams=TEAMS, *, marks=2, closes=CLOSES, names=None, title="{tea
             entry = collect.Entry(team, title.format(team=team), caption, path)
             collect.hang(db, folder / "gallery", entry)
         with store.transaction(db):
-            links = {one: access_tokens.new_link(db, one) for members in teams.values() for one in members}
+            links = {one: tokens.new_link(db, one) for members in teams.values() for one in members}
         artifacts = {one.team: one.id for one in store.artifacts(db).values()}
     return Class(folder / "gallery", artifacts, links, Clock())
 

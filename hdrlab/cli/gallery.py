@@ -87,15 +87,15 @@ def links(
     They are written once and kept nowhere else. Who has a link keeps it, unless --renew or --all-anew
     ends it.
     """
-    from hdrlab.course.gallery import export
+    from hdrlab.course.gallery import tokens
 
     emails = {one.id: one.email for one in lists.read(roster).students} if roster else {}
     with closing(store.connect(folder)) as db:
         without = [id for (id,) in db.execute("SELECT id FROM voters WHERE link IS NULL ORDER BY id")]
         everybody = [voter.id for voter in store.voters(db)]
         wanted = list(renew) or (everybody if all_anew else without)
-        rows = export.links(db, address, wanted, emails)
-    sheets.write_csv(out, export.LINKS, rows, private=True)
+        rows = tokens.links(db, address, wanted, emails)
+    sheets.write_csv(out, tokens.LINKS, rows, private=True)
     click.echo(f"{out}: {len(rows)} personal links; who has one can vote with it, so send each to its owner")
 
 
@@ -134,13 +134,13 @@ def close(folder: Path) -> None:
 @click.option("-o", "--out", required=True, type=common.OUT, help="CSV for the gradebook.")
 def results(folder: Path, out: Path) -> None:
     """Write who voted and how each artifact fared, after the end of the vote."""
-    from hdrlab.course.gallery import counting, export
+    from hdrlab.course.gallery import ballots
 
     with closing(store.connect(folder)) as db:
         set_up = store.settings(db)
         if set_up.is_open(time.time()):
             raise ValueError(f"{folder}: expected a vote that has ended, it is open until {set_up.closes}")
-        rows, changes = list(export.gradebook(db)), store.changes(db)
+        rows, changes = list(ballots.gradebook(db)), store.changes(db)
     common.say("note", changes)
-    sheets.write_csv(out, export.GRADEBOOK, rows, private=True)
-    click.echo(f"{out}: {len(rows)} students. {counting.METHOD.format(marks=set_up.marks)}")
+    sheets.write_csv(out, ballots.GRADEBOOK, rows, private=True)
+    click.echo(f"{out}: {len(rows)} students. {ballots.METHOD.format(marks=set_up.marks)}")

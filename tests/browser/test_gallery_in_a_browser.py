@@ -37,11 +37,11 @@ def served(browser, tmp_path_factory):
 
 def fresh_link(served, who):
     """Return a personal link that has not been used."""
-    from hdrlab.course.gallery import access_tokens
+    from hdrlab.course.gallery import tokens
 
     room, address = served
     with store.writing(room.folder) as db:
-        return f"{address}/enter/{access_tokens.new_link(db, who)}"
+        return f"{address}/enter/{tokens.new_link(db, who)}"
 
 
 def saved(served, who):

@@ -11,7 +11,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from hdrlab import cli
-from hdrlab.course.gallery import ballots, collect, counting, export, store, tokens
+from hdrlab.course.gallery import ballots, collect, store, tokens
 
 served = pytest.mark.skipif(
     any(find_spec(name) is None for name in ("starlette", "uvicorn")),
@@ -23,7 +23,7 @@ some_ballots = st.lists(st.frozensets(st.sampled_from(IDS), max_size=3), max_siz
 
 @given(some_ballots)
 def test_places_count_who_has_more_votes_and_ties_share_one(cast):
-    rows = counting.standings(IDS, cast)
+    rows = ballots.standings(IDS, cast)
     assert sorted(row.artifact for row in rows) == IDS
     for row in rows:
         assert row.votes == sum(row.artifact in one for one in cast)
@@ -36,13 +36,13 @@ def test_neither_the_order_of_ballots_nor_of_artifacts_changes_the_places(cast, 
     shuffled, ids = list(cast), list(IDS)
     random.shuffle(shuffled)
     random.shuffle(ids)
-    assert counting.standings(ids, shuffled) == counting.standings(IDS, cast)
+    assert ballots.standings(ids, shuffled) == ballots.standings(IDS, cast)
 
 
 @given(some_ballots, st.sampled_from(IDS))
 def test_another_vote_never_lowers_a_place(cast, one):
     before, after = (
-        {row.artifact: row.place for row in counting.standings(IDS, some)} for some in (cast, [*cast, {one}])
+        {row.artifact: row.place for row in ballots.standings(IDS, some)} for some in (cast, [*cast, {one}])
     )
     assert after[one] <= before[one]
 
@@ -96,10 +96,10 @@ def test_the_gradebook_says_who_voted_and_not_for_what(tmp_path):
         ballots.cast(db, "cy", [room.artifacts["eve"], room.artifacts["fay"]], now=room.clock())
         ballots.cast(db, "dee", [], now=room.clock())
     with closing(store.connect(room.folder)) as db:
-        rows = {row[0]: dict(zip(export.GRADEBOOK, row, strict=True)) for row in export.gradebook(db)}
+        rows = {row[0]: dict(zip(ballots.GRADEBOOK, row, strict=True)) for row in ballots.gradebook(db)}
     assert [who for who, row in rows.items() if row["voted"] == "yes"] == ["ann", "cy"]
     assert [rows[who]["place"] for who in ("eve", "fay", "ann", "ben", "cy")] == [1, 2, 3, 3, 3]
-    assert rows["ann"]["shared with"] == 1 and set(rows["ann"]) == set(export.GRADEBOOK)
+    assert rows["ann"]["shared with"] == 1 and set(rows["ann"]) == set(ballots.GRADEBOOK)
 
 
 @pytest.fixture

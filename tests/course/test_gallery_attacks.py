@@ -30,7 +30,7 @@ if find_spec("starlette") is None or find_spec("uvicorn") is None:
 
 from hdrlab.course import gallery
 from hdrlab.course.classroom.roster import Roster, Student
-from hdrlab.course.gallery import access_tokens, collect, export, pictures, store
+from hdrlab.course.gallery import ballots, collect, pictures, store, tokens
 from hdrlab.course.gallery.web import app, guard, serve
 from hdrlab.course.gallery.web.writer import Writer
 from hdrlab.course.reports import sheets
@@ -143,7 +143,7 @@ def test_a_forged_session(client, room):
         client.cookies.clear()
         assert client.get("/", headers={"cookie": f"gallery={forged}"}).status in (401, 429)
     with store.writing(room.folder) as db:
-        access_tokens.new_link(db, "ann")
+        tokens.new_link(db, "ann")
     assert client.get("/", headers={"cookie": f"gallery={session}"}).status == 401
 
 
@@ -386,7 +386,7 @@ def test_votes_erased(client, room, tmp_path):
         other = small.picture(tmp_path / "other.png", 12)
         lost = collect.hang(db, room.folder, collect.Entry("eve", "Other", "", other), "eve.zip")
         assert lost == 2 and len(store.artifacts(db)) == 4
-        rows = {row[0]: row for row in export.gradebook(db)}
+        rows = {row[0]: row for row in ballots.gradebook(db)}
         assert rows["eve"][4:6] == ("Other", 0) and rows["fay"][5] == 1
         assert rows["ann"][3] == rows["cy"][3] == "yes"  # who voted has voted
         assert db.execute("SELECT count(*) FROM votes").fetchone()[0] == 3
@@ -396,7 +396,7 @@ def test_votes_erased(client, room, tmp_path):
         assert (
             collect.hang(db, room.folder, first) == 0
         )  # the picture of before is back, and so are its votes
-        assert {row[0]: row for row in export.gradebook(db)}["eve"][4:6] == ("Again", 2)
+        assert {row[0]: row for row in ballots.gradebook(db)}["eve"][4:6] == ("Again", 2)
         assert len(store.changes(db)) == 2
 
 
@@ -666,7 +666,7 @@ def test_header_injection(client, room):
     with browser(room, "https://vote.test") as secure:
         renewed = store.connect(room.folder)
         with closing(renewed) as db, store.transaction(db):
-            fresh = access_tokens.new_link(db, "ann")
+            fresh = tokens.new_link(db, "ann")
         answer = secure.post(f"/enter/{fresh}", headers={"origin": "https://vote.test"})
         assert (
             answer.headers["set-cookie"].startswith("__Host-gallery=")
@@ -701,8 +701,8 @@ def test_a_flood(client, room):
 def test_formulas_in_a_table(tmp_path):
     room = small.make(tmp_path, names={"ann": "=cmd|' /C calc'!A0"}, title="@SUM(A1)")
     with closing(store.connect(room.folder)) as db:
-        rows = list(export.gradebook(db))
-    text = sheets.csv_text(export.GRADEBOOK, rows)
+        rows = list(ballots.gradebook(db))
+    text = sheets.csv_text(ballots.GRADEBOOK, rows)
     assert "'=cmd|" in text and "'@SUM(A1)" in text and not re.search(r"(^|,)\"?[=@]", text, re.M)
 
 

@@ -1,11 +1,9 @@
 """The class votes on its artifacts: a small web application over one folder.
 
-store, ballots            the database: what hangs, who marked what
-tokens, access_tokens     who may: personal links and sessions
-counting                  from ballots to places
-collect, pictures         what students hand in, decoded and encoded again
-web                       the pages, what stands before them, and the one who writes
-export                    links for the class, columns for the gradebook
+store, ballots       the database: what hangs, who marked what; places, and columns for the gradebook
+tokens               who may: personal links and sessions
+collect, pictures    what students hand in, decoded and encoded again
+web                  the pages, what stands before them, and the one who writes
 
 What somebody may try, what stops it, and the promise in tests/course/test_gallery_attacks.py that it does:
 

@@ -1,9 +1,35 @@
-"""Ballots in the database: one of each voter, a set of artifacts that takes the place of the set before."""
+"""Ballots in the database, one of each voter, and how they become places: approval voting.
+
+b   ballots   a set of artifacts each: those that the voter marks, at most so many, none of the own team
+v   votes     v_a = the number of ballots that mark a
+p   places    p_a = 1 + the number of artifacts with more votes than a
+
+Nobody's order of their favourites is asked. Equal votes share a place, and ties are not broken: 1, 2, 2, 4.
+With marks of one weight nobody gains by marking a favourite lower than it is liked, and who marks fewer gives
+away nothing.
+"""
 
 import sqlite3
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Iterator, Set
+from typing import NamedTuple
 
 from hdrlab.course.gallery import store
+
+GRADEBOOK = ("student", "name", "team", "voted", "artifact", "votes", "place", "shared with")
+METHOD = (
+    "Each voter marks up to {marks} artifacts of other teams, and every mark is one vote. "
+    "Equal votes share a place, and the place after them counts them all: 1, 2, 2, 4. Ties are not broken."
+)
+
+
+class Standing(NamedTuple):
+    """An artifact's votes and place, and with how many others it shares that place."""
+
+    artifact: str
+    votes: int
+    place: int
+    shared: int
 
 
 class NotAccepted(ValueError):
@@ -51,3 +77,31 @@ def every(db: sqlite3.Connection) -> dict[str, frozenset[str]]:
     for voter, artifact in db.execute("SELECT voter, artifact FROM votes"):
         found[voter].add(artifact)
     return {voter: frozenset(one) for voter, one in found.items()}
+
+
+def standings(artifacts: Iterable[str], ballots: Iterable[Set[str]]) -> list[Standing]:
+    """Return the artifacts from the first place to the last; those of one place in the order of their ids.
+
+    Examples
+    --------
+    >>> [(row.artifact, row.votes, row.place) for row in standings("abcd", [{"a", "b"}, {"b", "c"}, set()])]
+    [('b', 2, 1), ('a', 1, 2), ('c', 1, 2), ('d', 0, 4)]
+    """
+    votes = Counter(dict.fromkeys(artifacts, 0))
+    for ballot in ballots:
+        votes.update(ballot & votes.keys())
+    ranks = Counter(votes.values())
+    place = {v: 1 + sum(count for more, count in ranks.items() if more > v) for v in ranks}
+    rows = [Standing(one, v, place[v], ranks[v] - 1) for one, v in votes.items()]
+    return sorted(rows, key=lambda row: (row.place, row.artifact))
+
+
+def gradebook(db: sqlite3.Connection) -> Iterator[tuple[str | int, ...]]:
+    """Yield a row for each voter: whether they voted, never for what, and how their artifact fared."""
+    hung, cast = store.artifacts(db), every(db)
+    rows = {hung[row.artifact].team: row for row in standings(hung, cast.values())}
+    for id, name, team in store.voters(db):
+        voted = "yes" if cast.get(id) else "no"
+        row = rows.get(team)
+        fared = (hung[row.artifact].title, row.votes, row.place, row.shared) if row else ("", "", "", "")
+        yield (id, name, team, voted, *fared)

@@ -19,7 +19,7 @@ from starlette.responses import JSONResponse, RedirectResponse, Response
 from starlette.routing import Route
 from starlette.types import ASGIApp
 
-from hdrlab.course.gallery import access_tokens, ballots, counting, pictures, store, tokens
+from hdrlab.course.gallery import ballots, pictures, store, tokens
 from hdrlab.course.gallery.web.front import HERE, HINTS, Front
 from hdrlab.course.gallery.web.guard import Guard, Rate, Refusal, form, same_origin
 
@@ -68,10 +68,10 @@ class Gallery(Front):
     async def link(self, request: Request) -> Response:
         """Show a button for a personal link: a mail's preview, which fetches links ahead, spends none."""
         token = request.path_params["token"]
-        if access_tokens.whose(self.db, token, "link"):
+        if tokens.whose(self.db, token, "link"):
             return self.page("enter.html", token=token)
-        voter = access_tokens.whose(self.db, request.cookies.get(self.cookie, ""))
-        if voter and voter.id == access_tokens.spent_by(self.db, token):
+        voter = tokens.whose(self.db, request.cookies.get(self.cookie, ""))
+        if voter and voter.id == tokens.spent_by(self.db, token):
             return RedirectResponse("/", 303)
         self.failed(request)
         raise Refusal(404, SPENT)
@@ -80,7 +80,7 @@ class Gallery(Front):
         """Take a personal link, once, and begin a session."""
         same_origin(request, self.origin)
         token = request.path_params["token"]
-        entered = await self.writer.do(lambda db: access_tokens.spend(db, token))
+        entered = await self.writer.do(lambda db: tokens.spend(db, token))
         if entered is None:
             self.failed(request)
             raise Refusal(404, SPENT)
@@ -129,10 +129,10 @@ class Gallery(Front):
         cast = [one for one in ballots.every(self.db).values() if one]
         return self.page(
             "results.html",
-            rows=[(row, hung[row.artifact]) for row in counting.standings(hung, cast)],
+            rows=[(row, hung[row.artifact]) for row in ballots.standings(hung, cast)],
             cast=len(cast),
             voters=store.voters(self.db),
-            method=counting.METHOD.format(marks=set_up.marks),
+            method=ballots.METHOD.format(marks=set_up.marks),
         )
 
     async def static(self, request: Request) -> Response:

@@ -11,7 +11,7 @@ from starlette.exceptions import HTTPException
 from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
-from hdrlab.course.gallery import access_tokens, store, tokens
+from hdrlab.course.gallery import store, tokens
 from hdrlab.course.gallery.web.guard import Rate, Rates, Refusal
 from hdrlab.course.gallery.web.writer import Writer
 from hdrlab.show.pages.templates import templates
@@ -54,7 +54,7 @@ class Front:
     def voter(self, request: Request) -> tuple[store.Voter, tokens.Shown]:
         """Return who asks, or raise a Refusal."""
         text = request.cookies.get(self.cookie, "")
-        shown, voter = tokens.read(text), access_tokens.whose(self.db, text)
+        shown, voter = tokens.read(text), tokens.whose(self.db, text)
         if voter is None or shown is None:
             if text:
                 self.failed(request)
