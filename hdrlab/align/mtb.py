@@ -16,9 +16,8 @@ from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.types import Array, Mask
+from hdrlab.core.types import Array, ArrayLike, Mask, NDArray
 
 # codes: closer than this to the threshold, noise decides the bit
 NOISE = 4

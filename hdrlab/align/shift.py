@@ -5,9 +5,8 @@ crop     two slices          the rectangle, in the coordinates of an image that 
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.types import Array
+from hdrlab.core.types import Array, ArrayLike, NDArray
 
 
 def as_offsets(offsets: ArrayLike, count: int | None = None) -> NDArray[np.int64]:

@@ -14,11 +14,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend
 from hdrlab.calibration.chart import read_patches
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike, NDArray
 
 
 class Schedule(NamedTuple):

@@ -14,14 +14,13 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import median_filter
 from scipy.stats import theilslopes
 
 from hdrlab.calibration import joining
 from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend, rmse
 from hdrlab.core.arrays import as_stack, levels
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, ArrayLike, NDArray
 
 # Fraction of the range: the paper's good example stays below, its bad one has 0.028.
 MAX_RMSE = 0.01

@@ -18,7 +18,6 @@ A `Sensor` puts a converter with a black level after the readout, and a Bayer mo
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture import sensor as stages
 from hdrlab.capture.hand_motion import views
@@ -27,7 +26,7 @@ from hdrlab.capture.sensor import Seed, Sensor
 from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, F64, Array, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask, NDArray
 
 
 def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:

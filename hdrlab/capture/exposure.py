@@ -17,9 +17,8 @@ from contextlib import suppress
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hdrlab.core.types import F64
+from hdrlab.core.types import F64, NDArray
 
 Real = float | NDArray[np.floating[Any]]
 

@@ -13,10 +13,9 @@ locomotive too; the modes differ in which pixels they ask.
 from functools import lru_cache
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_luminance, describe
-from hdrlab.core.types import F64, Array
+from hdrlab.core.types import F64, Array, ArrayLike, NDArray
 
 At = tuple[float, float]
 

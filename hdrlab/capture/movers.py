@@ -12,14 +12,13 @@ The embedded places bring a visitor: `Figure(place.mover, place.mask)` of `scene
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture import camera
 from hdrlab.capture.hand_motion import views
 from hdrlab.capture.sensor import Seed
 from hdrlab.core.arrays import as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
-from hdrlab.core.types import F32, Array, Mask
+from hdrlab.core.types import F32, Array, ArrayLike, Mask, NDArray
 
 # (y, x, z), where a ball is lit from: above, left and the camera's side
 SUN_DIRECTION = np.array([-0.5, -0.5, 0.7])

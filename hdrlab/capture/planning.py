@@ -23,12 +23,11 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 from hdrlab.capture import exposure
 from hdrlab.core.silence import silence
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.types import F64, ArrayLike, NDArray
 
 # photographs of one setting
 MOST = 1000

@@ -13,11 +13,10 @@ highlights are full. A shorter one loses the shadows, in noise and in steps that
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture.sensor import Sensor, as_sensor, full_electrons
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, Mask
+from hdrlab.core.types import F64, ArrayLike, Mask, NDArray
 
 
 class Range(NamedTuple):

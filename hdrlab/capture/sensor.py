@@ -18,11 +18,10 @@ its mean would be too high. So the converter adds a little, and what develops th
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance, describe
 from hdrlab.core.filters import mosaic
-from hdrlab.core.types import F32, F64, Array
+from hdrlab.core.types import F32, F64, Array, ArrayLike, NDArray
 
 Seed = int | np.random.Generator
 

@@ -11,9 +11,8 @@ n       256 or 65536, the number of levels a pixel value can take
 from collections.abc import Iterable, Sequence
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.types import Array
+from hdrlab.core.types import Array, ArrayLike, NDArray
 
 # e^80 is near the end of float32, in which radiance is kept
 LARGEST_LN_EXPOSURE = 80

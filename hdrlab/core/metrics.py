@@ -12,10 +12,9 @@ shift, is taken off before anything is compared; each function documents which.
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance, as_response, as_stack, as_table, describe, to_256
-from hdrlab.core.types import F64, Array
+from hdrlab.core.types import F64, Array, ArrayLike, NDArray
 
 # Of 256 levels: noise dominates below, the cut of the weights above.
 LOW_LEVEL, HIGH_LEVEL = 10, 250

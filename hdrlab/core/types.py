@@ -3,7 +3,7 @@
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike as ArrayLike, NDArray
+from numpy.typing import ArrayLike as ArrayLike, NDArray as NDArray
 
 Array = NDArray[Any]
 F32 = NDArray[np.float32]

@@ -16,10 +16,9 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core.arrays import as_mask, as_stack, to_256
-from hdrlab.core.types import F64, Array, Flags, Mask
+from hdrlab.core.types import F64, Array, ArrayLike, Flags, Mask
 from hdrlab.diagnostics import plausibility
 
 # of a patch, pixels

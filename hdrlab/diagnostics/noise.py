@@ -20,11 +20,10 @@ from itertools import pairwise, product
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.optimize import least_squares
 
 from hdrlab.core.arrays import as_radiance
-from hdrlab.core.types import F64, Array
+from hdrlab.core.types import F64, Array, ArrayLike
 from hdrlab.diagnostics.doubts import say
 from hdrlab.radiance.merge import TOP, as_tables
 

@@ -19,13 +19,12 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
-from numpy.typing import ArrayLike
 
 from hdrlab.align import homography, light
 from hdrlab.align.mtb import exclusion
 from hdrlab.core.filters import warp
 from hdrlab.core.filters.blur import blur_matrix
-from hdrlab.core.types import F32, F64, Array, Mask
+from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 
 # pixels of the overview: the distances at which other answers are compared
 NEAR, FAR = 2, 8

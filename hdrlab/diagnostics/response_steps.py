@@ -22,11 +22,10 @@ from itertools import combinations
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from hdrlab.core import weights
 from hdrlab.core.arrays import as_times
-from hdrlab.core.types import F64, Indices, Mask
+from hdrlab.core.types import F64, ArrayLike, Indices, Mask
 from hdrlab.core.weights import second_differences
 
 W = weights.cut(weights.hat(), below=0.02)

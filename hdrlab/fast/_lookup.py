@@ -5,9 +5,8 @@ t      where to read               any shape, float32
 """
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike, NDArray
 
 
 def tabulate(knots: ArrayLike) -> NDArray[np.complex64]:

@@ -13,11 +13,10 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import describe
 from hdrlab.core.filters.bilateral import Filtered, require_signal
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike, NDArray
 from hdrlab.fast import blur
 
 # levels in all

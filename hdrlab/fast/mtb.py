@@ -14,11 +14,10 @@ from itertools import pairwise, product
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.align import mtb as lesson
 from hdrlab.core.arrays import as_stack
-from hdrlab.core.types import Array, Mask
+from hdrlab.core.types import Array, ArrayLike, Mask, NDArray
 
 Words = NDArray[np.uint64]
 Offset = tuple[int, int]

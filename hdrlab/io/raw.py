@@ -16,10 +16,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab.core.optional import rawpy
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, NDArray
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 

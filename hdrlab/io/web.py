@@ -10,10 +10,9 @@ import zlib
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image as Pillow
 
-from hdrlab.core.types import Array, ArrayLike
+from hdrlab.core.types import Array, ArrayLike, NDArray
 
 Image = NDArray[np.uint8]
 

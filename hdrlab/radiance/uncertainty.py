@@ -19,9 +19,8 @@ with the light does so in all frames alike, and no mean takes it away: it is add
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.types import F32, F64, Mask
+from hdrlab.core.types import F32, F64, ArrayLike, Mask
 from hdrlab.radiance.merge import TOP, as_tables, bound
 
 ROUNDS = 2

@@ -9,11 +9,10 @@ E^   the picture (H, W, 3) again, each channel a weighted mean of the nearest pi
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import correlate
 
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import Array, Indices
+from hdrlab.core.types import Array, ArrayLike, Indices, NDArray
 
 # channels, R G / G B
 BAYER = np.array([[0, 1], [1, 2]])

@@ -14,11 +14,10 @@ from pathlib import Path
 from textwrap import wrap
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.core.arrays import as_radiance
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.types import F32
+from hdrlab.core.types import F32, ArrayLike, NDArray
 from hdrlab.io.decode import upright
 from hdrlab.io.files import check_size, replacing
 from hdrlab.io.maps.rgbe_header import read_header

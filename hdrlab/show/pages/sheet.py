@@ -19,6 +19,7 @@ from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show.pictures import require_alt
 from hdrlab.tonemap.quality import Quality
 
+Size = tuple[int, int]  # pixels, width and height
 DPI = 100  # dots per inch: a matplotlib inch is a hundred pixels of the sheet
 SIDE = 480  # pixels, the longer side of a picture on the sheet
 TEXT, CAPTION, GAP = 320, 86, 14  # pixels: least width and height of the text under a picture, and margins
@@ -86,28 +87,18 @@ def alt_text(entries: Sequence[Entry], title: str = "") -> str:
     return head + "; ".join(" ".join(line.split()) for line in lines) + "."
 
 
-class Grid(NamedTuple):
-    """Where things go, in pixels: pictures in a row, width and height of a picture and of its cell."""
-
-    columns: int
-    picture: tuple[int, int]
-    cell: tuple[int, int]
-
-
-def grid(shape: tuple[int, ...], count: int, *, columns: int | None = None, side: int = SIDE) -> Grid:
-    """Return the Grid of `count` pictures of this shape; by itself about 1.6 times as broad as tall."""
+def _grid(shape: tuple[int, ...], count: int, columns: int | None) -> tuple[int, Size, Size]:
+    """Return pictures in a row, and the pixels of a picture and its cell; a sheet is broad."""
     h, w = shape[:2]
-    width, height = (max(1, round(side * length / max(h, w))) for length in (w, h))
+    width, height = (max(1, round(SIDE * length / max(h, w))) for length in (w, h))
     cell = max(width, TEXT) + GAP, height + CAPTION
     if columns is None:
         columns = max(1, round((1.6 * count * cell[1] / cell[0]) ** 0.5))
         columns = -(-count // -(-count // columns))  # as many rows with fewer places left empty
-    return Grid(min(columns, count), (width, height), cell)
+    return min(columns, count), (width, height), cell
 
 
-def draw(
-    entries: Iterable[Entry], *, title: str = "", columns: int | None = None, side: int = SIDE
-) -> Figure:
+def draw(entries: Iterable[Entry], *, title: str = "", columns: int | None = None) -> Figure:
     """Return the sheet of these entries, in their order; its alt text is the label, `figure.get_label()`.
 
     Parameters
@@ -115,14 +106,13 @@ def draw(
     entries : pictures of one size, with their figures
     title : above the sheet, and in its alt text
     columns : pictures in a row; so many that the sheet is broad rather than tall, unless told
-    side : pixels of a picture's longer side on the sheet
     """
     entries = list(entries)
     if not entries:
         raise ValueError("expected at least one picture for the sheet, got none")
-    if side < 16 or (columns is not None and columns < 1):
-        raise ValueError(f"expected side >= 16 and columns >= 1, got {side} and {columns}")
-    columns, picture, cell = grid(entries[0].picture.shape, len(entries), columns=columns, side=side)
+    if columns is not None and columns < 1:
+        raise ValueError(f"expected columns >= 1, got {columns}")
+    columns, picture, cell = _grid(entries[0].picture.shape, len(entries), columns)
     width = columns * cell[0] + GAP
     head, foot = _broken(title or "Tone mapping", width, 12), _broken(LEGEND.read_text("utf8"), width, 7)
     top = 24 + 20 * len(head)
@@ -156,7 +146,7 @@ def check_suffix(path: str | Path) -> None:
     require_suffix(path, (".png",), "a sheet, whose alt text travels in it")
 
 
-def _place(figure: Figure, entry: Entry, left: int, top: int, picture: tuple[int, int]) -> None:
+def _place(figure: Figure, entry: Entry, left: int, top: int, picture: Size) -> None:
     """Draw an entry with its picture's top left corner at (left, top) pixels, and the text below."""
     width, height = figure.get_size_inches() * DPI
     w, h = picture

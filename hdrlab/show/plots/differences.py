@@ -8,9 +8,8 @@ Light goes over more than a screen can show: an image whose range is wide is dra
 
 import numpy as np
 from matplotlib.figure import Figure
-from numpy.typing import ArrayLike
 
-from hdrlab.core.types import Array
+from hdrlab.core.types import Array, ArrayLike
 from hdrlab.show import pictures, plots
 from hdrlab.show.plots import figures
 

@@ -16,11 +16,10 @@ from matplotlib.axes import Axes
 from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
-from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import maximum_filter
 
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import Array
+from hdrlab.core.types import Array, ArrayLike, NDArray
 from hdrlab.io import web
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages.wording import signed

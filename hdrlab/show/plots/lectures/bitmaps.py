@@ -15,12 +15,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.align import mtb
 from hdrlab.capture.movers import shift_layer
 from hdrlab.core.arrays import describe
-from hdrlab.core.types import Mask
+from hdrlab.core.types import ArrayLike, Mask, NDArray
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.show.plots import picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
