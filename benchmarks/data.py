@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket, bracket
-from hdrlab.core.types import Array
 from scenes.computed import view
 
 SMALL, LARGE = (1224, 1632), (3000, 4000)  # 2 and 12 megapixels

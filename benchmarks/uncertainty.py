@@ -41,8 +41,8 @@ from hdrlab.capture import camera, responses
 from hdrlab.capture.responses import Curve
 from hdrlab.cli.photographs import read_bracket
 from hdrlab.core import weights
+from hdrlab.core.arrays import Array, Mask
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import Array, Mask
 from hdrlab.diagnostics.noise import FLAT, GROUPS, Noise, estimate_noise, slope
 from hdrlab.fast.merge import merge_with_quality
 from hdrlab.pipeline import recovery

@@ -15,8 +15,8 @@ from scipy.ndimage import gaussian_filter
 
 from hdrlab import scenes
 from hdrlab.capture import camera
+from hdrlab.core.arrays import F32, Array
 from hdrlab.core.filters.warp import sample, turn
-from hdrlab.core.types import F32, Array
 from hdrlab.io import web
 
 SHAPE = (160, 240)

@@ -58,7 +58,6 @@ def test_examples_run(name, monkeypatch, tmp_path):
 ALGORITHMS = ("align", "beyond", "capture", "core", "enhance", "radiance", "response", "tonemap")
 PARTS = {  # of something with examples
     "hdrlab.core.filters",
-    "hdrlab.core.types",
     "hdrlab.radiance.deghosting",
 }
 

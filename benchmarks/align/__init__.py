@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike
 from benchmarks import peers
 from benchmarks.align import cases, real, who
 from benchmarks.experiments import Experiment, Skipped, along, at_least
+from hdrlab.core.arrays import Array
 from hdrlab.core.filters import warp
-from hdrlab.core.types import Array
 
 COUNT = 100  # pairs of a kind
 WITHIN = {"shift": 1.0, "turned": 0.3}  # pixels

@@ -19,8 +19,8 @@ from skimage import data
 
 from hdrlab import scenes
 from hdrlab.capture import camera, hand_motion
+from hdrlab.core.arrays import Array
 from hdrlab.core.filters import warp
-from hdrlab.core.types import Array
 
 SHAPE = (340, 480)
 RADIUS, DEGREES = 32, 3.0  # pixels and degrees: as far as a hand shakes between two photographs

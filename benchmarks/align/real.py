@@ -22,10 +22,10 @@ from benchmarks.experiments import Experiment, at_least, real
 from hdrlab import pipeline
 from hdrlab.align import light
 from hdrlab.align.mtb import by_brightness
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
-from hdrlab.core.types import Array
 from hdrlab.io.album import photographs
 from hdrlab.io.photos import read_bracket, read_photo
 

@@ -18,8 +18,8 @@ from skimage.registration import phase_cross_correlation
 
 from benchmarks import peers
 from hdrlab.capture.responses import true_g
+from hdrlab.core.arrays import Array
 from hdrlab.core.filters import warp
-from hdrlab.core.types import Array
 from hdrlab.pipeline.alignment import register
 
 Float = NDArray[np.float64]

@@ -21,8 +21,8 @@ from benchmarks.ghosts.sequences import SEQUENCES, STILL, sequence, shaken, stil
 from hdrlab.capture.movers import Moving
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import Array
 from hdrlab.radiance.deghosting import ghosts
 from hdrlab.radiance.merge import Merged, merge_with_quality
 

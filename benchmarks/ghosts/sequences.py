@@ -15,8 +15,8 @@ from scipy.ndimage import shift
 
 from hdrlab import scenes
 from hdrlab.capture import camera, movers
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import Array
 from hdrlab.scenes.places import PLACES, resample
 
 FRAMES = 7

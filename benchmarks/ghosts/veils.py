@@ -21,8 +21,8 @@ from hdrlab.capture import camera
 from hdrlab.capture.lens_flare import add_glare
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
+from hdrlab.core.arrays import Array
 from hdrlab.core.filters.scatter import GlareSpread
-from hdrlab.core.types import Array
 from hdrlab.radiance import flare
 from hdrlab.radiance.merge import merge_with_quality
 from hdrlab.scenes.places import resample

@@ -20,11 +20,11 @@ from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import response_rmse
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.transfer import histograms
-from hdrlab.core.types import Array
 from hdrlab.core.weights import make_monotone
 from hdrlab.fast import debevec
 from hdrlab.io.radiance import read_radiance

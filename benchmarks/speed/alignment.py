@@ -7,7 +7,7 @@ import numpy as np
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.align.shift import shift
-from hdrlab.core.types import Array
+from hdrlab.core.arrays import Array
 from hdrlab.pipeline.alignment import register
 
 RADIUS = 8

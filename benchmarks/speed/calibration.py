@@ -10,9 +10,9 @@ import numpy as np
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.core import weights
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.sampling import by_grid
-from hdrlab.core.types import Array
 from hdrlab.fast import debevec
 from hdrlab.response.debevec import system
 

@@ -15,7 +15,7 @@ from benchmarks import data, peers
 from benchmarks.measure import ROOT, process
 from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, Usage, close, faster, grows, smaller
 from hdrlab.capture.hand_motion import views
-from hdrlab.core.types import Array
+from hdrlab.core.arrays import Array
 from hdrlab.io.maps import rgbe
 
 RADIUS = 16

@@ -10,7 +10,7 @@ import numpy as np
 
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
-from hdrlab.core.types import Array
+from hdrlab.core.arrays import Array
 from hdrlab.io.maps import exr, pfm, rgbe
 
 Peer = Callable[[Path, Array, bool], Run]

@@ -9,8 +9,8 @@ from collections.abc import Callable
 from typing import Any
 
 from benchmarks import peers
+from hdrlab.core.arrays import F32
 from hdrlab.core.filters import pyramid
-from hdrlab.core.types import F32
 
 VECTOR = 8  # floats
 

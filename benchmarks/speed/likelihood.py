@@ -8,9 +8,9 @@ import numpy as np
 
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.sampling import every_pixel
-from hdrlab.core.types import Array
 from hdrlab.fast import robertson
 from hdrlab.io.response_files import read_curve, write_curve
 from hdrlab.pipeline import recovery

@@ -6,7 +6,7 @@ from pathlib import Path
 from benchmarks import peers
 from benchmarks.measure import process
 from benchmarks.rows import Run, Usage
-from hdrlab.core.types import Array
+from hdrlab.core.arrays import Array
 from hdrlab.io.maps import rgbe
 
 NAME = "Luminance HDR"

@@ -8,8 +8,8 @@ import numpy as np
 
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Hold, Results, Row, Run, Usage, close, faster, smaller
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import Array
 from hdrlab.fast import merge
 from hdrlab.io.response_files import write_curve
 from hdrlab.radiance import uncertainty

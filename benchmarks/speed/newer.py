@@ -9,9 +9,9 @@ from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Hold, Results, Row, Run
 from benchmarks.speed.halide_laplacian import Filter
 from benchmarks.speed.operators import than
+from hdrlab.core.arrays import F32
 from hdrlab.core.colour import luminance
 from hdrlab.core.filters import guided, pyramid
-from hdrlab.core.types import F32
 from hdrlab.tonemap import local_laplacian, transfer
 from hdrlab.tonemap.durand import logarithm
 

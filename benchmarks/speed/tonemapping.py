@@ -10,9 +10,9 @@ from benchmarks import data, peers
 from benchmarks.measure import process
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab import pipeline
+from hdrlab.core.arrays import Array
 from hdrlab.core.colour import encode_srgb, luminance, recolour
 from hdrlab.core.steps import last
-from hdrlab.core.types import Array
 from hdrlab.fast import reinhard as fast
 from hdrlab.io.maps import pfm
 from hdrlab.tonemap import reinhard

@@ -31,9 +31,9 @@ from benchmarks.experiments import Experiment, along, at_most
 from benchmarks.peers import opencv
 from benchmarks.verdicts import brackets, ills
 from hdrlab import pipeline
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import Array
 
 # brackets of a row, of each of the sound kinds, and of those that one row distinguishes
 COUNT, SOUND = 12, 14

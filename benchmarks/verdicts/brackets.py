@@ -22,8 +22,8 @@ from scipy.ndimage import gaussian_filter
 from benchmarks.experiments import Skipped, measured_curves
 from hdrlab import scenes
 from hdrlab.capture import camera
+from hdrlab.core.arrays import Array
 from hdrlab.core.bracket import Bracket, bracket
-from hdrlab.core.types import Array
 
 SHAPE = (344, 516)
 SCENES = (*scenes.PLACES, "room")

@@ -9,8 +9,8 @@ from benchmarks.verdicts.brackets import SHAPE, Float, Ill, Plan
 from hdrlab import scenes
 from hdrlab.capture import movers
 from hdrlab.capture.hand_motion import views
+from hdrlab.core.arrays import Array
 from hdrlab.core.filters import warp
-from hdrlab.core.types import Array
 from hdrlab.scenes.places import Layers
 
 Draw = np.random.Generator

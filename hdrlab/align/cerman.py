@@ -18,8 +18,8 @@ import numpy as np
 import scipy
 
 from hdrlab.align import light
+from hdrlab.core.arrays import F32, F64, ArrayLike, Indices
 from hdrlab.core.filters import warp
-from hdrlab.core.types import F32, F64, ArrayLike, Indices
 
 # of the correlation: the coarsest level tries this many
 PEAKS = 3

@@ -21,9 +21,9 @@ import numpy as np
 import scipy
 
 from hdrlab.align import light
+from hdrlab.core.arrays import F32, F64, ArrayLike, Mask
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_feature, skimage_measure, skimage_transform as transform
-from hdrlab.core.types import F32, F64, ArrayLike, Mask
 
 # pixels of the level where points are looked for, at most
 PIXELS = 250_000

@@ -24,10 +24,10 @@ from itertools import pairwise
 import numpy as np
 import scipy
 
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_transform as transform
 from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 
 # of the range of levels: noise below, saturation above
 DARK, BRIGHT = 5 / 255, 250 / 255

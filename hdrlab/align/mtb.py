@@ -17,7 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import Array, ArrayLike, Mask, NDArray
+from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray
 
 # codes: closer than this to the threshold, noise decides the bit
 NOISE = 4

@@ -18,10 +18,9 @@ import numpy as np
 import scipy
 
 from hdrlab.align.light import BRIGHT
-from hdrlab.core.arrays import as_mask, as_stack, as_table, levels
+from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, as_mask, as_stack, as_table, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
-from hdrlab.core.types import F64, Array, ArrayLike, Mask
 
 # rows of the common picture that are resampled at a time, for the memory
 BAND = 256

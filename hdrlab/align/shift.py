@@ -6,7 +6,7 @@ crop     two slices          the rectangle, in the coordinates of an image that 
 
 import numpy as np
 
-from hdrlab.core.types import Array, ArrayLike, NDArray
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 
 
 def as_offsets(offsets: ArrayLike, count: int | None = None) -> NDArray[np.int64]:

@@ -16,9 +16,8 @@ bright end, and loses a quarter of a decade at the dark one, where every fourth 
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.arrays import as_radiance, describe, levels
+from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance, describe, levels
 from hdrlab.core.filters.mosaic import BAYER, as_channels, sample
-from hdrlab.core.types import F64, Array, ArrayLike
 
 # four transparencies, two stops apart, in a square
 FOUR_EXPOSURES = np.array([[1.0, 1 / 4], [1 / 64, 1 / 16]])

@@ -17,8 +17,8 @@ import numpy as np
 
 from hdrlab.beyond import patchmatch
 from hdrlab.beyond.patchmatch import Field, Sources
+from hdrlab.core.arrays import F32, Indices
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, Indices
 
 
 class Matches(NamedTuple):

@@ -13,8 +13,8 @@ from collections.abc import Callable
 import numpy as np
 from scipy.ndimage import map_coordinates
 
+from hdrlab.core.arrays import F32, Mask
 from hdrlab.core.optional import skimage_registration
-from hdrlab.core.types import F32, Mask
 
 Flow = Callable[[F32, F32], F32]
 

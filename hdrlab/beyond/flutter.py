@@ -14,8 +14,7 @@ them back. A code of open and shut that looks random has no such zeros. It lets 
 import numpy as np
 from scipy.linalg import solve
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, describe
 
 # 52 chops
 RASKAR_CODE = np.array([int(chop) for chop in "1010000111000001010000110011110111010111001001100111"])

@@ -12,9 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_response, as_stack, as_times, levels
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, as_response, as_stack, as_times, levels
 from hdrlab.core.optional import skimage_transform as transform
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 
 GAMMA = 2.2
 # levels

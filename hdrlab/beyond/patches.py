@@ -28,9 +28,9 @@ from hdrlab.beyond.bidirectional import Search, search, similarity, vote
 from hdrlab.beyond.ldr_values import as_values, resize_picture
 from hdrlab.beyond.patchmatch import identity_field
 from hdrlab.beyond.synthesis import Ramp, Scene
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Indices
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Indices
 
 # where the search of both ways begins
 Fields = tuple[Indices, tuple[Indices, ...]]

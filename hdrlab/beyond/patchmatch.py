@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hdrlab.core.types import F32, Indices
+from hdrlab.core.arrays import F32, Indices
 
 NEIGHBOURS = ((0, 1), (1, 0), (0, -1), (-1, 0))
 # places, beyond any picture's

@@ -24,10 +24,9 @@ import numpy as np
 from scipy.ndimage import uniform_filter
 
 from hdrlab.beyond import assorted
-from hdrlab.core.arrays import as_radiance, describe, levels
+from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, NDArray, as_radiance, describe, levels
 from hdrlab.core.filters.mosaic import as_channels, demosaic
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64, Array, ArrayLike, Mask, NDArray
 
 # shares of the light, by the first pellicle, and by the second of what the first reflected
 REFLECTANCES = (0.08, 0.06)

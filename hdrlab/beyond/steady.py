@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.beyond.neighbours import slide_windows
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.core.extremes import robust_maximum
-from hdrlab.core.types import F32, ArrayLike
 
 SMALLEST_LUMINANCE = float(np.finfo(np.float32).tiny)
 

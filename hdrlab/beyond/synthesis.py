@@ -17,7 +17,7 @@ import numpy as np
 
 from hdrlab.beyond.ldr_values import boost, consistent_range, expose, radiance, resize_picture
 from hdrlab.beyond.patchmatch import cut_patches
-from hdrlab.core.types import F32, F64, Mask
+from hdrlab.core.arrays import F32, F64, Mask
 
 Ramp = tuple[float, float]
 

@@ -26,8 +26,7 @@ from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
 from hdrlab.beyond.neighbours import slide_windows
 from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_table, as_times, levels
-from hdrlab.core.types import F32, Array, ArrayLike, Mask
+from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_table, as_times, levels
 
 # of values: a neighbour that is farther off counts for nothing
 VALUE_TOLERANCE = np.float32(16 / 255)

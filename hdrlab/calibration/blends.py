@@ -16,8 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, describe
 
 # The paper's typical range of brightnesses that are measurements.
 MIN_BRIGHTNESS, MAX_BRIGHTNESS = 15 / 255, 240 / 255

@@ -27,10 +27,9 @@ from scipy.interpolate import PchipInterpolator
 
 from hdrlab.calibration import joining
 from hdrlab.calibration.blends import TABLE_SIZE, InverseResponse, make_blend, normalize
-from hdrlab.core.arrays import as_stack, as_times, describe, levels
+from hdrlab.core.arrays import F64, ArrayLike, as_stack, as_times, describe, levels
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_draw
-from hdrlab.core.types import F64, ArrayLike
 
 ROWS, COLUMNS = 4, 6
 # Space between the patches of the classic chart, over a patch's width.

@@ -17,7 +17,7 @@ import numpy as np
 
 from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend
 from hdrlab.calibration.chart import read_patches
-from hdrlab.core.types import F64, ArrayLike, NDArray
+from hdrlab.core.arrays import F64, ArrayLike, NDArray
 
 
 class Schedule(NamedTuple):

@@ -29,8 +29,8 @@ from scipy.interpolate import BSpline
 from scipy.optimize import nnls
 
 from hdrlab.calibration.blends import GRID, Blend, InverseResponse, build_response, rescale, select_blends
+from hdrlab.core.arrays import F64
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64
 
 # Of the mean slope: what is flatter can hardly be distinguished from a step.
 MIN_SLOPE = 1e-3

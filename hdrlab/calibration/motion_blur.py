@@ -19,8 +19,7 @@ from scipy.stats import theilslopes
 
 from hdrlab.calibration import joining
 from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend, rmse
-from hdrlab.core.arrays import as_stack, levels
-from hdrlab.core.types import F64, ArrayLike, NDArray
+from hdrlab.core.arrays import F64, ArrayLike, NDArray, as_stack, levels
 
 # Fraction of the range: the paper's good example stays below, its bad one has 0.028.
 MAX_RMSE = 0.01

@@ -23,8 +23,8 @@ from numpy.polynomial.polynomial import polyder, polyval
 from scipy.optimize import minimize
 
 from hdrlab.calibration.blends import GRID, Blend, InverseResponse, build_response, rescale, select_blends
+from hdrlab.core.arrays import F64, ArrayLike
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64, ArrayLike
 
 SIMPLEX = {"xatol": 1e-6, "fatol": 1e-12, "maxfev": 4000, "adaptive": True}
 

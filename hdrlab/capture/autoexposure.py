@@ -18,9 +18,9 @@ import numpy as np
 from hdrlab.capture import camera, exposure
 from hdrlab.capture.metering import MIDDLE_GRAY, At, correction, reading, weights
 from hdrlab.capture.sensor import Seed
+from hdrlab.core.arrays import F32, F64, ArrayLike
 from hdrlab.core.colour import luminance
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64, ArrayLike
 
 # stops: the loop ends when it asks for less than this
 STOP_TOLERANCE = 1 / 12

@@ -23,10 +23,9 @@ from hdrlab.capture import sensor as stages
 from hdrlab.capture.hand_motion import views
 from hdrlab.capture.responses import Curve, Response, as_response
 from hdrlab.capture.sensor import Seed, Sensor
-from hdrlab.core.arrays import as_radiance, as_times, describe
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, NDArray, as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask, NDArray
 
 
 def shake(count: int, *, radius: int = 8, rng: Seed = 0) -> NDArray[np.int64]:

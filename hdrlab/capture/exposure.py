@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import F64, NDArray
+from hdrlab.core.arrays import F64, NDArray
 
 Real = float | NDArray[np.floating[Any]]
 

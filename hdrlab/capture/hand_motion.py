@@ -11,9 +11,8 @@ the pixels, not the photograph.
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F64, Array, ArrayLike, describe
 from hdrlab.core.filters import warp
-from hdrlab.core.types import F64, Array, ArrayLike
 
 Seed = int | np.random.Generator | None
 

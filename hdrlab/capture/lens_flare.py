@@ -8,9 +8,8 @@ A little of all light is scattered, and lies over the picture as veiling glare.
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
-from hdrlab.core.types import F32, ArrayLike
 
 FINGERPRINTS = GlareSpread(0.05)
 

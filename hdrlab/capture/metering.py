@@ -14,8 +14,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance, describe
-from hdrlab.core.types import F64, Array, ArrayLike, NDArray
+from hdrlab.core.arrays import F64, Array, ArrayLike, NDArray, as_luminance, describe
 
 At = tuple[float, float]
 

@@ -16,9 +16,8 @@ import numpy as np
 from hdrlab.capture import camera
 from hdrlab.capture.hand_motion import views
 from hdrlab.capture.sensor import Seed
-from hdrlab.core.arrays import as_radiance, as_times, describe
+from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, NDArray, as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket, short_to_long
-from hdrlab.core.types import F32, Array, ArrayLike, Mask, NDArray
 
 # (y, x, z), where a ball is lit from: above, left and the camera's side
 SUN_DIRECTION = np.array([-0.5, -0.5, 0.7])

@@ -17,8 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, Array, ArrayLike, Mask
+from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, describe
 
 # levels^2: what rounding to whole levels adds
 ROUNDING_VARIANCE = 1 / 12

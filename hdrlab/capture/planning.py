@@ -26,8 +26,8 @@ import numpy as np
 from scipy.optimize import Bounds, LinearConstraint, milp
 
 from hdrlab.capture import exposure
+from hdrlab.core.arrays import F64, ArrayLike, NDArray
 from hdrlab.core.silence import silence
-from hdrlab.core.types import F64, ArrayLike, NDArray
 
 # photographs of one setting
 MOST = 1000

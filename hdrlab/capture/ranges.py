@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.capture.sensor import Sensor, as_sensor, full_electrons
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike, Mask, NDArray
+from hdrlab.core.arrays import F64, ArrayLike, Mask, NDArray, describe
 
 
 class Range(NamedTuple):

@@ -11,8 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hdrlab.core.arrays import F64, Array
 from hdrlab.core.colour import decode_srgb, encode_srgb
-from hdrlab.core.types import F64, Array
 
 Curve = Callable[[Array], Array]
 

@@ -19,9 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance, describe
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, NDArray, as_radiance, describe
 from hdrlab.core.filters import mosaic
-from hdrlab.core.types import F32, F64, Array, ArrayLike, NDArray
 
 Seed = int | np.random.Generator
 

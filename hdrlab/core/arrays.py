@@ -1,4 +1,4 @@
-"""Arrays as the chapters expect them: checked once, at the verb.
+"""Arrays as the chapters expect them: their types, once for the whole library, and checked once, at the verb.
 
 images  (P, H, W) gray or (P, H, W, 3) RGB, uint8 or uint16: a stack of photographs
 times   (P,) seconds of equivalent exposure, positive
@@ -9,10 +9,19 @@ n       256 or 65536, the number of levels a pixel value can take
 """
 
 from collections.abc import Iterable, Sequence
+from typing import Any
 
 import numpy as np
+from numpy.typing import ArrayLike as ArrayLike, NDArray as NDArray
 
-from hdrlab.core.types import Array, ArrayLike, NDArray
+Array = NDArray[Any]
+F32 = NDArray[np.float32]
+F64 = NDArray[np.float64]
+Mask = NDArray[np.bool_]
+Flags = NDArray[np.uint8]
+Labels = NDArray[np.int32]
+Indices = NDArray[np.intp]
+Image = NDArray[np.uint8] | NDArray[np.uint16]
 
 # e^80 is near the end of float32, in which radiance is kept
 LARGEST_LN_EXPOSURE = 80

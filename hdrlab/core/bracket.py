@@ -6,8 +6,7 @@ from zlib import crc32
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_stack, as_times
-from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
+from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_stack, as_times
 
 
 class Bracket(NamedTuple):

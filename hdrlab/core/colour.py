@@ -23,8 +23,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance, as_radiance, describe
-from hdrlab.core.types import F32, Array, ArrayLike
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance, describe
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
 DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray

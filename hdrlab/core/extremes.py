@@ -6,8 +6,8 @@ cut  fraction left out    of the positive pixels, and at least one pixel
 
 import numpy as np
 
+from hdrlab.core.arrays import F32, ArrayLike
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, ArrayLike
 
 # pixels: a larger picture is ranked by every second, third, ... of its pixels
 ENOUGH = 1 << 18

@@ -17,8 +17,8 @@ be gray where W is between 0 and 1, and small, or hdr would lose dark places bes
 
 import numpy as np
 
+from hdrlab.core.arrays import F32, Array, ArrayLike
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, Array, ArrayLike
 
 OFFSETS = (1 / 1024, 1 / 1024)
 SPARE = 0.001  # share of the pixels, at either end, whose gain may lie outside low to high

@@ -21,9 +21,8 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F32, F64, ArrayLike, Mask, describe
 from hdrlab.core.colour import LUMINANCE
-from hdrlab.core.types import F32, F64, ArrayLike, Mask
 
 SRGB = (0.64, 0.33, 0.30, 0.60, 0.15, 0.06, 0.3127, 0.3290)  # ITU-R BT.709, white D65
 # of screens that show more colours: ITU-R BT.2020, and Display P3, whose primaries are of SMPTE RP 431-2

@@ -13,8 +13,18 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance, as_response, as_stack, as_table, describe, to_256
-from hdrlab.core.types import F64, Array, ArrayLike, NDArray
+from hdrlab.core.arrays import (
+    F64,
+    Array,
+    ArrayLike,
+    NDArray,
+    as_radiance,
+    as_response,
+    as_stack,
+    as_table,
+    describe,
+    to_256,
+)
 
 # Of 256 levels: noise dominates below, the cut of the weights above.
 LOW_LEVEL, HIGH_LEVEL = 10, 250

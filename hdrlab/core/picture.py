@@ -9,9 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_picture
+from hdrlab.core.arrays import F64, ArrayLike, as_picture
 from hdrlab.core.colour import LUMINANCE
-from hdrlab.core.types import F64, ArrayLike
 
 
 class Statistics(NamedTuple):

@@ -14,8 +14,7 @@ spends its samples where the pictures have pixels.
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack, to_256
-from hdrlab.core.types import Array, ArrayLike, Indices, Mask
+from hdrlab.core.arrays import Array, ArrayLike, Indices, Mask, as_stack, to_256
 
 # an even choice of about so many ranks a frame as well as all of it
 PIXELS = 1_000_000

@@ -15,8 +15,7 @@ level, though the count belongs to the step's upper edge: so m + 1/2 is paired w
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_stack, describe, levels
-from hdrlab.core.types import F64, Array, ArrayLike
+from hdrlab.core.arrays import F64, Array, ArrayLike, as_mask, as_stack, describe, levels
 
 
 def histograms(images: ArrayLike, valid: ArrayLike | None = None) -> Array:

@@ -10,7 +10,7 @@ much, validity says whether.
 
 import numpy as np
 
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike
 
 
 def hat(n: int = 256) -> F64:

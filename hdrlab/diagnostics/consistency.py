@@ -13,8 +13,19 @@ import warnings
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_radiance, as_response, as_stack, as_times, to_256
-from hdrlab.core.types import F32, F64, ArrayLike, Flags, Mask
+from hdrlab.core.arrays import (
+    F32,
+    F64,
+    ArrayLike,
+    Flags,
+    Mask,
+    as_mask,
+    as_radiance,
+    as_response,
+    as_stack,
+    as_times,
+    to_256,
+)
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)

@@ -29,8 +29,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack, to_256
-from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
+from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_stack, to_256
 from hdrlab.diagnostics import flat_patches, response_steps
 from hdrlab.diagnostics.doubts import say
 

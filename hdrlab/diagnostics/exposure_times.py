@@ -14,8 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_response, as_stack
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, as_response, as_stack
 from hdrlab.diagnostics import flat_patches, response_steps
 from hdrlab.diagnostics.doubts import say
 

@@ -17,8 +17,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_stack, to_256
-from hdrlab.core.types import F64, Array, ArrayLike, Flags, Mask
+from hdrlab.core.arrays import F64, Array, ArrayLike, Flags, Mask, as_mask, as_stack, to_256
 from hdrlab.diagnostics import plausibility
 
 # of a patch, pixels

@@ -19,8 +19,7 @@ above the ground, where a response is a little wrong, makes no bands, for a cubi
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hdrlab.core.arrays import as_mask
-from hdrlab.core.types import F32, Array, ArrayLike, Mask
+from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_mask
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of a frame, on an even grid, that stand for the whole

@@ -22,8 +22,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from hdrlab.core.arrays import as_radiance
-from hdrlab.core.types import F64, Array, ArrayLike
+from hdrlab.core.arrays import F64, Array, ArrayLike, as_radiance
 from hdrlab.diagnostics.doubts import say
 from hdrlab.radiance.merge import TOP, as_tables
 

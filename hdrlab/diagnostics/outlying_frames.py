@@ -9,8 +9,7 @@ the others agree without either of two, as three of four often do, nobody can te
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, as_stack
 from hdrlab.diagnostics import flat_patches, response_steps
 
 # stops in a typical patch: what contradicts all others, and what agrees

@@ -17,11 +17,10 @@ that there is no such thing.
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_response, as_stack, as_times
+from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_response, as_stack, as_times
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import F64, Array, ArrayLike, Indices, Mask
 from hdrlab.diagnostics.doubts import say
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8

@@ -22,9 +22,9 @@ from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.align import homography, light
 from hdrlab.align.mtb import exclusion
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
 from hdrlab.core.filters import warp
 from hdrlab.core.filters.blur import blur_matrix
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
 
 # pixels of the overview: the distances at which other answers are compared
 NEAR, FAR = 2, 8

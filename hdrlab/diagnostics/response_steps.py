@@ -24,8 +24,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_times
-from hdrlab.core.types import F64, ArrayLike, Indices, Mask
+from hdrlab.core.arrays import F64, ArrayLike, Indices, Mask, as_times
 from hdrlab.core.weights import second_differences
 
 W = weights.cut(weights.hat(), below=0.02)

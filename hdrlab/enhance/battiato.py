@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from scipy.ndimage import correlate1d, laplace
 
-from hdrlab.core.arrays import as_picture, describe
-from hdrlab.core.types import F64, Array, ArrayLike, Mask
+from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, as_picture, describe
 from hdrlab.enhance import relight, skin
 
 # levels: 2 sigma of the Laplacian of noise of 2.2; the norm of its weights is sqrt 20

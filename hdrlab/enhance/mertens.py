@@ -18,10 +18,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack, levels
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_stack, levels
 from hdrlab.core.filters import pyramid
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, Array, ArrayLike
 
 # ITU-R BT.601: the gray of encoded values
 LUMA = np.array([0.299, 0.587, 0.114], np.float32)

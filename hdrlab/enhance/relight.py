@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import expit, logit
 
-from hdrlab.core.types import F64, Array, ArrayLike
+from hdrlab.core.arrays import F64, Array, ArrayLike
 
 # A and C for which f lies within 4 levels of the curve of sRGB from level 20 to 200, by least squares.
 A, C = 1.79, 0.192

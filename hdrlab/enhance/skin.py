@@ -21,7 +21,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import F64, ArrayLike, Mask
+from hdrlab.core.arrays import F64, ArrayLike, Mask
 
 LUMA = np.array([0.299, 0.587, 0.114])  # Y of RGB [BT.601]
 CHROMA = np.array([[-0.168736, -0.331264, 0.5], [0.5, -0.418688, -0.081312]])  # Cb, Cr of RGB [BT.601]

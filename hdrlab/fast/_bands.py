@@ -8,7 +8,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hdrlab.core.types import Array
+from hdrlab.core.arrays import Array
 
 BAND = 32  # rows
 

@@ -6,7 +6,7 @@ t      where to read               any shape, float32
 
 import numpy as np
 
-from hdrlab.core.types import F32, ArrayLike, NDArray
+from hdrlab.core.arrays import F32, ArrayLike, NDArray
 
 
 def tabulate(knots: ArrayLike) -> NDArray[np.complex64]:

@@ -14,9 +14,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F32, ArrayLike, NDArray, describe
 from hdrlab.core.filters.bilateral import Filtered, require_signal
-from hdrlab.core.types import F32, ArrayLike, NDArray
 from hdrlab.fast import blur
 
 # levels in all

@@ -13,7 +13,7 @@ small and dense, which is what a processor's matrix product does at full speed; 
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hdrlab.core.types import F32, ArrayLike
+from hdrlab.core.arrays import F32, ArrayLike
 
 # rows of a product: more would multiply more of the band's zeros, fewer idle the processor
 TILE = 16

@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.types import F32, ArrayLike
 from hdrlab.fast import _lookup
 from hdrlab.fast._bands import BAND, banded
 from hdrlab.tonemap import brush

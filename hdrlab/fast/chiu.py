@@ -1,6 +1,6 @@
 """Chiu's spatially nonuniform scaling, fast: blurs on coarse grids, the passes a band of rows at a time."""
 
-from hdrlab.core.types import F32
+from hdrlab.core.arrays import F32
 from hdrlab.fast import with_parts
 from hdrlab.fast._bands import banded
 from hdrlab.fast.bilateral import bilateral

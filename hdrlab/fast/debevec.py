@@ -9,9 +9,8 @@ from itertools import product
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F64, ArrayLike, Indices, describe
 from hdrlab.core.sampling import require_two_exposures
-from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.fast import with_parts
 from hdrlab.response import debevec
 from hdrlab.response.debevec import Solution

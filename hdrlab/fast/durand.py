@@ -2,7 +2,7 @@
 
 from functools import partial
 
-from hdrlab.core.types import F32
+from hdrlab.core.arrays import F32
 from hdrlab.fast import with_parts
 from hdrlab.fast._bands import banded
 from hdrlab.fast.bilateral import bilateral

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.core.types import F32
+from hdrlab.core.arrays import F32
 from hdrlab.fast import pyramid, with_parts
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap import fattal

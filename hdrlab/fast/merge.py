@@ -22,9 +22,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Flags, Mask, as_mask
 from hdrlab.core.bracket import short_to_long
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
 from hdrlab.radiance.stuck import repair_stuck
 

@@ -4,8 +4,7 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from hdrlab.core.arrays import levels
-from hdrlab.core.types import F32, Array
+from hdrlab.core.arrays import F32, Array, levels
 from hdrlab.enhance import mertens
 from hdrlab.fast import pyramid, with_parts
 from hdrlab.fast._bands import banded

@@ -16,8 +16,7 @@ from typing import Self
 import numpy as np
 
 from hdrlab.align import mtb as lesson
-from hdrlab.core.arrays import as_stack
-from hdrlab.core.types import Array, ArrayLike, Mask, NDArray
+from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray, as_stack
 
 Words = NDArray[np.uint64]
 Offset = tuple[int, int]

@@ -6,9 +6,9 @@ from typing import Literal
 
 import numpy as np
 
+from hdrlab.core.arrays import F32
 from hdrlab.core.filters import pyramid
 from hdrlab.core.filters.pyramid import depth, half_shape  # noqa: F401
-from hdrlab.core.types import F32
 from hdrlab.fast import with_parts
 
 _BAND = 1 << 14  # coarse pixels, which stay in the processor's cache

@@ -8,10 +8,9 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, as_luminance
 from hdrlab.core.extremes import positive_median, robust_maximum
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32
 from hdrlab.fast import blur, with_parts
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap import reinhard

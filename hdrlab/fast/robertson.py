@@ -17,9 +17,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import scipy
 
-from hdrlab.core.arrays import as_mask, as_stack, as_times
+from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack, as_times
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.core.weights import second_differences
 from hdrlab.fast import with_parts
 from hdrlab.response import robertson

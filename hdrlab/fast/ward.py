@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from hdrlab.core.types import F32, F64
+from hdrlab.core.arrays import F32, F64
 from hdrlab.fast import _lookup, with_parts
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap import ward

@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
+from hdrlab.core.arrays import Array
 from hdrlab.core.optional import imagecodecs, pillow_heif, tifffile
-from hdrlab.core.types import Array
 from hdrlab.io import jpegxl
 
 for codec in ("tifffile", "imagecodecs"):  # our errors report what is wrong

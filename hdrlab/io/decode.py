@@ -14,8 +14,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from PIL import ExifTags, Image
 
+from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif, tifffile
-from hdrlab.core.types import Array
 from hdrlab.io import jpegxl, profiles, raw
 from hdrlab.io.codecs import avif_depth, stored_pixels
 from hdrlab.io.exif_exposure import Exposure, exif_exposure

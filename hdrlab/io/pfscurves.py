@@ -13,8 +13,7 @@ from typing import TextIO
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64
+from hdrlab.core.arrays import F64, describe
 from hdrlab.core.weights import gaussian
 
 MATRICES = {1: ("IY",), 3: ("IR", "IG", "IB")}  # the names pfstools gives to the channels

@@ -14,10 +14,9 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from hdrlab.core.arrays import as_picture
+from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.types import Array, ArrayLike
 from hdrlab.io import raw
 from hdrlab.io.album import Paths, select, turn_alike
 from hdrlab.io.decode import Header, decode, look

@@ -13,9 +13,9 @@ from typing import Any
 import numpy as np
 from PIL import ImageCms
 
+from hdrlab.core.arrays import Array
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.types import Array
 
 # stands for the profile of a camera that says Adobe RGB in EXIF, by R03, and holds none
 ADOBE = b"adobergb"

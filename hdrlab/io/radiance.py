@@ -10,8 +10,7 @@ from types import ModuleType
 import numpy as np
 
 from hdrlab.core import gamut
-from hdrlab.core.arrays import as_radiance
-from hdrlab.core.types import F32, ArrayLike
+from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.io.files import require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 

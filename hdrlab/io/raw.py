@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from hdrlab.core.arrays import F32, NDArray
 from hdrlab.core.optional import rawpy
-from hdrlab.core.types import F32, NDArray
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 

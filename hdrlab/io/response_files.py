@@ -13,8 +13,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hdrlab.core.arrays import LARGEST_LN_EXPOSURE, describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, LARGEST_LN_EXPOSURE, ArrayLike, describe
 from hdrlab.io import pfscurves
 from hdrlab.io.files import replacing, require_suffix
 

@@ -11,8 +11,8 @@ from pathlib import Path
 
 import numpy as np
 
+from hdrlab.core.arrays import ArrayLike
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.types import ArrayLike
 from hdrlab.io import files
 
 # primaries, and the matrix from them to what an AVIF holds [H.273 tables 2 and 4]; PQ is a curve [table 3]

@@ -16,9 +16,8 @@ from typing import Any, cast
 
 import numpy as np
 
-from hdrlab.core.arrays import as_picture
+from hdrlab.core.arrays import F32, Array, as_picture
 from hdrlab.core.optional import imageio_v3 as iio
-from hdrlab.core.types import F32, Array
 from hdrlab.io import album, photos, radiance, web
 from hdrlab.io.files import MAX_PIXELS, replacing, require_suffix
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from PIL import Image as Pillow
 
-from hdrlab.core.types import Array, ArrayLike, NDArray
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 
 Image = NDArray[np.uint8]
 

@@ -12,12 +12,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.align import cerman, homography, light, mtb
-from hdrlab.core.arrays import as_stack, as_table, as_times, levels
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_stack, as_table, as_times, levels
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.types import F32, F64, Array, ArrayLike
 from hdrlab.diagnostics import registration as judgement
 from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue

@@ -16,10 +16,9 @@ from collections.abc import Callable
 import numpy as np
 
 from hdrlab.core import colour
-from hdrlab.core.arrays import as_luminance, as_radiance
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance
 from hdrlab.core.extremes import positive_median
 from hdrlab.core.filters.blur import blur_matrix
-from hdrlab.core.types import F32, Array, ArrayLike
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap.reinhard import display
 

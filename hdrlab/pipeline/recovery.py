@@ -17,11 +17,10 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_mask, as_stack
+from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.diagnostics import consistency
 from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.plausibility import validate_response

@@ -7,9 +7,9 @@ import numpy as np
 
 from hdrlab.align.resample import cut, photographs
 from hdrlab.align.shift import as_offsets, crop, shift
+from hdrlab.core.arrays import F64, Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.filters import warp
-from hdrlab.core.types import F64, Array
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.pipeline import alignment
 from hdrlab.pipeline.assembly import Assembly, Method

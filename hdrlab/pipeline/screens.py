@@ -8,9 +8,8 @@ good light, 203 cd/m2 [ITU-R BT.2408]; so PQ, which ends at 10,000 cd/m2, has ro
 import numpy as np
 
 from hdrlab.core import gainmap, gamut
-from hdrlab.core.arrays import as_picture, as_radiance
+from hdrlab.core.arrays import F32, F64, ArrayLike, as_picture, as_radiance
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.types import F32, F64, ArrayLike
 from hdrlab.io.web import as_rgb
 from hdrlab.tonemap.transfer import BRIGHTEST, pq
 

@@ -11,9 +11,9 @@ from typing import Any
 import numpy as np
 
 from hdrlab.core import weights
+from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64
 from hdrlab.diagnostics import consistency, motion
 from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions, warn_of_contradictions
 from hdrlab.diagnostics.doubts import say

@@ -10,10 +10,9 @@ from itertools import pairwise
 import numpy as np
 
 from hdrlab.align import light, mtb
-from hdrlab.core.arrays import levels
+from hdrlab.core.arrays import F64, ArrayLike, levels
 from hdrlab.core.bracket import Bracket, bracket as make_bracket
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import exposure_times, plausibility
 from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.exposure_times import Estimate

@@ -19,10 +19,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, ArrayLike, Mask, as_radiance
 from hdrlab.core.filters.scatter import GlareSpread, scatter, spread_transform, validate_spread
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, ArrayLike, Mask
 
 POWERS = (1.5, 1.75, 2.0, 2.25, 2.5, 2.75, 3.0, 3.25, 3.5)
 # of the pixels: the lowest ratios, and those that must agree with them

@@ -19,8 +19,20 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_response, as_stack, as_table, as_times, levels
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Flags, Mask
+from hdrlab.core.arrays import (
+    F32,
+    F64,
+    Array,
+    ArrayLike,
+    Flags,
+    Mask,
+    as_mask,
+    as_response,
+    as_stack,
+    as_table,
+    as_times,
+    levels,
+)
 from hdrlab.core.weights import hat
 from hdrlab.radiance.stuck import repair_stuck
 

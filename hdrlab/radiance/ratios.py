@@ -22,10 +22,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack
+from hdrlab.core.arrays import F64, Array, ArrayLike, Mask, as_stack
 from hdrlab.core.steps import last
 from hdrlab.core.transfer import brightness_transfer, histograms, literal_transfer
-from hdrlab.core.types import F64, Array, ArrayLike, Mask
 
 # of the top level: above, noise hides clipped pixels
 SATURATED = 0.98

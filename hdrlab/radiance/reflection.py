@@ -11,9 +11,8 @@ other thing in the scene knows where that is.
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, ArrayLike
 
 # of the pixels: the steepest edges of the mirrored lights
 EDGES = 2e-3

@@ -12,9 +12,8 @@ saw, then k I must point along M, for all pixels together.
 import numpy as np
 import scipy
 
-from hdrlab.core.arrays import as_radiance, describe
+from hdrlab.core.arrays import F64, ArrayLike, as_radiance, describe
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F64, ArrayLike
 
 
 def chromaticity(M: ArrayLike) -> F64:

@@ -8,8 +8,8 @@ from itertools import product
 
 import numpy as np
 
+from hdrlab.core.arrays import F32, F64, Array, Mask
 from hdrlab.core.bracket import short_to_long
-from hdrlab.core.types import F32, F64, Array, Mask
 
 # rows of a band, which stays in the processor's cache
 ROWS = 32

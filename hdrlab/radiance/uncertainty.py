@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import F32, F64, ArrayLike, Mask
+from hdrlab.core.arrays import F32, F64, ArrayLike, Mask
 from hdrlab.radiance.merge import TOP, as_tables, bound
 
 ROUNDS = 2

@@ -18,9 +18,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_stack, as_times, describe
+from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack, as_times, describe
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import F64, ArrayLike, Indices
 
 
 class Solution(NamedTuple):

@@ -18,8 +18,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, describe
 
 
 def power(M: F64, gamma: float) -> F64:

@@ -20,9 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_stack, as_times, to_256
+from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, as_stack, as_times, to_256
 from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.types import F64, Array, ArrayLike, Indices
 from hdrlab.core.weights import make_monotone, second_differences
 from hdrlab.response.mitsunaga import curve, terms
 

@@ -21,7 +21,7 @@ import numpy as np
 from scipy.sparse import csr_array
 from scipy.special import ndtr
 
-from hdrlab.core.types import F64, ArrayLike, Indices
+from hdrlab.core.arrays import F64, ArrayLike, Indices
 from hdrlab.response.mitsunaga import terms, value
 from hdrlab.response.polynomial import brightness, slope
 

@@ -8,8 +8,7 @@ g   ln f^-1   (n,), n = 256 or 65536: at 16 bits each level has its own, lest da
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack, as_times, levels
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, as_stack, as_times, levels
 
 
 def curve(n: int = 256) -> F64:

@@ -17,9 +17,8 @@ from itertools import pairwise
 
 import numpy as np
 
-from hdrlab.core.arrays import as_stack, as_times, to_256
+from hdrlab.core.arrays import F64, Array, ArrayLike, as_stack, as_times, to_256
 from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.types import F64, Array, ArrayLike
 
 # Of 256 levels: below the first, rounding and noise bend a logarithm; above the second, a level is clipped.
 MIN_LEVEL, MAX_LEVEL = 12.0, 249.0

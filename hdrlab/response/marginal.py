@@ -20,9 +20,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F64, ArrayLike, Indices, describe
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response import likelihood
 from hdrlab.response.mitsunaga import curve
 from hdrlab.response.polynomial import GRID, limit_slope, slope

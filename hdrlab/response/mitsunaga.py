@@ -25,7 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.polynomial.chebyshev import chebvander
 
-from hdrlab.core.types import F64, ArrayLike, Indices, Mask
+from hdrlab.core.arrays import F64, ArrayLike, Indices, Mask
 
 # of the trace of H: where the samples constrain less, the straight line is kept
 RIDGE = 1e-7

@@ -8,7 +8,7 @@ c     coefficients   (N - 1,) of f^-1(M) = M + M (1 - M) sum_n c_n T_n(2 M - 1)
 import numpy as np
 from numpy.polynomial.chebyshev import chebder, chebval
 
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike
 from hdrlab.response.mitsunaga import value
 
 GRID = np.linspace(0, 1, 2049)

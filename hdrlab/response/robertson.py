@@ -23,9 +23,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_stack
+from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack
 from hdrlab.core.sampling import by_rank, require_two_exposures
-from hdrlab.core.types import F64, ArrayLike, Indices
 
 
 class State(NamedTuple):

@@ -20,8 +20,7 @@ import numpy as np
 from scipy.ndimage import binary_erosion, uniform_filter
 from scipy.stats import chi2, f
 
-from hdrlab.core.arrays import as_stack, describe, to_256
-from hdrlab.core.types import F64, ArrayLike, Mask
+from hdrlab.core.arrays import F64, ArrayLike, Mask, as_stack, describe, to_256
 
 
 class Average(NamedTuple):

@@ -13,11 +13,10 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.core.arrays import as_mask, as_stack, as_times, describe
+from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack, as_times, describe
 from hdrlab.core.bracket import short_to_long
 from hdrlab.core.sampling import by_grid
 from hdrlab.core.steps import last
-from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.response.mitsunaga import Fit, coefficients, curve, fit_steps, gram, in_range, neighbours
 from hdrlab.response.polynomial import misfit
 

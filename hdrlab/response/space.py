@@ -16,9 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_stack, as_table, as_times, describe
+from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack, as_table, as_times, describe
 from hdrlab.core.sampling import by_rank
-from hdrlab.core.types import F64, ArrayLike, Indices
 from hdrlab.core.weights import make_monotone
 from hdrlab.response import families
 

@@ -15,8 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.capture.movers import Figure, compose_moment
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F32, F64, ArrayLike
+from hdrlab.core.arrays import F32, F64, ArrayLike, describe
 from hdrlab.io.maps.layers import read_layers
 
 Shape = tuple[int, int]

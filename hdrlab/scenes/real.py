@@ -6,8 +6,8 @@ The first are Fran Murcia's, under the MIT licence: `tripod/README.md`. The stud
 
 import numpy as np
 
+from hdrlab.core.arrays import F32
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import F32
 from hdrlab.io.photos import read_bracket
 from hdrlab.io.radiance import read_radiance
 from hdrlab.scenes.places import FOLDER, Shape, resample

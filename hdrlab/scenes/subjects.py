@@ -9,8 +9,8 @@ They were computed before, by `scenes/computed`, and are read from OpenEXR files
 
 from typing import NamedTuple
 
+from hdrlab.core.arrays import F32, Mask
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import F32, Mask
 from hdrlab.io.maps.layers import read_layers
 from hdrlab.scenes.places import FOLDER, Shape, resample
 

@@ -14,10 +14,9 @@ of 1 is the plain logarithm; without one the equalisation is full, and shows the
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.core.types import F32, F64, ArrayLike
 
 LAWS = ("monotone", "exposure")
 # ratio of luminances that the bins span at least: what is flatter is not stretched further

@@ -20,11 +20,10 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.extremes import positive_median, robust_maximum
 from hdrlab.core.filters.bilateral import bilateral
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 # sigma of the blur, of the longer side: narrower, every place is as bright as every other

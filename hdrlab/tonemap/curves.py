@@ -19,10 +19,9 @@ from typing import Literal
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.core.types import F32, Array, ArrayLike
 
 LAWS = ("monotone", "exposure")
 

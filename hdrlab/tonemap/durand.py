@@ -21,10 +21,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.extremes import positive_median
 from hdrlab.core.filters.bilateral import bilateral
-from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 # sigma_s, of the longer side

@@ -21,9 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.filters import poisson, pyramid
-from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 SATURATION = 0.8  # gradients of luminance were compressed, those of colour were not; 0.6 of the paper is pale

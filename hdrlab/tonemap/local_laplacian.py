@@ -17,10 +17,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.filters import pyramid
-from hdrlab.core.types import F32, ArrayLike
 
 LAWS = ("exposure",)
 # of the display, nats, and the fraction of pixels beyond it at either end: those of Paris's program

@@ -24,9 +24,8 @@ import numpy as np
 from scipy.ndimage import correlate1d
 from scipy.special import ndtr
 
-from hdrlab.core.arrays import as_luminance, describe
+from hdrlab.core.arrays import F64, ArrayLike, as_luminance, describe
 from hdrlab.core.picture import gray
-from hdrlab.core.types import F64, ArrayLike
 
 FREQUENCIES = (16.0, 8.0, 4.0, 2.0, 1.0)  # finest scale first
 WEIGHTS = (0.0448, 0.2856, 0.3001, 0.2363, 0.1333)  # of the scales, from experiments on multi-scale SSIM

@@ -20,7 +20,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 import scipy
 
-from hdrlab.core.types import F32, Array, ArrayLike, Flags, Mask
+from hdrlab.core.arrays import F32, Array, ArrayLike, Flags, Mask
 
 LAWS = ("monotone", "exposure")
 # eight centres, and the surround of the last

@@ -14,8 +14,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, describe
 
 # cd/m2, of PQ's largest code
 BRIGHTEST = 10_000

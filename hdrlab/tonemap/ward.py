@@ -20,10 +20,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_luminance
+from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.steps import last
-from hdrlab.core.types import F32, F64, ArrayLike
 
 LAWS = ("monotone", "exposure")
 TINY = np.finfo(np.float32).tiny

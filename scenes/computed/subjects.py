@@ -7,7 +7,7 @@ x, y  places (H, W), to the right and up, in heights of the picture, 0 in the mi
 
 import numpy as np
 
-from hdrlab.core.types import F32
+from hdrlab.core.arrays import F32
 from hdrlab.scenes.subjects import LIGHT, SHAPE
 from scenes.computed.textures import Points, cover, look_up, rgb, within
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import F32, ArrayLike
+from hdrlab.core.arrays import F32, ArrayLike
 
 # beyond the edge: too different from any pixel to have weight
 FAR = 1e9

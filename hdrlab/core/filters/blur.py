@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hdrlab.core.types import F32, ArrayLike
+from hdrlab.core.arrays import F32, ArrayLike
 
 
 def gaussian(image: ArrayLike, sigma: float) -> F32:

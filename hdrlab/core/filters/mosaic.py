@@ -11,8 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.ndimage import correlate
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import Array, ArrayLike, Indices, NDArray
+from hdrlab.core.arrays import Array, ArrayLike, Indices, NDArray, describe
 
 # channels, R G / G B
 BAYER = np.array([[0, 1], [1, 2]])

@@ -14,7 +14,7 @@ and the cosines of the DCT-II, which are even about the edges of the picture, ar
 import numpy as np
 from scipy.fft import dctn, idctn
 
-from hdrlab.core.types import Array
+from hdrlab.core.arrays import Array
 
 
 def gradient(u: Array) -> Array:

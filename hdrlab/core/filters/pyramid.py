@@ -15,7 +15,7 @@ from itertools import pairwise
 import numpy as np
 from scipy.ndimage import correlate1d, map_coordinates
 
-from hdrlab.core.types import F32, Array
+from hdrlab.core.arrays import F32, Array
 
 KERNEL = np.array([1, 4, 6, 4, 1]) / 16
 

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 import scipy
 
-from hdrlab.core.types import F32, Array
+from hdrlab.core.arrays import F32, Array
 
 
 class GlareSpread(NamedTuple):

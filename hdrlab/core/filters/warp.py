@@ -13,9 +13,8 @@ from functools import reduce
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F64, Array, ArrayLike, describe
 from hdrlab.core.optional import scipy_optimize as optimize, skimage_transform as transform
-from hdrlab.core.types import F64, Array, ArrayLike
 
 # pixels: a picture goes on this far beyond its last pixel, so that one that is a pixel wide has sides, too
 SLACK = 1e-3

@@ -158,10 +158,10 @@ def _resolved(at: str, use: Use) -> Found | None:
     if name not in here.imported:
         return None
     source, original, text = here.imported[name]
+    while source.split(".")[0] == HOUSE and original in module(source).imported:  # it is imported there, too
+        source, original, text = module(source).imported[original]
     if source.split(".")[0] != HOUSE:
         return Found(text, use.node)
-    while original in module(source).imported:  # it is imported there, too
-        source, original, _ = module(source).imported[original]
     if original in module(source).definitions:
         return Found(Key(source, original), use.node)
     inner = f"{source}.{original}"

@@ -15,10 +15,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, Array, ArrayLike, Labels, as_radiance
 from hdrlab.core.optional import OpenEXR
 from hdrlab.core.silence import silence
-from hdrlab.core.types import F32, Array, ArrayLike, Labels
 from hdrlab.io.files import check_size, replacing
 
 LARGEST_HALF = 65504.0

@@ -9,9 +9,8 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F32, ArrayLike, describe
 from hdrlab.core.optional import OpenEXR
-from hdrlab.core.types import F32, ArrayLike
 from hdrlab.io.maps import exr
 
 CHANNELS = {1: "Z", 3: "RGB", 4: "RGBA"}  # one channel is a depth

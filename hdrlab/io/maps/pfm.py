@@ -12,8 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
-from hdrlab.core.types import F32, Array, ArrayLike
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_radiance
 from hdrlab.io.files import check_size, replacing, reserve
 
 # one white space, and not more, stands between the scale and the values, whose first byte may look like one

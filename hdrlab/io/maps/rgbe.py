@@ -15,9 +15,8 @@ from textwrap import wrap
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, ArrayLike, NDArray, as_radiance
 from hdrlab.core.optional import imagecodecs
-from hdrlab.core.types import F32, ArrayLike, NDArray
 from hdrlab.io.decode import upright
 from hdrlab.io.files import check_size, replacing
 from hdrlab.io.maps.rgbe_header import read_header

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import F64
+from hdrlab.core.arrays import F64
 from hdrlab.io.files import check_size
 
 RESOLUTION = re.compile(r"([-+])([XY]) +(\d{1,10}) +([-+])([XY]) +(\d{1,10})")

@@ -9,9 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.core.optional import tifffile
-from hdrlab.core.types import F32, ArrayLike
 from hdrlab.io import decode
 from hdrlab.io.files import replacing
 

@@ -17,9 +17,8 @@ import numpy as np
 from PIL import Image
 
 from hdrlab.core import gainmap
-from hdrlab.core.arrays import as_picture, as_radiance, describe
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_picture, as_radiance, describe
 from hdrlab.core.colour import decode_srgb
-from hdrlab.core.types import F32, Array, ArrayLike
 from hdrlab.io import files
 from hdrlab.io.codecs import DECODERS, jpeg_end
 from hdrlab.io.decode import BEST_COMPRESSION_RATIO, Header, look, upright

@@ -17,8 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import maximum_filter
 
-from hdrlab.core.arrays import as_table
-from hdrlab.core.types import F32, F64, Array, ArrayLike, Mask
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, as_table
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.stuck import ROWS
 

@@ -17,8 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy import ndimage
 
-from hdrlab.core.arrays import as_mask, as_radiance
-from hdrlab.core.types import F64, Array, ArrayLike, Indices, Labels, Mask
+from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Labels, Mask, as_mask, as_radiance
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of the levels; each has a bias and a spread

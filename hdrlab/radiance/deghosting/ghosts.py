@@ -22,8 +22,7 @@ import numpy as np
 from scipy import ndimage
 
 from hdrlab.core import weights
-from hdrlab.core.arrays import as_mask, as_stack, levels
-from hdrlab.core.types import F32, ArrayLike, Flags, Indices, Labels, Mask
+from hdrlab.core.arrays import F32, ArrayLike, Flags, Indices, Labels, Mask, as_mask, as_stack, levels
 from hdrlab.radiance.deghosting import deviation, reference, regions
 from hdrlab.radiance.deghosting.frames import Calibrated, best_exposures, calibrate_frames
 from hdrlab.radiance.merge import Merged, merge_with_quality

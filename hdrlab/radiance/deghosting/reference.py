@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import maximum_filter, minimum_filter, uniform_filter
 
-from hdrlab.core.types import F32, F64, Array, Mask
+from hdrlab.core.arrays import F32, F64, Array, Mask
 from hdrlab.radiance.deghosting.frames import Calibrated
 from hdrlab.radiance.deghosting.regions import Box
 

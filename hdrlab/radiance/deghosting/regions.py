@@ -7,7 +7,7 @@ alpha   (H, W) float32, 0 outside the regions, 1 inside, a ramp of a few pixels 
 import numpy as np
 from scipy import ndimage
 
-from hdrlab.core.types import F32, Labels, Mask
+from hdrlab.core.arrays import F32, Labels, Mask
 
 Box = tuple[slice, slice]
 # pixels: a contradiction that is thinner is an edge's, or noise

@@ -8,9 +8,8 @@ from typing import Any
 import numpy as np
 
 from hdrlab.core import colour, metrics
-from hdrlab.core.arrays import to_256
+from hdrlab.core.arrays import F32, F64, Array, Flags, Labels, Mask, to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import F32, F64, Array, Flags, Labels, Mask
 from hdrlab.diagnostics import consistency
 from hdrlab.io.web import Image
 from hdrlab.radiance.merge import Quality

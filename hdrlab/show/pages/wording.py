@@ -2,8 +2,8 @@
 
 import numpy as np
 
+from hdrlab.core.arrays import F32, ArrayLike
 from hdrlab.core.colour import LUMINANCE, luminance
-from hdrlab.core.types import F32, ArrayLike
 from hdrlab.pipeline.stages import CONTRADICTION
 
 CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach

@@ -17,9 +17,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hdrlab.core.arrays import describe, to_256
+from hdrlab.core.arrays import ArrayLike, describe, to_256
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.types import ArrayLike
 from hdrlab.show.plots import reuse
 
 Place = tuple[float, float, float, float]  # left, bottom, width, height, in parts of a figure

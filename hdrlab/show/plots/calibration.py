@@ -14,9 +14,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from hdrlab.core.arrays import as_table
+from hdrlab.core.arrays import F64, ArrayLike, as_table
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS
-from hdrlab.core.types import F64, ArrayLike
 from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
 from hdrlab.show import plots

@@ -9,7 +9,7 @@ Light goes over more than a screen can show: an image whose range is wide is dra
 import numpy as np
 from matplotlib.figure import Figure
 
-from hdrlab.core.types import Array, ArrayLike
+from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.show import pictures, plots
 from hdrlab.show.plots import figures
 

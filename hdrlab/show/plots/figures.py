@@ -18,8 +18,8 @@ from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 from scipy.ndimage import maximum_filter
 
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.colour import luminance
-from hdrlab.core.types import Array, ArrayLike, NDArray
 from hdrlab.io import web
 from hdrlab.radiance.merge import Quality
 from hdrlab.show.pages.wording import signed

@@ -19,9 +19,8 @@ from matplotlib.colors import BoundaryNorm, Normalize
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.core.colour import encode_srgb
-from hdrlab.core.types import F64, ArrayLike
 from hdrlab.show.plots import Ends, axes, scaled_axes, with_legend
 from hdrlab.show.plots.curves import LINES
 from hdrlab.show.plots.figures import MISSING, fit

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 import traitlets
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import Array, ArrayLike
+from hdrlab.core.arrays import Array, ArrayLike, describe
 from hdrlab.io import web
 from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit

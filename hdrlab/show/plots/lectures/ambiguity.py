@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.types import F64, ArrayLike, Indices
+from hdrlab.core.arrays import F64, ArrayLike, Indices
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms, value
 from hdrlab.response.polynomial import GRID, brightness, misfit
 from hdrlab.response.self_calibration import average

@@ -18,8 +18,7 @@ from matplotlib.patches import Rectangle
 
 from hdrlab.align import mtb
 from hdrlab.capture.movers import shift_layer
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import ArrayLike, Mask, NDArray
+from hdrlab.core.arrays import ArrayLike, Mask, NDArray, describe
 from hdrlab.diagnostics.registration import Validation
 from hdrlab.show.plots import picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets

@@ -14,8 +14,7 @@ from collections.abc import Mapping
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import ArrayLike
+from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.show.plots import SAMPLES, axes, with_legend
 from hdrlab.show.plots.curves import LINES
 

@@ -15,8 +15,7 @@ from matplotlib.figure import Figure
 
 from hdrlab.align.cerman import State
 from hdrlab.align.light import differences as compare, error, lattice
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.show.plots import bare, picture_axes
 from hdrlab.show.plots.figures import false_colour
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets

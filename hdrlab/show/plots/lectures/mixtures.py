@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hdrlab.calibration.blends import Blend, InverseResponse, difference
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike
 from hdrlab.show.plots import SAMPLES, axes, logarithmic, with_legend
 from hdrlab.show.plots.curves import LINES
 

@@ -4,7 +4,7 @@ from collections.abc import Mapping
 
 from matplotlib.figure import Figure
 
-from hdrlab.core.types import F64
+from hdrlab.core.arrays import F64
 
 WIDTH = 5.4  # inches, as the other plots have
 

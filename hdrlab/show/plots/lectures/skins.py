@@ -7,8 +7,7 @@ x    chrominance (..., 2), (Cb, Cr) at level 128;  r, g  shares of red and green
 import numpy as np
 from matplotlib.axes import Axes
 
-from hdrlab.core.arrays import describe
-from hdrlab.core.types import F64, ArrayLike
+from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.enhance import skin
 from hdrlab.show.plots import axes, with_legend
 
