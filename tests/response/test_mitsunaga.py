@@ -141,8 +141,9 @@ def test_ratios_are_shared_by_the_channels():
 def test_the_order_is_that_of_the_camera():
     rng = np.random.default_rng(5)
     for order in (1, 2, 3):
-        one = ambiguity.draw_trial(rng, order=order, ratios=STATED) if order > 1 else None
-        M = average(one.Z, 400)[None] if one else clean(np.zeros(0), STATED)
+        M = clean(ambiguity.draw_curve(rng, order=order) if order > 1 else np.zeros(0), STATED, 10_000)[0]
+        noisy = M + 0.005 * rng.standard_normal(M.shape)
+        M = average(np.rint(255 * noisy.clip(0, 1)).astype(np.intp), 400)[None]
         assert choose_order([M[:, k::5] for k in range(5)], STATED) == order
 
 
