@@ -33,6 +33,7 @@ IN = (
     "hdrlab/course/plan.toml",
     "hdrlab/course/checks/specification/test_gsolve.py",
     "hdrlab/course/checks/mistakes/changes.toml",
+    "hdrlab/course/checks/parameters/shift.toml",
     "hdrlab/course/gallery/web/templates/base.html",
     "hdrlab/show/widgets/blink.js",
 )

@@ -72,6 +72,8 @@ TIERS = {
         "tests/course/test_specification.py::test_two_students_draw",
         "tests/course/test_toy.py",
         "tests/course/test_traps_in_a_class.py",
+        "tests/course/test_variants.py::test_a_class_is_graded",
+        "tests/course/test_variants.py::test_grading_asks",
         "tests/course/test_windows.py",
     ),
     "papers": (

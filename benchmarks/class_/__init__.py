@@ -5,6 +5,7 @@ processes  two dozen by one process, and by two; one alone keeps more than a pro
            sandbox that it asks take turns, so two are less than twice as fast on two processors
 workers    the same by one, two and four workers of a Dask cluster
 mixed      sixty honest hand-ins, among every hostile one that the tests have, and without them
+sheets     the sheets of a class in which each student is asked variants of its own
 costs      submissions that are to cost much, each graded alone: the worst of each kind
 books      what is done beside the grading, where all results are there: it may not grow faster than the class
 
@@ -22,7 +23,7 @@ from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
-from benchmarks.class_ import costs, handed, judged, mixed
+from benchmarks.class_ import costs, handed, judged, mixed, sheets
 from benchmarks.class_.grading import TIMEOUT, Used, grade
 from benchmarks.class_.workers import cluster
 from benchmarks.experiments import Experiment, along, at_least, at_most
@@ -219,6 +220,12 @@ ROWS = (
             at_most("honest ones lost", 0),
             at_most("hostile ones of whom nothing is said", 0),
         ),
+    ),
+    Experiment(
+        "sheets",
+        f"the sheets of {sheets.COUNT} students, each with variants of its own",
+        sheets.build,
+        (at_most("minutes", sheets.MINUTES), at_most("sheets that ask what is not graded", 0)),
     ),
     Experiment(
         "costs",

@@ -107,7 +107,7 @@ def _compare(out: Path, course: "Course", handins: "Mapping[str, Handin]") -> No
     if len(handins) > alike.MOST:
         click.echo(f"note: no similar.html, which compares at most {alike.MOST:,} works", err=True)
         return
-    steps = alike.write_steps(out, course.homework, handins)
+    steps = alike.write_steps(out, course.homework, handins, course.conditions.secret)
     list(common.progress(steps, "what is alike", len(handins)))
 
 

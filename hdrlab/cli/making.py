@@ -6,7 +6,7 @@ from typing import Any
 import click
 
 from hdrlab.cli import common
-from hdrlab.cli.grading import FOLDER, PLAN, SECRET, secret_of
+from hdrlab.cli.grading import FILE, FOLDER, PLAN, SECRET, secret_of
 from hdrlab.course import plan as plans
 
 
@@ -20,15 +20,29 @@ def course() -> None:
 @click.option("--out", type=common.OUT, default="assignments", help="Folder for the handouts.")
 @click.option("--solutions", type=common.FILE, help="Folder for the worked notebooks, which are run for it.")
 @click.option("--jobs", type=click.IntRange(1), default=2, help="How many notebooks run at a time.")
+@click.option("--variants", type=FILE, metavar="ROSTER", help="A sheet for each team of this class.")
+@SECRET
 @PLAN
-def build(sources: Path, out: Path, solutions: Path | None, jobs: int, plan: Path | None) -> None:
-    """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates."""
-    from hdrlab.course.material import handouts
+def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_class: Any) -> None:
+    """Make the handouts anew: the sources' prose, the library's functions, the plan's points and dates.
+
+    With --variants, sheets of which the plan's parameters are drawn by --secret-file, a folder for each team.
+    """
+    from hdrlab.course.classroom import roster
+    from hdrlab.course.material import handouts, variant_sheets
     from hdrlab.course.site import execute
 
     common.require("course", ["jupytext"])
+    plan, file = plans.read(of_class["plan"]), of_class["variants"]
     try:
-        made = handouts.build_steps(plans.read(plan), sources, out, solutions, jobs=jobs)
+        made = handouts.build_steps(plan, sources, out, solutions, jobs=jobs)
+        if file is not None:
+            secret, note = secret_of(of_class["secret_file"])
+            if not secret:
+                raise ValueError("expected --secret-file with --variants, which draws them, as for grade")
+            click.echo(note, nl=bool(note), err=True)
+            teams = roster.read(file).teams()
+            made = variant_sheets.build_steps(plan, sources, teams, secret, out, solutions)
         common.list_files(common.progress(made, "handouts"))
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None

@@ -20,8 +20,8 @@ import scipy
 
 import hdrlab
 from hdrlab.core.steps import last
-from hdrlab.course import plan, submission
-from hdrlab.course.checks import SPECIFICATION, running
+from hdrlab.course import plan, submission, variants
+from hdrlab.course.checks import SPECIFICATION, rewording, running
 from hdrlab.course.material import handouts
 from hdrlab.course.plan import Conditions, Homework
 from hdrlab.course.reports import causes
@@ -56,6 +56,10 @@ def grade_steps(path: str | Path, homework: Homework, conditions: Conditions = S
     """Yield the Result as it grows: first with all checks unanswered, then after each."""
     tasks = [task.id for task in homework.tasks]
     read = submission.read(Path(path), homework.name, tasks, handouts.given_cells(homework.name))
+    homework = variants.draw(homework, conditions.student, conditions.secret, read.variants)
+    if others := ", ".join(variants.others(homework, read.variants)):
+        said = f"The sheet is of another variant than yours, which is what the checks ask: {others}"
+        read = read._replace(problems=(*read.problems, said))
     yield from check_steps(read, homework, conditions)
 
 
@@ -64,10 +68,10 @@ def check_steps(read: Submission, homework: Homework, conditions: Conditions) ->
     if conditions.hidden is not None and not conditions.hidden.is_dir():
         raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
     tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
-    files = files_of(homework, conditions.hidden)
-    asked = specification(files)
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
+        files = _reworded(files_of(homework, conditions.hidden), homework, folder)
+        asked = specification(files)
         job = _job(folder, read, homework, conditions)
         heard: list[dict[str, Any]] = []
         for line in running.run(folder, job, files, WHOLE):
@@ -92,6 +96,19 @@ def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
     raise ValueError(f"expected checks for {homework.name} in {homes[0]}, got none")
 
 
+def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[Path]:
+    """Return the files with the checks; those of variants are written into a folder."""
+    named = {f"test_{task.id}.py": task for task in homework.tasks if task.variant}
+    asked = []
+    for file in files:
+        task = named.get(file.name) if file.parent == SPECIFICATION else None
+        asked.append(folder / file.name if task else file)
+        if task:
+            text = rewording.reword(task.id, task.variant, file.read_text(encoding="utf8"))
+            asked[-1].write_text(text, encoding="utf8")
+    return asked
+
+
 def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions) -> Path:
     job = {
         "sources": read.sources,
@@ -101,7 +118,7 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
         "timeout": conditions.timeout,
         "draw": conditions.draw,
         "hidden": "" if conditions.hidden is None else str(conditions.hidden.resolve()),
-        "functions": {task.id: task.function for task in homework.tasks},
+        "tasks": homework.tasks,
         "out": str(folder / "lines"),
         "grader": os.getpid(),
     }

@@ -4,10 +4,10 @@ The text of what was run is taken, with the helpers it needs, and called in a pr
 the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and its points are no grade yet.
 """
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from hdrlab.course import grading, plan as plans
+from hdrlab.course import grading, plan as plans, variants as choices
 from hdrlab.course.code import closure
 from hdrlab.course.code.names import imported
 from hdrlab.course.material import handouts
@@ -81,17 +81,23 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
 
 
 def use_plan(
-    name: str, at_most: float | None = None, *, plan: str | Path | None = None, **points: float
+    name: str,
+    at_most: float | None = None,
+    *,
+    plan: str | Path | None = None,
+    variants: Mapping[str, str] | None = None,
+    **points: float,
 ) -> None:
     """Take a homework's tasks and points from its sheet; without any, from hdrlab's own plan.
 
     Of the points, `at_most` so many count. Tasks that are not hdrlab's stand in the file `plan`, with their
-    checks beside it.
+    checks beside it. `variants` are those of the tasks of which not everybody is asked the same.
     """
     own = plans.read(plan)
     tasks = tuple(own.task(id)._replace(points=float(worth)) for id, worth in points.items())
     known = own.homeworks.get(name) or next(iter(own.homeworks.values()))._replace(name=name, title=name)
-    _plan[name] = known._replace(tasks=tasks, at_most=at_most) if tasks else known
+    asked = known._replace(tasks=tasks, at_most=at_most) if tasks else known
+    _plan[name] = choices.draw(asked, "", "", variants)
 
 
 def find_tasks(name: str) -> tuple[plans.Homework, list[str]]:

@@ -19,6 +19,8 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.course.checks import rewording
+
 PLAN = Path(__file__).with_name("plan.toml")
 PATIENCE = 10.0  # seconds for one answer
 
@@ -27,13 +29,16 @@ class Task(NamedTuple):
     """One function to write: what it is called in the checks, where the library has it, and its points.
 
     A function that is not the library's is written as the path of its file, a colon, and its name. `minimum`
-    marks what everybody is to write, also those who write little.
+    marks what everybody is to write, also those who write little. `parameters` are those in which students'
+    sheets differ, and `variant` is what one of them asks; see `checks.rewording`.
     """
 
     id: str
     function: str
     points: float
     minimum: bool = False
+    parameters: tuple[str, ...] = ()
+    variant: str = ""
 
     @property
     def name(self) -> str:
@@ -154,10 +159,7 @@ def _late(table: dict[str, Any], path: Path) -> Late:
 def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     here = f"[{name:.80}]"
     try:
-        tasks = tuple(
-            Task(one["id"], _placed(one["function"], path), float(one["points"]), one.get("minimum") is True)
-            for one in sheet["tasks"]
-        )
+        tasks = tuple(_task(one, path) for one in sheet["tasks"])
         by_hand = tuple(
             ByHand(one["title"], float(one["points"]), tuple(map(str, one.get("rubric", ()))))
             for one in sheet.get("by_hand", ())
@@ -177,6 +179,14 @@ def _homework(name: str, sheet: dict[str, Any], path: Path) -> Homework:
     return made
 
 
+def _task(one: dict[str, Any], plan: Path) -> Task:
+    id, function, parameters = one["id"], _placed(one["function"], plan), tuple(one.get("parameters", ()))
+    known = {} if ":" in function else rewording.parameters(id)
+    if not {*parameters} <= {*known}:
+        raise ValueError(f"expected parameters of {id} out of {', '.join(known) or 'none'}, got {parameters}")
+    return Task(id, function, float(one["points"]), one.get("minimum") is True, parameters)
+
+
 def _placed(function: str, plan: Path) -> str:
     """Return a function as a plan names it, the file of one that is not the library's with its folder."""
     file, colon, name = function.rpartition(":")
@@ -186,7 +196,9 @@ def _placed(function: str, plan: Path) -> str:
 
 
 def function(task: Task) -> Callable[..., Any]:
-    """Return the function of a task that is its solution: the library's own, or the instructor's."""
+    """Return the function that solves a task: the library's, a variant of it, or the instructor's."""
+    if task.variant:
+        return rewording.function(task.id, task.function, task.variant)
     if task.own is not None:
         return runpy.run_path(str(task.own))[task.name]
     module, _, name = task.function.rpartition(".")

@@ -32,16 +32,21 @@ UNPACKING = 3  # seconds more for an archive
 TRIES = 3  # of a process that somebody else ends
 PATIENCE = 25.0  # seconds by the clock: it is read twice, and costs 300 s at most with its checks
 TOLD = 12  # problems that are told
+VARIANT = re.compile(r'"(\w{1,40})":\s+"(\w+(?:/\w+)+)"')  # as a sheet names it in its call of use_plan
 FENCE = re.compile(r"^# %%(?P<kind> \[markdown\]| \[raw\])?(?P<rest>.*)$", re.MULTILINE)
 
 
 class Submission(NamedTuple):
-    """The text of each task's function with all that it needs, what is wrong, a digest, and the imports."""
+    """The text of each task's function with all that it needs, what is wrong, a digest, and the imports.
+
+    `variants` are what its sheet says that tasks ask, None of a file without a sheet's `use_plan`.
+    """
 
     sources: dict[str, str]
     problems: tuple[str, ...]
     hash: str
     modules: tuple[str, ...] = ()
+    variants: dict[str, str] | None = None
 
 
 def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] = ()) -> Submission:
@@ -65,7 +70,7 @@ def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] 
                 return Submission({}, (f"{plain(path.name, 80)} {what}",), "")
             if tried == TRIES or not error.killed:
                 raise ValueError(f"it could not be read: {error}") from None
-    return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]))
+    return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]), said[4])
 
 
 def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[Cell]]) -> bytes:
@@ -112,7 +117,9 @@ def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[Cell] = ())
     problems = [plain(one, 300) for one in [*problems, *told, *said]]
     if len(problems) > TOLD:
         problems[TOLD:] = [f"... and {len(problems) - TOLD} more of the kind"]
-    return Submission(sources, tuple(problems), hashlib.sha256(data).hexdigest())
+    sheets = [cell.text for cell in cells if "use_plan(" in cell.text]
+    variants = dict(VARIANT.findall("".join(sheets))) if sheets else None
+    return Submission(sources, tuple(problems), hashlib.sha256(data).hexdigest(), variants=variants)
 
 
 def _bytes_of(path: Path) -> tuple[bytes, list[str]]:

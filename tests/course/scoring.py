@@ -3,13 +3,14 @@
 import inspect
 import runpy
 from fractions import Fraction
+from functools import cache
 from importlib import import_module
 
 import numpy as np
 import pytest
 
 from hdrlab.course import plan
-from hdrlab.course.checks import misconceptions, plugin
+from hdrlab.course.checks import SPECIFICATION, misconceptions, plugin, rewording
 from hdrlab.course.reports import causes
 from hdrlab.course.reports.results import Check
 
@@ -21,21 +22,31 @@ def functions(path):
     return {name: one for name, one in runpy.run_path(str(path)).items() if inspect.isfunction(one)}
 
 
-def checks(task):
+@cache
+def module(task, variant=""):
+    """Return what stands in the file with the checks of a task, in the words of a variant."""
+    if not variant:
+        return vars(import_module(f"hdrlab.course.checks.specification.test_{task}"))
+    text = (SPECIFICATION / f"test_{task}.py").read_text(encoding="utf8")
+    scope = {"__name__": f"test_{task}"}
+    exec(rewording.reword(task, variant, text), scope)
+    return scope
+
+
+def checks(task, variant=""):
     """Return the checks of a task: (name, function, points, hints, the name of the check that it needs)."""
-    module = import_module(f"hdrlab.course.checks.specification.test_{task}")
     found = []
-    for name, check in vars(module).items():
+    for name, check in module(task, variant).items():
         if name.startswith("test_"):
             (mark,) = getattr(check, "pytestmark", [pytest.mark.points(1).mark])
             found.append((name, check, mark.args[0], plugin.hints(check), mark.kwargs.get("needs") or None))
     return found
 
 
-def answered(task, subject, seed=0):
+def answered(task, subject, seed=0, variant=""):
     """Return what each check of a task says of a subject: None where it holds."""
     said = {}
-    for name, check, *_ in checks(task):
+    for name, check, *_ in checks(task, variant):
         wanted = inspect.signature(check).parameters
         given = {"subject": subject, "rng": np.random.default_rng(seed)}
         try:
@@ -47,19 +58,19 @@ def answered(task, subject, seed=0):
     return said
 
 
-def score(task, subject, seed=0):
+def score(task, subject, seed=0, variant=""):
     """Return what share of a task's points a subject gets, and what each check says: None where it holds.
 
     As in grading: a well-known mistake that explains all answers costs half at most.
     """
-    said = answered(task, subject, seed)
-    asked = PLAN.task(task)
+    said = answered(task, subject, seed, variant)
+    asked = PLAN.task(task)._replace(variant=variant)
     found = misconceptions.closest(asked, subject.calls[: plugin.CALLS]) if any(said.values()) else None
-    worth = [Fraction(str(points)) for _, _, points, *_ in checks(task)]
+    worth = [Fraction(str(points)) for _, _, points, *_ in checks(task, variant)]
     each = [
         Check(task, name, name, Fraction(), points, "fails" if said[name] else "holds")
-        for (name, *_), points in zip(checks(task), worth, strict=True)
+        for (name, *_), points in zip(checks(task, variant), worth, strict=True)
     ]
-    needs = {name: needs or "" for name, *_, needs in checks(task)}
+    needs = {name: needs or "" for name, *_, needs in checks(task, variant)}
     traced = causes.traced(each, needs, named=found is not None, once=found is not None and found.once)
     return float(sum(one.points for one in traced) / sum(worth)), said

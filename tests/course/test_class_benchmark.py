@@ -136,7 +136,7 @@ def test_a_command_that_fails_says_what_it_said():
 def test_the_subject_is_called_class_though_that_is_a_word_of_python():
     assert "class" in command.subjects()
     assert [row.name for row in command.chosen("class", None)] == [
-        *("whole", "processes", "workers", "mixed", "costs", "books")
+        *("whole", "processes", "workers", "mixed", "sheets", "costs", "books")
     ]
 
 

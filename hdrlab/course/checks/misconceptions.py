@@ -20,7 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.course import plan
-from hdrlab.course.checks import MISTAKES
+from hdrlab.course.checks import MISTAKES, rewording
 from hdrlab.course.checks.compare import as_listed, plain
 from hdrlab.course.code import inline
 
@@ -47,16 +47,20 @@ class Misconception(NamedTuple):
 @cache
 def known() -> tuple[Misconception, ...]:
     """Return all mistakes there are."""
-    return tuple(
-        Misconception(name, task_of(name), one["says"], partial(_ask_changed, name), "misses" not in one)
-        for name, one in sorted(CHANGES.items())
-    )
+    return tuple(_of_variant(name, "") for name in sorted(CHANGES))
+
+
+@cache
+def _of_variant(name: str, variant: str) -> Misconception:
+    task, one = task_of(name), CHANGES[name]
+    says = rewording.reword(task, variant, one["says"])
+    return Misconception(name, task, says, partial(_ask_changed, name, variant), "misses" not in one)
 
 
 def of_task(task: plan.Task) -> Sequence[Misconception]:
     """Return the mistakes of a task: those that come with hdrlab, or with an instructor's own task."""
     if task.own is None:
-        return [one for one in known() if one.task == task.id]
+        return [_of_variant(one.name, task.variant) for one in known() if one.task == task.id]
     files = sorted((task.own.parent / "mistakes").rglob(f"{task.id}_*.py"))
     return [_read(path, task.id) for path in files]
 
@@ -85,13 +89,13 @@ def _sheets() -> list[tuple[plan.Task, ...]]:
 
 @cache
 def solutions(tasks: tuple[plan.Task, ...]) -> Mapping[str, str]:
-    """Return the library's text for each of the tasks of a homework: a cell that stands alone."""
+    """Return the library's text for each task of a homework, or its variant's: a cell that stands alone."""
     blocks = inline.inlined({task.id: task.function for task in tasks})
-    return {id: block.text for id, block in blocks.items()}
+    return {task.id: rewording.reword(task.id, task.variant, blocks[task.id].text) for task in tasks}
 
 
-def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
-    """Return a homework's solutions, task by task, with one of CHANGES in its task's.
+def put_in(cells: Mapping[str, str], name: str, variant: str = "") -> dict[str, str]:
+    """Return a homework's solutions, task by task, with one of CHANGES in its task's, of a variant.
 
     Raises
     ------
@@ -100,7 +104,8 @@ def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
     """
     task = task_of(name)
     text = cells[task]
-    for was, now in CHANGES[name]["changes"]:
+    for change in CHANGES[name]["changes"]:
+        was, now = (rewording.reword(task, variant, one) for one in change)
         if text.count(was) != 1:
             raise ValueError(f"expected once in the solution of {task}, for {name}: {was}")
         text = text.replace(was, now)
@@ -108,16 +113,17 @@ def put_in(cells: Mapping[str, str], name: str) -> dict[str, str]:
 
 
 @cache
-def _changed(name: str) -> Callable[..., Any]:
+def _changed(name: str, variant: str) -> Callable[..., Any]:
     task = task_of(name)
     tasks = next(tasks for tasks in _sheets() if task in [one.id for one in tasks])
+    tasks = tuple(one._replace(variant=variant) if one.id == task else one for one in tasks)
     scope: dict[str, Any] = {"__name__": name}
-    exec("\n\n\n".join(put_in(solutions(tasks), name).values()), scope)
+    exec("\n\n\n".join(put_in(solutions(tasks), name, variant).values()), scope)
     return scope[task]
 
 
-def _ask_changed(name: str, *given: Any, **named: Any) -> Any:
-    return _changed(name)(*given, **named)
+def _ask_changed(name: str, variant: str, *given: Any, **named: Any) -> Any:
+    return _changed(name, variant)(*given, **named)
 
 
 def closest(asked: plan.Task, calls: Sequence[Call]) -> Misconception | None:

@@ -138,7 +138,7 @@ class Checking:
         """Write down which well-known mistakes the answers show."""
         for task in sorted(self.failed):
             with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
-                asked = plan.Task(task, self.job["functions"][task], 0)
+                (asked,) = (plan.Task(*one) for one in self.job["tasks"] if one[0] == task)
                 if found := misconceptions.closest(asked, self.calls.get(task, [])):
                     self._write(recognised=task, sentence=found.sentence, once=found.once)
 

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Mapping
 from functools import reduce
 from typing import Any
 
-from hdrlab.course.checks.misconceptions import put_in, solutions
+from hdrlab.course.checks.misconceptions import put_in, solutions, task_of
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework
 
@@ -30,7 +30,9 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "smoothness * w[z]" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (False, False)
     """
-    return reduce(put_in, mistakes, dict(solutions(homework.tasks)))
+    variant = {task.id: task.variant for task in homework.tasks}
+    cells = dict(solutions(homework.tasks))
+    return reduce(lambda cells, name: put_in(cells, name, variant[task_of(name)]), mistakes, cells)
 
 
 def notebook(homework: Homework, cells: Mapping[str, str] | None = None) -> str:

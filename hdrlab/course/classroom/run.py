@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.course import grading
+from hdrlab.course.checks import rewording
 from hdrlab.course.classroom import journal
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.journal import Done, Piece
@@ -130,7 +131,8 @@ def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
 
 def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
-    files = grading.specification(grading.files_of(homework, conditions.hidden))
+    words = [rewording.file(task.id) for task in homework.tasks if task.parameters]
+    files = grading.specification([*grading.files_of(homework, conditions.hidden), *words])
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
     return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
 

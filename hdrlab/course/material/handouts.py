@@ -18,6 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from hdrlab.course.checks import rewording
 from hdrlab.course.code import inline
 from hdrlab.course.code.closure import Cell
 from hdrlab.course.material import materials, stubs
@@ -59,10 +60,15 @@ def handout(source: str, homework: Homework, late: str = "") -> Handout:
     given = [dotted for task in homework.tasks for dotted in stubs.classes(task.function)]
     blocks = inline.inlined({task.id: task.function for task in homework.tasks}, given)
     both: tuple[list[dict[str, Any]], list[dict[str, Any]]] = ([], [])
+    for one in homework.tasks:
+        prose = (cell.source for cell in read if cell.cell_type == "markdown" and one.id in _about(cell))
+        rewording.reword(one.id, one.variant, "\n".join(prose), all_of_it=True)
     for cell in read:
-        about = (cell.metadata.get("about") or cell.metadata.get("task") or "").split()
+        about = _about(cell)
         if not set(about) <= set(tasks):
             continue
+        for one in (tasks[id] for id in about if "task" not in cell.metadata):
+            cell.source = rewording.reword(one.id, one.variant, cell.source)
         task = tasks[about[0]] if about else None
         if cell.cell_type == "markdown":
             text = _filled(cell.source, homework, task, late)
@@ -78,6 +84,11 @@ def handout(source: str, homework: Homework, late: str = "") -> Handout:
     return Handout(homework.name, *(_notebook(cells, homework.name) for cells in both))
 
 
+def _about(cell: Any) -> list[str]:
+    """Return the tasks that a cell of a source is about."""
+    return (cell.metadata.get("about") or cell.metadata.get("task") or "").split()
+
+
 def _task_cells(
     task: Task, opening: str, blocks: Mapping[str, inline.Block]
 ) -> Iterator[tuple[dict[str, Any], dict[str, Any]]]:
@@ -85,11 +96,10 @@ def _task_cells(
     for dotted in stubs.classes(task.function):
         yield (_code(stubs.bare_class(dotted), given=True),) * 2
     said = "\n".join(line.removeprefix("#").removeprefix(" ") for line in opening.splitlines())
+    both = (stubs.stub(task, said.strip()), blocks[task.id].text)
+    stub, solved = (rewording.reword(task.id, task.variant, text) for text in both)
     name = f"task-{task.id}"
-    yield (
-        _code(stubs.stub(task, said.strip()), task=task.id, id=name),
-        _code(blocks[task.id].text, task=task.id, id=name),
-    )
+    yield _code(stub, task=task.id, id=name), _code(solved, task=task.id, id=name)
     yield (_code(f'check("{task.id}")', id=f"check-{task.id}"),) * 2
 
 
@@ -98,6 +108,8 @@ def _planned(text: str, homework: Homework) -> str:
     points = ", ".join(f"{task.id}={task.points:g}" for task in homework.tasks)
     if homework.at_most is not None:
         points = f"at_most={homework.at_most:g}, {points}"
+    if asked := {task.id: task.variant for task in homework.tasks if task.variant}:
+        points = f"{points}, variants={json.dumps(asked)}"
     if any(task.own for task in homework.tasks):
         points = f'plan="{CHECKS.format(homework.name)}/plan.toml", {points}'
     said = textwrap.fill(
@@ -172,18 +184,21 @@ def build_steps(
     ValueError
         For a homework without a source, or a task the library does not have.
     """
-    made = []
-    for name, homework in plan.homeworks.items():
-        source = sources / f"{name}.py"
-        if not source.is_file():
-            where = "it is in a clone of hdrlab, in solutions/"
-            raise ValueError(f"expected the prose of {name} in {source}; {where}")
-        made.append(handout(source.read_text(encoding="utf8"), homework, lateness(plan)))
+    made = [made_of(plan, homework, sources) for homework in plan.homeworks.values()]
     for one in made:
         yield write_text(assignments / f"{one.homework}.ipynb", to_text(one.assignment))
         yield from _own_checks(plan.homeworks[one.homework], assignments)
     if solutions is not None:
         yield from _solved(made, assignments, solutions, jobs)
+
+
+def made_of(plan: Plan, homework: Homework, sources: Path) -> Handout:
+    """Return a homework's handout out of its source in a folder, or raise a ValueError."""
+    source = sources / f"{homework.name}.py"
+    if not source.is_file():
+        where = "it is in a clone of hdrlab, in solutions/"
+        raise ValueError(f"expected the prose of {homework.name} in {source}; {where}")
+    return handout(source.read_text(encoding="utf8"), homework, lateness(plan))
 
 
 def _own_checks(homework: Homework, folder: Path) -> Iterator[Path]:

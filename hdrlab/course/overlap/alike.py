@@ -14,6 +14,8 @@ from typing import NamedTuple
 import numpy as np
 from copydetect import compare_files
 
+from hdrlab.course import variants
+from hdrlab.course.checks import rewording
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.code import inline
 from hdrlab.course.overlap import authored, similarity
@@ -28,8 +30,9 @@ SHOWN = 100  # pairs with their passages
 ROWS = 10_000  # of the table
 WORTH = 0.3  # share of a task, from which its passages are shown
 TEXT = 8_000  # characters of a task that are shown
-COLUMNS = ("one", "other", "share", "one in other", "other in one")
+COLUMNS = ("one", "other", "share", "one in other", "other in one", "tasks on the other's sheet")
 Piece = tuple[str, bool]  # of a text, and whether the other has it
+Asked = tuple[dict[str, str], dict[str, str]]  # variants by task: a team's, and others of the sheet it has
 
 
 class Row(NamedTuple):
@@ -42,30 +45,59 @@ class Row(NamedTuple):
     other: tuple[Piece, ...] = ()
 
 
-def write_steps(out: Path, homework: Homework, handins: Mapping[str, Handin]) -> Iterator[str]:
+def write_steps(
+    out: Path, homework: Homework, handins: Mapping[str, Handin], secret: str = ""
+) -> Iterator[str]:
     """Write page and table of a class; yield each team when its work is read, the files are there at the end.
 
     Parameters
     ----------
     out : folder of the results
     homework, handins : what was asked, and what counts of each team
+    secret : the course's, which draws the variants of tasks
     """
     each = []
     for one in similarity.printed_steps(works(homework, handins)):
         each.append(one)
         yield one.work.team
     found = similarity.compare(each, authored.handout_code(homework.name), library(homework))
-    teams = [one.work.team for one in each]
-    table = [(teams[a], teams[b], *map("{:.3f}".format, shares)) for a, b, *shares in found.pairs[:ROWS]]
+    asked = {one.work.team: asked_of(homework, one.work, secret) for one in each}
+    pairs = [((each[a].work.team, each[b].work.team), shares) for a, b, *shares in found.pairs[:ROWS]]
+    table = [
+        (*both, *map("{:.3f}".format, shares), str(exchanged(*(asked[team] for team in both))))
+        for both, shares in pairs
+    ]
     sheets.write_csv(out / "similar.csv", COLUMNS, table, private=True)
-    write(out / "similar.html", page(homework, each, found), private=True)
+    write(out / "similar.html", page(homework, each, found, asked), private=True)
+
+
+def asked_of(homework: Homework, work: authored.Work, secret: str) -> Asked:
+    """Return of which tasks a team is asked which variant, and its sheet another."""
+    tasks = variants.draw(homework, work.team, secret, work.variants).tasks
+    own, said = {task.id: task.variant for task in tasks}, work.variants
+    return own, {} if said is None else dict({id: said.get(id, "") for id in own}.items() - own.items())
+
+
+def exchanged(one: Asked, other: Asked) -> int:
+    """Return of how many tasks the sheet of one of two teams asks the variant of the other.
+
+    Examples
+    --------
+    >>> exchanged(({"f": "a", "g": "a"}, {"f": "b"}), ({"f": "b", "g": "b"}, {}))
+    1
+    """
+    return len(one[1].items() & other[0].items()) + len(other[1].items() & one[0].items())
 
 
 def library(homework: Homework) -> str:
     """Return the library's functions of a homework as `authored` reads those of a team."""
-    functions = {task.id: task.function for task in homework.tasks}
-    alone = {name: inline.inlined({name: one})[name].text for name, one in functions.items()}
-    return "\n".join(authored.own(alone[name], homework.name, {*alone} - {name}) for name in alone)
+    alone = {task.id: inline.inlined({task.id: task.function})[task.id].text for task in homework.tasks}
+    texts = [
+        (task.id, rewording.reword(task.id, variant, alone[task.id]))
+        for task in homework.tasks
+        for variant in (rewording.every(task.id) if task.parameters else ("",))
+    ]
+    return "\n".join(authored.own(text, homework.name, {*alone} - {name}) for name, text in texts)
 
 
 def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[authored.Work]:
@@ -75,7 +107,12 @@ def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[authore
         yield authored.read(team, one.path, homework.name, tasks)
 
 
-def page(homework: Homework, each: Sequence[similarity.Printed], found: similarity.Likeness) -> str:
+def page(
+    homework: Homework,
+    each: Sequence[similarity.Printed],
+    found: similarity.Likeness,
+    asked: Mapping[str, Asked],
+) -> str:
     """Return the page; whatever students wrote is text on it."""
     library = {
         task: sorted((each[n].work.team, share) for n, share in all.items() if share >= similarity.THRESHOLD)
@@ -88,6 +125,8 @@ def page(homework: Homework, each: Sequence[similarity.Printed], found: similari
         works=[one.work for one in each],
         bins=[(100 * k // similarity.BINS, int(n)) for k, n in enumerate(found.counts)],
         found=found,
+        asked=asked,
+        exchanged=exchanged,
         shown=[(pair, rows(found, pair)) for pair in found.pairs[:SHOWN]],
         library=library,
         measure=similarity,

@@ -21,11 +21,12 @@ WORDS = re.compile(r"""\w+|'[^']*'|"[^"]*\"""")
 
 
 class Work(NamedTuple):
-    """What a team wrote: the text of each task, and what could not be read, in words."""
+    """What a team wrote: the text of each task, what could not be read, and its sheet's variants."""
 
     team: str
     texts: dict[str, str]
     notes: tuple[str, ...] = ()
+    variants: dict[str, str] | None = None
 
 
 def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
@@ -63,7 +64,7 @@ def read(team: str, path: Path, homework: str, tasks: Sequence[str]) -> Work:
             texts[task] = own(text, homework, {*tasks} - {task})
         except names.BROKEN:
             notes.append(f"{task} is nested too deep and is not compared")
-    return Work(team, texts, tuple(notes))
+    return Work(team, texts, tuple(notes), found.variants)
 
 
 def own(text: str, homework: str, others: Collection[str]) -> str:

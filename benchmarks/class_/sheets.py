@@ -1,0 +1,46 @@
+"""Three hundred students get a sheet of their own of each homework in which tasks have parameters."""
+
+import time
+from pathlib import Path
+from typing import Any
+
+from benchmarks.measure import ROOT
+from hdrlab.course import plan, submission, variants
+from hdrlab.course.checks import rewording
+from hdrlab.course.material import variant_sheets
+
+SECRET = "sheets of a class"
+COUNT, MINUTES = 300, 3
+
+
+def varied() -> plan.Plan:
+    """Return hdrlab's own plan with all the parameters that there are."""
+    read = plan.read()
+    homeworks = {
+        name: one._replace(
+            tasks=tuple(task._replace(parameters=(*rewording.parameters(task.id),)) for task in one.tasks)
+        )
+        for name, one in read.homeworks.items()
+    }
+    return read._replace(homeworks=homeworks)
+
+
+def build(folder: Path, count: int = COUNT) -> dict[str, Any]:
+    """Return how long the sheets of a class take, and whether each asks what its student is graded by."""
+    asked, teams = varied(), [f"s{number:03d}" for number in range(count)]
+    clock, processor = time.perf_counter(), time.process_time()
+    files = [*variant_sheets.build_steps(asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None)]
+    clock, processor = time.perf_counter() - clock, time.process_time() - processor
+    wrong, different = 0, set()
+    for file in files:
+        drawn = variants.draw(asked.homeworks[file.stem], file.parent.name, SECRET)
+        said = submission.tasks_of(file, []).variants
+        wrong += bool(variants.others(drawn, said))
+        different.add(file.read_bytes())
+    return {
+        "sheets": len(files),
+        "different ones": len(different),
+        "sheets that ask what is not graded": wrong,
+        "minutes": clock / 60,
+        "CPU ms of a sheet": 1e3 * processor / len(files),
+    }

@@ -1,0 +1,449 @@
+"""Variants of a task: sheet, checks, hints, mistakes and solution ask the same, and each team its own."""
+
+import json
+import re
+from collections import Counter
+from datetime import UTC, datetime
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scoring
+
+from hdrlab import cli
+from hdrlab.course import grading, notebook, plan, submission, variants
+from hdrlab.course.checks import SPECIFICATION, inprocess, misconceptions, rewording
+from hdrlab.course.classroom import imitation
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.material import handouts, materials
+from hdrlab.course.overlap import alike, authored, similarity
+from hdrlab.course.plan import Conditions
+from hdrlab.course.reports import sheets
+
+SOURCES = materials.folder("tests").parent / "solutions"
+if not (SOURCES / "hw1.py").is_file():
+    pytest.skip(
+        "the handouts' prose is in a clone, and this is an installed package", allow_module_level=True
+    )
+PLAN = plan.read()
+TASKS = sorted(path.stem for path in rewording.FOLDER.glob("*.toml"))
+EVERY = [(task, variant) for task in TASKS for variant in rewording.every(task)]
+NOW = datetime(2026, 10, 1, tzinfo=UTC)
+HOMEWORK = {task.id: homework for homework in PLAN.homeworks.values() for task in homework.tasks}
+SECRET = "x"  # by which the two teams of the class are asked other variants of all
+SHEET = """
+[hw1]
+title = "Alignment"
+due = 2099-10-09T23:59:00Z
+tasks = [
+  { id = "exclusion", function = "align.mtb.exclusion", points = 10, parameters = VOTES },
+  { id = "shift", function = "align.shift.shift", points = 15, parameters = MOVES },
+]
+"""
+CLASS = SHEET.replace("VOTES", '["clipped", "tie", "margin"]').replace(
+    "MOVES", '["border", "direction", "order"]'
+)
+
+
+def asked(task, variant):
+    return PLAN.task(task)._replace(variant=variant)
+
+
+def homework_of(task, variant):
+    """Return the homework of a task, of which a variant is asked."""
+    whole = HOMEWORK[task]
+    return whole._replace(tasks=tuple(asked(task, variant) if one.id == task else one for one in whole.tasks))
+
+
+@cache
+def made(task, variant):
+    """Return the handout of a homework in which a variant of one task is asked."""
+    pytest.importorskip("jupytext", reason="jupytext is not installed")
+    homework = homework_of(task, variant)
+    return handouts.handout((SOURCES / f"{homework.name}.py").read_text("utf8"), homework)
+
+
+def about(task, variant):
+    """Return all that is said of a task, by kind."""
+    handout = made(task, variant)
+    sheet = [cell["source"] for cell in handout.assignment["cells"]]
+    at = sheet.index(f'check("{task}")')
+    checks = rewording.reword(task, variant, (SPECIFICATION / f"test_{task}.py").read_text("utf8"))
+    return {
+        "prose": next(text for text in reversed(sheet[:at]) if text.startswith("#")),
+        "stub": sheet[at - 1],
+        "pictures": "\n".join(text for text in sheet if re.search(rf"(?<!def )\b{task}\(", text)),
+        "solution": handout.solution["cells"][at - 1]["source"],
+        "checks": checks,
+        "mistakes": "\n".join(one.sentence for one in misconceptions.of_task(asked(task, variant))),
+    }
+
+
+def subject(task, variant):
+    return inprocess.Subject({task: plan.function(asked(task, variant))})
+
+
+@pytest.fixture
+def course(tmp_path, monkeypatch):
+    """A plan with variants, a class of three and its secret; go there."""
+    monkeypatch.chdir(tmp_path)
+    Path("plan.toml").write_text(CLASS)
+    Path("roster.csv").write_text("student,name,team\nb1,Ada,\nb2,Bo,pair\nb3,Cy,pair\n")
+    Path("secret.txt").write_text(SECRET + "\n")
+    return plan.read("plan.toml")
+
+
+def run(*words, code=None):
+    with pytest.raises(SystemExit) as ended:
+        cli.run([str(word) for word in words])
+    assert ended.value.code == code
+
+
+def build(out, *more):
+    words = ("--plan", "plan.toml", "--sources", SOURCES, "--out", out, "--variants", "roster.csv", *more)
+    run("course", "build", *words, "--secret-file", "secret.txt")
+
+
+def filled(homework, path):
+    """Write a sheet, filled in with the solutions of its own variants, and return it."""
+    source = (SOURCES / f"{homework.name}.py").read_text("utf8")
+    path.write_text(handouts.to_text(handouts.handout(source, homework).solution))
+    return path
+
+
+# What a variant is
+
+
+def test_three_tasks_have_three_parameters_each_and_the_librarys_own_values_come_first():
+    assert len(TASKS) >= 3
+    for task in TASKS:
+        assert len(rewording.parameters(task)) >= 3
+        for values in rewording.parameters(task).values():
+            assert len(values) >= 2 and [*values.values()][0] == []
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_every_pair_of_words_stands_somewhere_and_is_changed(task):
+    used = set()
+    texts = [*about(task, "").values()]
+    texts += [text for one in misconceptions.known() if one.task == task for text in changes_of(one.name)]
+    for variant in rewording.every(task):
+        for text in texts:
+            for values, value in zip(rewording.parameters(task).values(), variant.split("/"), strict=True):
+                for was, now in values[value]:
+                    used |= {(value, was)} if was in text else set()
+                    text = text.replace(was, now)
+    pairs = {
+        (value, was)
+        for values in rewording.parameters(task).values()
+        for value, each in values.items()
+        for was, _ in each
+    }
+    assert pairs - used == set()
+
+
+def changes_of(name):
+    return [text for change in misconceptions.CHANGES[name]["changes"] for text in change]
+
+
+@pytest.mark.parametrize(("task", "variant"), EVERY)
+def test_what_a_variant_rewords_stands_nowhere_any_more(task, variant):
+    for kind, text in about(task, variant).items():
+        for values, value in zip(rewording.parameters(task).values(), variant.split("/"), strict=True):
+            for was, now in values[value]:
+                assert was not in text.replace(now, ""), f"{kind}: {was}"
+
+
+# of each value, what the prose of the sheet says then and for no other value, and the same of the last hints
+SAID = {
+    "exclusion": {
+        "clipped": {"excluded": ("codes 0 and 255", "neither 0 nor 255")},
+        "tie": {"above": ("t| > ", "t| > "), "from": (r"t| \ge ", "t| >= ")},
+        "margin": {
+            "four": (" 4$", "and t + 4"),
+            "six": (" 6$", "and t + 6"),
+            "eight": (" 8$", "and t + 8"),
+        },
+    },
+    "shift": {
+        "border": {"cut": ("cut them to", "Cut the images"), "black": ("is black", "is black")},
+        "direction": {
+            "goes": ("must move, ", "where the image must move: "),
+            "came": ("has moved, ", "how far the image has moved: "),
+        },
+        "order": {"rows": ("$(dy, dx)$", "offset (dy, dx)"), "columns": ("$(dx, dy)$", "offset (dx, dy)")},
+    },
+    "weight": {
+        "planes": {
+            "rgb": ("R, G and B as planes", ", of the gray Y.\n"),
+            "bgr": ("**B first**", "F[0] is blue"),
+        },
+        "neighbours": {"sides": (r"Y_\text{up}", "|up + down"), "corners": (r"Y_\text{NW}", "|NW + NE")},
+        "curve": {
+            "narrow": ("0.2^2", "0.2^2"),
+            "wide": ("0.3^2", "0.3^2"),
+            "parabola": ("4 F (1 - F)", "4 F (1 - F)"),
+        },
+    },
+}
+
+
+@pytest.mark.parametrize(("task", "variant"), EVERY)
+def test_sheet_and_hints_of_a_variant_say_its_own_values_and_no_others(task, variant):
+    said = about(task, variant)
+    own = dict(zip(rewording.parameters(task), variant.split("/"), strict=True))
+    for parameter, values in SAID[task].items():
+        for value, (prose, hint) in values.items():
+            assert (prose in said["prose"]) == (own[parameter] == value), (prose, said["prose"])
+            assert (hint in said["checks"]) == (own[parameter] == value), hint
+
+
+@pytest.mark.parametrize("variant", rewording.every("shift"))
+def test_the_cell_below_the_task_calls_it_as_the_variant_is_called(variant):
+    from hdrlab.align.shift import crop, shift
+
+    given = re.search(r"shift\(grays, (.*?)\)\)", about("shift", variant)["pictures"])[1]
+    rng = np.random.default_rng(3)
+    grays, offsets = rng.integers(0, 256, (3, 30, 40), np.uint8), np.array([[0, 0], [4, -3], [-2, 5]])
+    came = plan.function(asked("shift", variant))(grays, eval(given, {"offsets": offsets}))
+    common = (slice(None), *crop(offsets, grays.shape[1:]))
+    expected = shift(grays, offsets)
+    assert np.array_equal(came[common] if variant.startswith("black") else came, expected)
+
+
+# What its checks say
+
+
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize("student", ["ada", "Emmy Noether"])
+def test_the_solution_of_every_variant_keeps_every_promise(task, student):
+    for variant in rewording.every(task):
+        share, said = scoring.score(task, subject(task, variant), plan.seed("x", student, task), variant)
+        assert share == 1, (variant, {name: str(error) for name, error in said.items() if error})
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_the_solution_of_another_variant_loses_a_quarter_of_the_points_or_more(task):
+    subjects = {variant: subject(task, variant) for variant in rewording.every(task)}
+    for variant in subjects:
+        for other in subjects.keys() - {variant}:
+            share, _ = scoring.score(task, subjects[other], plan.seed("x", "ada", task), variant)
+            assert share <= 0.75, other
+
+
+@pytest.mark.filterwarnings("ignore")  # a wrong function may well divide by 0
+@pytest.mark.parametrize("task", TASKS)
+def test_each_named_mistake_is_named_for_every_variant_and_costs_points_but_not_all(task):
+    for variant in rewording.every(task):
+        for one in misconceptions.of_task(asked(task, variant)):
+            wrong = inprocess.Subject({task: one.function})
+            share, _ = scoring.score(task, wrong, plan.seed("x", "ada", task), variant)
+            found = misconceptions.closest(asked(task, variant), wrong.calls[:20])
+            assert found is not None and found.name == one.name, variant
+            assert 0 < share < 1 and (share >= 0.5 or not one.once), variant
+
+
+@pytest.mark.parametrize("task", TASKS)
+def test_mistakes_of_variants_can_be_imitated_for_a_class(task):
+    for variant in rewording.every(task):
+        right = imitation.texts(homework_of(task, variant))
+        for one in misconceptions.of_task(asked(task, variant)):
+            assert imitation.texts(homework_of(task, variant), [one.name])[task] != right[task]
+
+
+def test_alignment_takes_whatever_exclusion_bitmap_its_student_was_asked():
+    for variant in rewording.every("exclusion")[:: len(rewording.every("exclusion")) - 1]:
+        scope = {}
+        exec("\n\n".join(misconceptions.solutions(homework_of("exclusion", variant).tasks).values()), scope)
+        assert scoring.score("align", inprocess.Subject({"align": scope["align"]}))[0] == 1
+
+
+# Who is asked what
+
+
+def test_a_plan_without_parameters_asks_everybody_the_same():
+    for homework in PLAN.homeworks.values():
+        assert variants.draw(homework, "b1", SECRET) == homework
+
+
+def test_each_value_is_drawn_about_as_often_and_parameters_of_which_the_plan_says_nothing_stay(course):
+    some = course.homeworks["hw1"].tasks[0]._replace(parameters=("margin", "tie"))
+    each = [
+        variants.draw(course.homeworks["hw1"]._replace(tasks=(some,)), f"b{n}", SECRET).tasks[0].variant
+        for n in range(600)
+    ]
+    counted = [Counter(one) for one in zip(*(variant.split("/") for variant in each), strict=True)]
+    assert [*counted[0]] == ["compared"]
+    assert all(240 < n < 360 for n in counted[1].values()) and len(counted[1]) == 2
+    assert all(150 < n < 250 for n in counted[2].values()) and len(counted[2]) == 3
+
+
+def test_the_same_roster_and_secret_make_the_same_sheets_and_a_team_has_one(course, capsys):
+    build("one", "--solutions", "worked")
+    build("two")
+    files = sorted(path.relative_to("one") for path in Path("one").rglob("*.ipynb"))
+    assert [str(path) for path in files] == ["b1/hw1.ipynb", "pair/hw1.ipynb"]
+    assert all((Path("one") / path).read_bytes() == (Path("two") / path).read_bytes() for path in files)
+    for team in ("b1", "pair"):
+        drawn = variants.draw(course.homeworks["hw1"], team, SECRET)
+        sheet = submission.tasks_of(f"one/{team}/hw1.ipynb", ["exclusion", "shift"])
+        assert sheet.variants == {task.id: task.variant for task in drawn.tasks}
+        assert "NotImplementedError" not in Path(f"worked/{team}/hw1.ipynb").read_text()
+    Path("secret.txt").write_text("another\n")
+    build("three")
+    assert any((Path("one") / path).read_bytes() != (Path("three") / path).read_bytes() for path in files)
+
+
+def test_the_sheets_of_variants_need_a_secret_parameters_and_prose_that_they_can_reword(course, capsys):
+    words = ("course", "build", "--plan", "plan.toml", "--variants", "roster.csv", "--out", "out")
+    run(*words, "--sources", SOURCES, code=2)
+    assert "expected --secret-file with --variants" in capsys.readouterr().err
+    words = (*words, "--secret-file", "secret.txt")
+    Path("plan.toml").write_text(re.sub(r", parameters = \[.*?\]", "", CLASS))
+    run(*words, "--sources", SOURCES, code=2)
+    assert "a plan that gives parameters to a task" in capsys.readouterr().err
+    Path("plan.toml").write_text(CLASS)
+    Path("prose").mkdir()
+    text = (SOURCES / "hw1.py").read_text("utf8")
+    Path("prose/hw1.py").write_text(
+        text.replace("|Y - t| > 4", "|t - Y| > 4").replace("dy, dx", "down, right")
+    )
+    run(*words, "--sources", "prose", code=2)
+    assert "in hdrlab's words" in capsys.readouterr().err and not list(Path().glob("out/*/*"))
+
+
+@pytest.mark.parametrize(
+    ("was", "now", "said"),
+    [
+        ('"tie"', '"knot"', "expected parameters of exclusion out of clipped, tie, margin, got"),
+        ('["clipped", "tie", "margin"]', '"tie"', "expected parameters of exclusion"),
+        ('["clipped", "tie", "margin"]', "7", "expected title, due and tasks"),
+        ('"align.mtb.exclusion"', '"mine.py:exclusion"', "expected parameters of exclusion out of none"),
+        (
+            'id = "exclusion", function = "align.mtb.exclusion"',
+            'id = "hat", function = "core.weights.hat"',
+            "out of none",
+        ),
+    ],
+)
+def test_parameters_that_a_task_does_not_have_are_refused_in_words(was, now, said, tmp_path):
+    (tmp_path / "plan.toml").write_text(CLASS.replace(was, now))
+    with pytest.raises(ValueError, match=said):
+        plan.read(tmp_path / "plan.toml")
+
+
+# How it is graded
+
+
+def test_a_student_checks_her_own_sheet_without_the_secret(course, tmp_path, monkeypatch):
+    own = variants.draw(course.homeworks["hw1"], "b7", SECRET)
+    assert all(task.variant not in ("", rewording.every(task.id)[0]) for task in own.tasks)
+    path = filled(own, tmp_path / "hw1.ipynb")
+    plain = course.homeworks["hw1"]._replace(
+        tasks=tuple(one._replace(parameters=()) for one in course.homeworks["hw1"].tasks)
+    )
+    result = grading.grade(path, plain, Conditions("practice"))
+    assert result.score == 25 and not result.problems
+    (cell,) = (one for one in json.loads(path.read_text())["cells"] if "use_plan(" in "".join(one["source"]))
+    monkeypatch.setattr(notebook, "_plan", {})
+    exec("".join(cell["source"]).partition("\nroom =")[0], {})
+    assert [one.variant for one in notebook.find_tasks("hw1")[0].tasks] == [one.variant for one in own.tasks]
+
+
+def test_grading_asks_what_the_secret_draws_whatever_variant_a_sheet_names(course, tmp_path):
+    homework = course.homeworks["hw1"]
+    theirs = variants.draw(homework, "b7", SECRET)
+    path = filled(theirs, tmp_path / "hw1.ipynb")
+    own = grading.grade(path, homework, Conditions("practice", "b7", SECRET))
+    other = grading.grade(path, homework, Conditions("practice", "pair", SECRET))
+    assert own.score == 25 and not own.problems
+    assert other.score <= 0.75 * 25 and other.specification != own.specification
+    assert other.problems == (
+        "The sheet is of another variant than yours, which is what the checks ask: exclusion, shift",
+    )
+    promises = {one.name for one in other.checks} ^ {one.name for one in own.checks}
+    assert any("codes_on_either_side" in name for name in promises)
+
+
+@pytest.mark.parametrize("named", ["", "a/b/c", "excluded/from/six/and", "../../x/y/z", "<b>/x/y"])
+def test_a_sheet_that_names_no_variant_that_there_is_is_checked_as_the_library_is(named, course, tmp_path):
+    path = tmp_path / "hw1.py"
+    path.write_text(
+        f'use_plan("hw1", variants={{"exclusion": "{named}"}})\n\n# %%\nimport numpy as np\n\n\n'
+        "def exclusion(Y, t):\n    return np.abs(Y.astype(int) - t) > 4\n"
+    )
+    read = submission.tasks_of(path, ["exclusion"])
+    believed = variants.draw(course.homeworks["hw1"], "", "", read.variants)
+    assert [one.variant for one in believed.tasks] == ["", ""]
+    path.write_text("def exclusion(Y, t):\n    return abs(Y.astype(int) - t) > 4\n")
+    assert submission.tasks_of(path, ["exclusion"]).variants is None
+
+
+def test_a_class_is_graded_each_by_the_variant_of_its_sheet(course, capsys):
+    build("sheets", "--solutions", "worked")
+    Path("in").mkdir()
+    Path("in/b1_hw1.ipynb").write_bytes(Path("worked/pair/hw1.ipynb").read_bytes())
+    Path("in/pair_hw1.ipynb").write_bytes(Path("worked/pair/hw1.ipynb").read_bytes())
+    words = ("--homework", "hw1", "--plan", "plan.toml", "--roster", "roster.csv", "--tier", "practice")
+    run("grade", "in", *words, "--secret-file", "secret.txt", "-o", "out")
+    points = {row["student"]: float(row["score"]) for row in sheets.read_csv("out/gradebook.csv")}
+    assert points["b2"] == points["b3"] == 25 and points["b1"] <= 0.75 * 25
+    page = Path("out/similar.html").read_text()
+    assert "Sheets of another variant" in page and "<b>b1</b>: exclusion, shift" in page
+    told = Path("out/feedback/b1/feedback.html").read_text()
+    assert "The sheet is of another variant than yours" in told
+
+
+def test_a_benchmark_builds_the_sheets_of_a_class_and_asks_whether_they_are_graded_so(tmp_path):
+    benchmark = pytest.importorskip("benchmarks.class_.sheets", reason="the benchmarks are not installed")
+    found = benchmark.build(tmp_path, 3)
+    assert found["sheets"] == 3 * 2 and found["different ones"] > 2
+    assert found["sheets that ask what is not graded"] == 0
+
+
+# What is alike
+
+
+def written(folder, texts, course):
+    """Return page and table about a class that has handed in these texts of hw1."""
+    known = {task.id: task for task in course.homeworks["hw1"].tasks}
+    homework = HOMEWORK["shift"]
+    homework = homework._replace(tasks=tuple(known.get(one.id, one) for one in homework.tasks))
+    handins = {}
+    for team, text in texts.items():
+        (folder / f"{team}.py").write_text(text)
+        handins[team] = Handin(team, (team,), folder / f"{team}.py", NOW, "digest")
+    list(alike.write_steps(folder, homework, handins, SECRET))
+    return (folder / "similar.html").read_text(), sheets.read_csv(folder / "similar.csv")
+
+
+def test_a_copy_of_which_the_parameters_alone_were_changed_is_found_and_whose_sheet_it_is(course, tmp_path):
+    apart = materials.folder("tests") / "equivalent"
+    text, other = ((apart / f"hw1_{name}.py").read_text() for name in ("loops", "float32"))
+    copied = text.replace("> 4\n", ">= 6\n").replace("(dy, dx) in", "(dx, dy) in")
+    assert copied != text
+    homework = course.homeworks["hw1"]
+    names = {
+        team: {one.id: one.variant for one in variants.draw(homework, team, SECRET).tasks} for team in "ab"
+    }
+    head = {team: f'use_plan("hw1", variants={json.dumps(names[team])})\n\n# %%\n' for team in "ab"}
+    texts = {"a": head["a"] + text, "b": head["a"] + copied, "c": other}
+    page, rows = written(tmp_path, texts, course)
+    (row,) = rows
+    differing = sum(names["a"][task] != names["b"][task] for task in names["a"])
+    assert (row["one"], row["other"]) == ("a", "b") and float(row["share"]) > 0.8 and differing
+    assert row["tasks on the other's sheet"] == str(differing)
+    assert re.search(rf"{differing} tasks? on the other's sheet", page) and "<b>b</b>: " in page
+    page, rows = written(tmp_path, {**texts, "b": head["b"] + copied}, course)
+    assert rows[0]["tasks on the other's sheet"] == "0" and "on the other's sheet" not in page
+    assert "Sheets of another variant" not in page
+
+
+def test_the_solution_of_any_variant_counts_as_the_librarys_and_for_no_pair(course):
+    task = PLAN.task("shift")._replace(parameters=("border", "direction", "order"))
+    homework = HOMEWORK["shift"]._replace(tasks=(task,))
+    for variant in rewording.every("shift"):
+        text = misconceptions.solutions((task._replace(variant=variant),))["shift"]
+        prints = similarity.fingerprint(authored.own(text, "hw1", ()))
+        assert prints.hashes <= similarity.fingerprint(alike.library(homework)).hashes
