@@ -7,7 +7,7 @@ import numpy as np
 
 from hdrlab.io import radiance
 from hdrlab.io.decode import look
-from hdrlab.io.maps import exr, layers, pfm, rgbe, rgbe_header
+from hdrlab.io.maps import exr, layers, pfm, rgbe
 from hdrlab.show.pages import wording
 
 
@@ -53,7 +53,7 @@ def _photo(path: str | Path) -> dict[str, Any]:
 
 
 def _rgbe(path: str | Path) -> dict[str, Any]:
-    header = rgbe_header.read_header(path)
+    header = rgbe.read_header(path)
     return {
         "format": "Radiance RGBE",
         **_size(header.height, header.width, 3, "8-bit mantissas, shared exponent"),

@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given, strategies as st
 
 from hdrlab.io.maps import rgbe
-from hdrlab.io.maps.rgbe_header import read_header
+from hdrlab.io.maps.rgbe import read_header
 
 SIZES = [(1, 1), (3, 7), (5, 8), (130, 127), (4, 129), (2, 514), (1, 32767), (1, 32768), (2, 40000)]
 
