@@ -14,8 +14,9 @@ import scoring
 from hdrlab import cli
 from hdrlab.course import grading, notebook, plan, submission, variants
 from hdrlab.course.checks import SPECIFICATION, inprocess, misconceptions, rewording
-from hdrlab.course.classroom import imitation
+from hdrlab.course.classroom import imitation, roster
 from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.export import autograder
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.overlap import alike, authored, similarity
 from hdrlab.course.plan import Conditions
@@ -400,6 +401,16 @@ def test_a_benchmark_builds_the_sheets_of_a_class_and_asks_whether_they_are_grad
     found = benchmark.build(tmp_path, 3)
     assert found["sheets"] == 3 * 2 and found["different ones"] > 2
     assert found["sheets that ask what is not graded"] == 0
+
+
+def test_gradescope_asks_what_the_sheet_of_a_roster_of_addresses_does(course, tmp_path):
+    Path("roster.csv").write_text(
+        'student,team\nbo@x.edu,"bo@x.edu,cy@x.edu"\ncy@x.edu,"bo@x.edu,cy@x.edu"\n'
+    )
+    (team,) = roster.read("roster.csv").teams()
+    users = [{"email": "cy@x.edu"}, {"email": "bo@x.edu"}]
+    (tmp_path / "submission_metadata.json").write_text(json.dumps({"users": users}))
+    assert autograder.student(tmp_path) == team
 
 
 # What is alike
