@@ -18,15 +18,11 @@ from hdrlab.course.code import inline
 FOLDER = Path(__file__).parent / "parameters"
 
 
-def file(task: str) -> Path:
-    """Return where a task's variants are, if it has any."""
-    return FOLDER / f"{task}.toml"
-
-
 @cache
 def parameters(task: str) -> dict[str, dict[str, list[tuple[str, str]]]]:
     """Return the values of each parameter of a task, and of each value the pairs of old and new words."""
-    return tomllib.loads(file(task).read_text("utf8")) if file(task).is_file() else {}
+    file = FOLDER / f"{task}.toml"
+    return tomllib.loads(file.read_text("utf8")) if file.is_file() else {}
 
 
 @cache

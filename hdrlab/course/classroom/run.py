@@ -131,7 +131,7 @@ def _laid(files: Iterable[tuple[str, bytes]], folder: Path) -> Path:
 
 def pieces(handins: Mapping[str, Handin], homework: Homework, conditions: Conditions) -> list[Piece]:
     """Return what there is to do: a key holds the submission, the specification and the conditions."""
-    words = [rewording.file(task.id) for task in homework.tasks if task.parameters]
+    words = [rewording.FOLDER / f"{task.id}.toml" for task in homework.tasks if task.parameters]
     files = grading.specification([*grading.files_of(homework, conditions.hidden), *words])
     asked = repr([homework.name, homework.tasks, conditions.tier, conditions.secret, conditions.timeout])
     return [Piece(team, one.path, journal.key(one.digest, files, asked)) for team, one in handins.items()]
