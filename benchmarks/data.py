@@ -11,12 +11,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.bracket import Bracket, bracket
 from scenes.computed import view
 

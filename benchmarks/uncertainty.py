@@ -33,7 +33,6 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, Hold, along, at_least, at_most, measured_curves, real
 from hdrlab import pipeline, scenes
@@ -41,7 +40,7 @@ from hdrlab.capture import camera, responses
 from hdrlab.capture.responses import Curve
 from hdrlab.cli.photographs import read_bracket
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array, Mask
+from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray
 from hdrlab.core.bracket import Bracket
 from hdrlab.diagnostics.noise import FLAT, GROUPS, Noise, estimate_noise, slope
 from hdrlab.fast.merge import merge_with_quality

@@ -4,9 +4,8 @@ from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.optional import OpenEXR
 from hdrlab.io.files import replacing
 from hdrlab.io.maps.exr import LARGEST_HALF

@@ -10,12 +10,11 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from benchmarks import peers
 from benchmarks.align import cases, real, who
 from benchmarks.experiments import Experiment, Skipped, along, at_least
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.core.filters import warp
 
 COUNT = 100  # pairs of a kind

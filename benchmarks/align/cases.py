@@ -13,13 +13,12 @@ from functools import cache
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import gaussian_filter, zoom
 from skimage import data
 
 from hdrlab import scenes
 from hdrlab.capture import camera, hand_motion
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.filters import warp
 
 SHAPE = (340, 480)

@@ -15,14 +15,13 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from scipy.ndimage import binary_erosion
 
 from benchmarks.experiments import Experiment, at_least, real
 from hdrlab import pipeline
 from hdrlab.align import light
 from hdrlab.align.mtb import by_brightness
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp

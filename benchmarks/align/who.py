@@ -13,12 +13,11 @@ from pathlib import Path
 
 import imageio.v3 as iio
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from skimage.registration import phase_cross_correlation
 
 from benchmarks import peers
 from hdrlab.capture.responses import true_g
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.filters import warp
 from hdrlab.pipeline.alignment import register
 

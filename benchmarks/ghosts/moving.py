@@ -14,14 +14,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from benchmarks.ghosts.sequences import SEQUENCES, STILL, sequence, shaken, still
 from hdrlab.capture.movers import Moving
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.bracket import Bracket
 from hdrlab.radiance.deghosting import ghosts
 from hdrlab.radiance.merge import Merged, merge_with_quality

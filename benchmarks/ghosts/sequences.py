@@ -10,12 +10,11 @@ from functools import cache
 from itertools import product
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.ndimage import shift
 
 from hdrlab import scenes
 from hdrlab.capture import camera, movers
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.bracket import Bracket
 from hdrlab.scenes.places import PLACES, resample
 

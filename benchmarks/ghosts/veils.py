@@ -13,7 +13,6 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from benchmarks.experiments import Experiment, along, at_least, at_most
 from benchmarks.ghosts.sequences import CAMERA, SHAPE, STILL, radiance
@@ -21,7 +20,7 @@ from hdrlab.capture import camera
 from hdrlab.capture.lens_flare import add_glare
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.core.filters.scatter import GlareSpread
 from hdrlab.radiance import flare
 from hdrlab.radiance.merge import merge_with_quality

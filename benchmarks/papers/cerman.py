@@ -13,14 +13,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from benchmarks.experiments import Experiment, at_least, at_most, near, real
 from hdrlab import scenes
 from hdrlab.capture import camera
 from hdrlab.capture.responses import true_g
 from hdrlab.core import weights
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike, NDArray
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import response_rmse
 from hdrlab.core.sampling import by_grid

@@ -25,13 +25,12 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from benchmarks.experiments import Experiment, along, at_most
 from benchmarks.peers import opencv
 from benchmarks.verdicts import brackets, ills
 from hdrlab import pipeline
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, ArrayLike
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import luminance
 

@@ -15,14 +15,13 @@ from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
 from benchmarks.experiments import Skipped, measured_curves
 from hdrlab import scenes
 from hdrlab.capture import camera
-from hdrlab.core.arrays import Array
+from hdrlab.core.arrays import Array, NDArray
 from hdrlab.core.bracket import Bracket, bracket
 
 SHAPE = (344, 516)

@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import jinja2
 import numpy as np
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from numpy.typing import ArrayLike, NDArray
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import ArrayLike, NDArray, describe
 from hdrlab.io import web
 from hdrlab.show.pages.templates import templates
 from hdrlab.show.plots import figures, reuse

@@ -14,9 +14,8 @@ from collections.abc import Callable
 from functools import partial
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hdrlab.core.arrays import Mask
+from hdrlab.core.arrays import Mask, NDArray
 from scenes.computed.frames import hang, margin
 from scenes.computed.garden import EYE_HEIGHT, SUN, SUN_RADIUS, outside, sky
 from scenes.computed.illumination import Box, facing, from_globe, from_walls, from_window, length

@@ -5,9 +5,8 @@ d  directions of sight (3, N), d_z = 1: x to the right, y up, z ahead
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
-from hdrlab.core.arrays import F32
+from hdrlab.core.arrays import F32, NDArray
 from scenes.computed.interior import trace
 from scenes.computed.textures import Points
 

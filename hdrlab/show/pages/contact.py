@@ -10,11 +10,9 @@ The time is that of the operator alone: its choice of settings, and luminance in
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from time import perf_counter
 
-from numpy.typing import ArrayLike
-
 from hdrlab import pipeline
 from hdrlab.core import colour
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import ArrayLike, as_radiance
 from hdrlab.core.picture import statistics
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method

@@ -11,10 +11,9 @@ from typing import Any
 
 import numpy as np
 import scipy
-from numpy.typing import ArrayLike
 
 import hdrlab
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.metrics import Truth
 from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly

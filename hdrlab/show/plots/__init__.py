@@ -29,6 +29,11 @@ CHANNELS = (("red", "#D55E00", "-"), ("green", "#009E73", "--"), ("blue", "#0072
 GRAY = (("", "#1A1A1A", "-"),)
 COLOURS = ("#D55E00", "#0072B2", "#009E73", "#CC79A7", "#E69F00", "#56B4E9")
 SAMPLES = tuple(zip(COLOURS, "os^Dv*", strict=True))
+# ... and of curves: colours and line styles differ together
+Dashes = str | tuple[int, tuple[float, ...]]
+STYLES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
+LINES = tuple(zip(("#1A1A1A", *COLOURS[:5]), STYLES, strict=True))
+NARROW: dict[str, Any] = {"handlelength": 1.2, "columnspacing": 1.0, "borderaxespad": 0.2, "frameon": False}
 
 
 def axes(width: float = 5.4, height: float = 3.6) -> Axes:

@@ -15,16 +15,10 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import LineCollection
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.core.metrics import RELIABLE_LEVELS
-from hdrlab.show.plots import COLOURS, SAMPLES, Ends, axes, fix_limits, logarithmic, with_legend
-
-Dashes = str | tuple[int, tuple[float, ...]]
-STYLES: tuple[Dashes, ...] = ("-", "-", "--", "-.", ":", (0, (8, 2)))
-LINES = tuple(zip(("#1A1A1A", *COLOURS[:5]), STYLES, strict=True))
-NARROW: dict[str, Any] = {"handlelength": 1.2, "columnspacing": 1.0, "borderaxespad": 0.2, "frameon": False}
+from hdrlab.show.plots import LINES, NARROW, SAMPLES, Ends, axes, fix_limits, logarithmic, with_legend
 
 
 def lines(

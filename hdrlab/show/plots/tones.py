@@ -21,8 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.core.colour import encode_srgb
-from hdrlab.show.plots import Ends, axes, scaled_axes, with_legend
-from hdrlab.show.plots.curves import LINES
+from hdrlab.show.plots import LINES, Ends, axes, scaled_axes, with_legend
 from hdrlab.show.plots.figures import MISSING, fit
 from hdrlab.show.plots.nearest import show
 

@@ -9,10 +9,9 @@ compares them pixel by pixel.
 from typing import Any
 
 import traitlets
-from numpy.typing import ArrayLike
 
 from hdrlab import pipeline
-from hdrlab.core.arrays import as_radiance
+from hdrlab.core.arrays import ArrayLike, as_radiance
 from hdrlab.io import web
 from hdrlab.show.pictures import Picture, render, require_alt
 from hdrlab.show.plots.figures import fit

@@ -12,9 +12,8 @@ from typing import Any
 
 import numpy as np
 import traitlets
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.io import web
 from hdrlab.show.pictures import render, require_alt
 from hdrlab.show.plots.figures import fit

@@ -17,9 +17,8 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PatchCollection
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
+from hdrlab.core.arrays import ArrayLike, describe
 from hdrlab.show.plots import picture_axes
 
 WIDTH = 5.4  # inches, as the other plots have

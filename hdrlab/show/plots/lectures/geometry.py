@@ -15,8 +15,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from hdrlab.core.arrays import ArrayLike, describe
-from hdrlab.show.plots import SAMPLES, axes, with_legend
-from hdrlab.show.plots.curves import LINES
+from hdrlab.show.plots import LINES, SAMPLES, axes, with_legend
 
 SIZE = (4.4, 4.4)  # inches: a step across is as long as one up
 RINGS = (1.05, 1.2, 1.5, 2, 3, 4, 6, 9)  # of the least residual, or of 1/4 where that is less

@@ -9,11 +9,9 @@ lE   ln E of a photograph: g(Z) - B
 
 import numpy as np
 from matplotlib.axes import Axes
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
-from hdrlab.show.plots import axes, seconds
-from hdrlab.show.plots.curves import NARROW
+from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.show.plots import NARROW, axes, seconds
 
 STOP = np.log(2)
 # stops: how far a measurement may lie from the middle, and still be shown

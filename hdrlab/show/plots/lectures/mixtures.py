@@ -14,8 +14,7 @@ from matplotlib.axes import Axes
 
 from hdrlab.calibration.blends import Blend, InverseResponse, difference
 from hdrlab.core.arrays import F64, ArrayLike
-from hdrlab.show.plots import SAMPLES, axes, logarithmic, with_legend
-from hdrlab.show.plots.curves import LINES
+from hdrlab.show.plots import LINES, SAMPLES, axes, logarithmic, with_legend
 
 
 def samples(

@@ -14,12 +14,11 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.patheffects import withStroke
-from numpy.typing import ArrayLike, NDArray
 
 from hdrlab.capture.photon_transfer import Transfer
 from hdrlab.capture.planning import Plan
 from hdrlab.capture.ranges import ExposedLevels
-from hdrlab.core.arrays import as_picture, describe
+from hdrlab.core.arrays import ArrayLike, NDArray, as_picture, describe
 from hdrlab.show.plots import Ends, axes, fix_limits, logarithmic, picture_axes, with_legend
 from hdrlab.show.plots.nearest import show
 

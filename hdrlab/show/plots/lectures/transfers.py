@@ -15,11 +15,9 @@ from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.colors import LogNorm
 from matplotlib.patches import Patch
-from numpy.typing import ArrayLike
 
-from hdrlab.core.arrays import describe
-from hdrlab.show.plots import SAMPLES, Ends, axes, fix_limits, with_legend
-from hdrlab.show.plots.curves import LINES
+from hdrlab.core.arrays import ArrayLike, describe
+from hdrlab.show.plots import LINES, SAMPLES, Ends, axes, fix_limits, with_legend
 
 
 def comparagram(
