@@ -117,11 +117,10 @@ def same(
     asked = np.ones(wanted.shape, bool) if where is None else np.broadcast_to(where, wanted.shape)
     values, truth = array.astype(np.float64), wanted.astype(np.float64)
     unknown = np.isnan(truth)
-    _require_finite(values[asked & ~unknown], what, expected=wanted, came=array, kind=kind)
-    if not np.all(np.isnan(values[asked & unknown])):
-        count = np.count_nonzero(~np.isnan(values[asked & unknown]))
-        message = f"{what}: expected NaN where nothing is known, got numbers at {count} places"
-        raise Different(message, expected=wanted, came=array, kind=kind)
+    both: dict[str, Any] = {"expected": wanted, "came": array, "kind": kind}
+    _require_finite(values[asked & ~unknown], what, **both)
+    count = np.count_nonzero(~np.isnan(values[asked & unknown]))
+    require(not count, f"{what}: expected NaN where nothing is known, got numbers at {count} places", **both)
     error = np.where(asked & ~unknown, np.abs(values - truth), 0.0)
     if not error.max(initial=0.0) <= tolerance:
         at = np.unravel_index(int(np.argmax(error)), error.shape)
@@ -129,7 +128,7 @@ def same(
         allowed = f"; the difference may be {tolerance:.2g}" if tolerance else ""
         off = f"; {np.count_nonzero(error > tolerance)} of {error.size} values are off" if error.ndim else ""
         message = f"{what}: expected {truth[at]:.6g}{place}, got {values[at]:.6g}{allowed}{off}"
-        raise Different(message, expected=wanted, came=array, kind=kind)
+        raise Different(message, **both)
     return array
 
 

@@ -127,13 +127,9 @@ class Gallery(Front):
             closes = store.format_time(set_up.closes)
             raise Refusal(403, f"The results are shown when the vote has closed: {closes}.")
         cast = [one for one in ballots.every(self.db).values() if one]
-        return self.page(
-            "results.html",
-            rows=[(row, hung[row.artifact]) for row in ballots.standings(hung, cast)],
-            cast=len(cast),
-            voters=store.voters(self.db),
-            method=ballots.METHOD.format(marks=set_up.marks),
-        )
+        rows = [(row, hung[row.artifact]) for row in ballots.standings(hung, cast)]
+        method, voters = ballots.METHOD.format(marks=set_up.marks), store.voters(self.db)
+        return self.page("results.html", rows=rows, cast=len(cast), voters=voters, method=method)
 
     async def static(self, request: Request) -> Response:
         """Send a style sheet or a script; anybody may have them."""
