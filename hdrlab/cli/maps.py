@@ -7,8 +7,7 @@ from typing import Any
 
 import click
 
-from hdrlab.cli import common
-from hdrlab.cli.terminal import visible
+from hdrlab.cli import common, terminal
 from hdrlab.pipeline import catalogue
 
 TO = ["picture", "ultrahdr", "png", "avif", "jxl"]
@@ -125,4 +124,4 @@ def info(files: tuple[Path, ...]) -> None:
         said = describe_file(file)
         click.echo(said.pop("file"))
         for key, value in said.items():
-            click.echo(f"  {key:<12} {visible(value)}")
+            click.echo(f"  {key:<12} {terminal.visible(value)}")

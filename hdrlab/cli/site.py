@@ -5,8 +5,7 @@ from pathlib import Path
 
 import click
 
-from hdrlab.cli import common
-from hdrlab.cli.grading import FILE
+from hdrlab.cli import common, grading
 
 NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 
@@ -14,7 +13,7 @@ NEEDS = ("sphinx", "myst_nb", "numpydoc", "ziamath")
 @common.command()
 @click.option("--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before.")
 @click.option(
-    "--notebooks", metavar="FILE", multiple=True, type=FILE, help="One in place of all. Repeatable."
+    "--notebooks", metavar="FILE", multiple=True, type=grading.FILE, help="One in place of all. Repeatable."
 )
 @click.option(
     "--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Notebooks at a time."

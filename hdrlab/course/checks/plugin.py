@@ -21,9 +21,8 @@ from hdrlab.core.arrays import describe
 from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox import running, tiers
 from hdrlab.course.sandbox.inside import system
-from hdrlab.course.sandbox.running import Unavailable
 
 CALLS = 20  # of a task that are kept to recognise a mistake by
 LONGEST = 1500  # characters of a message
@@ -120,7 +119,7 @@ class Checking:
         if not self._is_hidden(item) and isinstance(subject, Subject):
             kept = self.calls.setdefault(_task(item), [])
             kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
-        if isinstance(raised, Unavailable):  # nothing can be said of the submission
+        if isinstance(raised, running.Unavailable):  # nothing can be said of the submission
             return self._write(unavailable=str(raised))
         if raised is None:
             notes = "\n".join(dict.fromkeys(compare.notes))[:LONGEST]

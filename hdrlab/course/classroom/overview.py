@@ -17,8 +17,7 @@ from hdrlab.course.classroom.handins import Found
 from hdrlab.course.classroom.marks import Mark
 from hdrlab.course.classroom.run import Course
 from hdrlab.course.plan import Homework
-from hdrlab.course.reports import sheets
-from hdrlab.course.reports.results import Outcome, Result
+from hdrlab.course.reports import results, sheets
 from hdrlab.show.pages.templates import render_page
 
 PAGE = "class_page.html"
@@ -37,12 +36,12 @@ class Tally(NamedTuple):
     """
 
     points: dict[str, float]
-    outcomes: dict[tuple[str, str], Counter[Outcome]]
+    outcomes: dict[tuple[str, str], Counter[results.Outcome]]
     met: Counter[tuple[str, str]]
     refused: dict[str, str] = {}
 
 
-def tally(each: Iterable[Result]) -> Tally:
+def tally(each: Iterable[results.Result]) -> Tally:
     """Return what counts of results, each of which is looked at once and let go."""
     found = Tally({}, {}, Counter(), {})
     for result in each:

@@ -23,8 +23,7 @@ from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster
 from hdrlab.course.plan import Conditions, Homework, Late
 from hdrlab.course.reports import gradebook, results
-from hdrlab.course.sandbox import doctor
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox import doctor, running
 from hdrlab.course.wording import plain
 
 MOST = 1 << 26  # bytes of hidden checks, which travel with each submission
@@ -100,7 +99,7 @@ def _ready(tier: str) -> None:
     """Raise Unavailable where a tier cannot be had; a process asks once."""
     found = doctor.examine(tier)
     if not found.works:
-        raise Unavailable(found.says)
+        raise running.Unavailable(found.says)
 
 
 def hidden(folder: Path | None) -> list[tuple[str, bytes]]:

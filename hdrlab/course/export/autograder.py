@@ -7,9 +7,8 @@ import json
 import sys
 from pathlib import Path
 
-from hdrlab.course import grading, plan
+from hdrlab.course import grading, plan, wording
 from hdrlab.course.reports import gradebook
-from hdrlab.course.wording import plain
 
 ROOT = Path("/autograder")
 
@@ -19,7 +18,7 @@ def main(root: Path = ROOT, tier: str = "container") -> None:
     try:
         data = graded(root, tier)
     except Exception as error:  # whatever it is: student and instructor are told, and the queue goes on
-        said = plain(f"The autograder could not grade this: {type(error).__name__}: {error}", 500)
+        said = wording.plain(f"The autograder could not grade this: {type(error).__name__}: {error}", 500)
         data = (json.dumps({"score": 0, "output": said, "output_format": "text"}) + "\n").encode()
     (root / "results").mkdir(exist_ok=True)
     (root / "results" / "results.json").write_bytes(data)

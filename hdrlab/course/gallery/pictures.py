@@ -8,8 +8,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from hdrlab.core.arrays import to_256
-from hdrlab.io import photos, web
-from hdrlab.io.decode import look
+from hdrlab.io import decode, photos, web
 from hdrlab.io.files import write
 from hdrlab.show.plots.figures import fit
 
@@ -38,7 +37,7 @@ def prepare(path: str | Path) -> Prepared:
         raise ValueError(f"{path.name}: expected a picture, this is no plain file")
     if (size := path.stat().st_size) > MOST_BYTES:
         raise ValueError(f"{path.name}: expected at most {MOST_BYTES} bytes, got {size}")
-    header = look(path)
+    header = decode.look(path)
     if header.kind not in ("JPEG", "PNG", "TIFF"):
         raise ValueError(f"{path.name}: expected a JPEG, PNG or TIFF picture, got {header.kind}")
     if header.shape[0] * header.shape[1] > MOST_PIXELS:

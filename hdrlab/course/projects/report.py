@@ -14,13 +14,9 @@ from markupsafe import Markup
 from hdrlab.core.arrays import to_256
 from hdrlab.course.projects import words
 from hdrlab.course.projects.project import ALBUMS, EXAMPLE, PAGE, WORDS, Project
-from hdrlab.io import photos, radiance, response_files
-from hdrlab.io.decode import look
-from hdrlab.io.exif_exposure import Exposure
-from hdrlab.io.files import write
+from hdrlab.io import decode, exif_exposure, files, photos, radiance, response_files
 from hdrlab.show import plots
-from hdrlab.show.pages import sections
-from hdrlab.show.pages.templates import render_page
+from hdrlab.show.pages import sections, templates
 from hdrlab.show.plots import figures
 
 AFTER = {"bracket": "description", "curves": "algorithm", "map": "results"}  # figure -> section
@@ -66,8 +62,8 @@ def write_report(project: Project) -> Written:
     notes += [f"the words have no section about: {name}" for name in said.missing()]
     title = said.title or project.about.title or project.folder.resolve().name
     shown = {"title": title, "about": project.about, "hero": found.get("artifact"), "parts": parts}
-    text = render_page(Path(__file__).parent, TEMPLATE, in_words=plots.seconds, **shown)
-    return Written(write(project.folder / PAGE, text), tuple(found), tuple(notes))
+    text = templates.render_page(Path(__file__).parent, TEMPLATE, in_words=plots.seconds, **shown)
+    return Written(files.write(project.folder / PAGE, text), tuple(found), tuple(notes))
 
 
 def _figures(project: Project, notes: list[str]) -> Iterator[tuple[str, Any]]:
@@ -96,7 +92,7 @@ def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
     """Return the photographs from the shortest exposure to the longest, one in memory at a time."""
     frames = []
     for path in paths:
-        header = look(path)
+        header = decode.look(path)
         small = figures.fit(to_256(photos.read_photo(path)), 400)
         time = header.exposure.seconds
         alt = f"Photograph {path.name}" + (f", exposed for {plots.seconds(time)}" if time else "")
@@ -105,7 +101,7 @@ def _bracket(paths: tuple[Path, ...]) -> list[dict[str, Any]]:
     return sorted(frames, key=lambda one: (_light(one["exposure"]), one["name"]))
 
 
-def _light(exposure: Exposure) -> float:
+def _light(exposure: exif_exposure.Exposure) -> float:
     seconds, f_number, iso = exposure
     return (seconds or 0.0) * (iso or 100.0) / (f_number or 1.0) ** 2
 

@@ -19,8 +19,7 @@ from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, chec
 from hdrlab.course.code import names
 from hdrlab.course.projects.project import ABOUT, ALBUMS, EXAMPLE, MANIFEST, PAGE, Project
 from hdrlab.course.projects.words import ASKED
-from hdrlab.io import radiance
-from hdrlab.io.decode import look
+from hdrlab.io import decode, radiance
 
 TEAM = 2  # students at most
 FETCHED = re.compile(r"""<(?:img|script|link)[^>]+(?:src|href)\s*=\s*["']?((?:https?:)?//[^"'\s>]+)""")
@@ -123,7 +122,7 @@ def _photographs(project: Project) -> str:
     wrong, exposures = [], set()
     for path in project.photographs:
         try:
-            header = look(path)
+            header = decode.look(path)
         except ValueError as error:
             wrong.append(f"{error}.")
             continue
@@ -149,7 +148,7 @@ def _map(project: Project) -> str:
 def _artifact(project: Project) -> str:
     if project.artifact is None:
         raise ValueError("There is no artifact. Save your best picture as artifact.jpg.")
-    height, width = look(project.artifact).shape[:2]
+    height, width = decode.look(project.artifact).shape[:2]
     return f"{project.name(project.artifact)}, {width} x {height}"
 
 

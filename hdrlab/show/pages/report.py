@@ -18,8 +18,7 @@ from hdrlab.core.metrics import Truth
 from hdrlab.io.files import write
 from hdrlab.pipeline.assembly import Assembly
 from hdrlab.radiance.merge import Quality
-from hdrlab.show.pages import sections, wording
-from hdrlab.show.pages.templates import render_page
+from hdrlab.show.pages import sections, templates, wording
 from hdrlab.show.plots import figures
 
 PAGE = "report.html"
@@ -74,7 +73,7 @@ def write_report(
     words |= {"shown": figures.photograph(picture, 1600, seen), "sections": sections, "wording": wording}
     words |= {"recipe": {"how": recipe} if recipe and isinstance(recipe, str) else recipe}
     words |= {"modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)}, "Quality": Quality}
-    text = render_page(Path(__file__).parent, PAGE, **words)
+    text = templates.render_page(Path(__file__).parent, PAGE, **words)
     page = Path(folder) / PAGE
     page.parent.mkdir(parents=True, exist_ok=True)
     return write(page, text)

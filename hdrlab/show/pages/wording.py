@@ -2,14 +2,13 @@
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, ArrayLike
-from hdrlab.core.colour import LUMINANCE, luminance
+from hdrlab.core import arrays, colour
 from hdrlab.pipeline.stages import CONTRADICTION
 
 CLOSE = 0.03  # stops of spread: what true exposure times and a camera at rest reach
 
 
-def share(mask: ArrayLike) -> str:
+def share(mask: arrays.ArrayLike) -> str:
     """Return how much of a mask is True, in percent; rounding makes neither nothing nor everything of it.
 
     Examples
@@ -41,7 +40,7 @@ def stops(value: float) -> str:
     return "not known" if np.isnan(value) else f"{value:.3f} stops"
 
 
-def offset(pixels: ArrayLike) -> str:
+def offset(pixels: arrays.ArrayLike) -> str:
     """Return (dy, dx) as '(+4, −1)'."""
     dy, dx = np.asarray(pixels).tolist()
     return f"({signed(dy)}, {signed(dx)})"
@@ -56,7 +55,7 @@ def verdict(spread: float) -> str:
     return "they agree roughly" if spread <= CONTRADICTION else "they contradict each other"
 
 
-def deviation(E: F32, s: F32) -> F32:
+def deviation(E: arrays.F32, s: arrays.F32) -> arrays.F32:
     """Return one standard deviation of each pixel's luminance in stops, (H, W); infinite where unknown.
 
     The channels are taken to err together, as they do in a JPEG: it is not more than this.
@@ -66,11 +65,11 @@ def deviation(E: F32, s: F32) -> F32:
     >>> deviation(np.float32([[1.0, 2.0]]), np.float32([[0.1, np.inf]])).round(3)
     array([[0.144,   inf]], dtype=float32)
     """
-    of_L = s if s.ndim == 2 else s @ LUMINANCE
-    return np.asarray(of_L / np.maximum(luminance(E), 1e-30) / np.log(2), np.float32)
+    of_L = s if s.ndim == 2 else s @ colour.LUMINANCE
+    return np.asarray(of_L / np.maximum(colour.luminance(E), 1e-30) / np.log(2), np.float32)
 
 
-def certainty(E: F32, s: F32) -> str:
+def certainty(E: arrays.F32, s: arrays.F32) -> str:
     """Return how sure half and most of the pixels are, in words: E and its standard deviation."""
     known = deviation(E, s)
     known = known[np.isfinite(known)]

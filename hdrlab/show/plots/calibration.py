@@ -18,10 +18,8 @@ from hdrlab.core.arrays import F64, ArrayLike, as_table
 from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL, RELIABLE_LEVELS
 from hdrlab.diagnostics import consistency
 from hdrlab.io.files import replacing, require_suffix
-from hdrlab.show import plots
-from hdrlab.show.pages.templates import render_page
-from hdrlab.show.pages.wording import signed
-from hdrlab.show.pictures import require_alt
+from hdrlab.show import pictures, plots
+from hdrlab.show.pages import templates, wording
 
 SUFFIXES = (".png", ".svg")
 
@@ -53,10 +51,10 @@ def summary(g: F64, medians: F64, names: Sequence[str]) -> str:
     off = np.nan_to_num(consistency.measure_deviations(medians))
     worst = int(np.argmax(np.abs(off)))
     words = {"worst": names[worst], "off": off[worst], "low": LOW_LEVEL, "high": HIGH_LEVEL, "rows": rows}
-    words |= {"stops": sorted(set().union(*rows.values())), "reach": reach(g), "signed": signed}
+    words |= {"stops": sorted(set().union(*rows.values())), "reach": reach(g), "signed": wording.signed}
     words |= {"spread": consistency.measure_spread(medians)}
     words |= {"rms": _rms(consistency.measure_residuals(medians, g))}
-    return render_page(Path(__file__).parent, "calibration.plain", **words).rstrip()
+    return templates.render_page(Path(__file__).parent, "calibration.plain", **words).rstrip()
 
 
 def _rms(r: F64) -> float:
@@ -110,7 +108,7 @@ def write_plot(path: str | Path, figure: Figure) -> None:
         For another suffix, or a figure without alt text.
     """
     suffix = check_suffix(path)
-    said = {"Title": "Camera response", "Description": require_alt(str(figure.get_label()))}
+    said = {"Title": "Camera response", "Description": pictures.require_alt(str(figure.get_label()))}
     undated = said | ({"Date": None} if suffix == ".svg" else {})
     with replacing(path) as name, matplotlib.rc_context({"svg.hashsalt": "hdrlab"}):
         figure.savefig(name, format=suffix[1:], metadata=undated)

@@ -21,9 +21,7 @@ from matplotlib.ticker import MaxNLocator
 
 from hdrlab.core.arrays import F64, ArrayLike, describe
 from hdrlab.core.colour import encode_srgb
-from hdrlab.show.plots import LINES, Ends, axes, scaled_axes, with_legend
-from hdrlab.show.plots.figures import MISSING, fit
-from hdrlab.show.plots.nearest import show
+from hdrlab.show.plots import LINES, Ends, axes, figures, nearest, scaled_axes, with_legend
 
 SIDE = 600  # pixels: a larger map is drawn by means of k x k pixels
 SCALE, SIGNED = "viridis", "PuOr_r"
@@ -59,7 +57,7 @@ def maps(
     norm, colours = _scale(arrays, span, signed, len(names))
     *shown, bar = _row(arrays, titled=any(each))
     for ax, name, v in zip(shown, each, arrays, strict=True):
-        show(ax, v, colours=colours, norm=norm)
+        nearest.show(ax, v, colours=colours, norm=norm)
         ax.set_title(name, fontsize=11, pad=4)
     _draw_scale(bar, norm, colours, names)
     bar.set_xlabel(label)
@@ -70,7 +68,7 @@ def _draw_scale(bar: Axes, norm: Normalize, colours: Any, names: Sequence[object
     """Draw the colours of a scale, with its numbers or the names of its classes below."""
     low, high = (-0.5, len(names) - 0.5) if names else map(float, norm.inverse(np.array([0.0, 1.0])))
     each = np.arange(len(names)) if names else np.linspace(low, high, 256)
-    show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1)).set_zorder(1)
+    nearest.show(bar, each[None], colours=colours, norm=norm, extent=(low, high, 0, 1)).set_zorder(1)
     if names:
         bar.set_xticks(range(len(names)), [str(name) for name in names])
     else:
@@ -125,11 +123,11 @@ def _arrays(each: Mapping[str, ArrayLike]) -> list[F64]:
     if not 1 <= len(arrays) <= 3 or any(v.ndim != 2 or v.shape != arrays[0].shape for v in arrays):
         got = ", ".join(describe(v) for v in arrays) or "none"
         raise ValueError(f"expected one to three maps (H, W) of one shape, got {got}")
-    return [fit(v, SIDE) for v in arrays]
+    return [figures.fit(v, SIDE) for v in arrays]
 
 
 def _scale(arrays: list[F64], span: Ends, signed: bool, classes: int) -> tuple[Normalize, Any]:
-    colours = matplotlib.colormaps[SIGNED if signed else SCALE].with_extremes(bad=MISSING)
+    colours = matplotlib.colormaps[SIGNED if signed else SCALE].with_extremes(bad=figures.MISSING)
     if classes:
         return BoundaryNorm(np.arange(classes + 1) - 0.5, colours.N), colours
     if span is None:

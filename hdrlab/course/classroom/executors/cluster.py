@@ -22,8 +22,7 @@ from distributed.comm import resolve_address
 import hdrlab
 from hdrlab.course import grading, scratch
 from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.classroom.executors import alone as process
-from hdrlab.course.classroom.executors.processes import LOOK, PATIENCE
+from hdrlab.course.classroom.executors import alone as process, processes
 from hdrlab.course.classroom.journal import Ending, Piece
 
 CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
@@ -103,7 +102,7 @@ class Cluster:
         address: str,
         work: Callable[[Piece], bytes],
         ready: Callable[[], object] = version,
-        patience: float = PATIENCE,
+        patience: float = processes.PATIENCE,
     ) -> None:
         self._address, self._work, self._ready, self._patience = address, work, ready, patience
         self._running: dict[Future[Any], tuple[Piece, str]] = {}  # with its worker's address
@@ -143,7 +142,7 @@ class Cluster:
 
     def endings(self) -> list[Ending]:
         """Wait a little, and return what has ended, and those whose worker is lost."""
-        until = time.monotonic() + LOOK
+        until = time.monotonic() + processes.LOOK
         while not any(one.done() for one in self._running) and time.monotonic() < until:
             time.sleep(TICK)
         ended = [one for future in list(self._running) if (one := self._ending(future))]

@@ -16,9 +16,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Indices
+from hdrlab.response import polynomial, self_calibration
 from hdrlab.response.mitsunaga import coefficients, gram, in_range, neighbours, terms, value
-from hdrlab.response.polynomial import GRID, brightness, misfit
-from hdrlab.response.self_calibration import average
 
 
 class Trial(NamedTuple):
@@ -47,7 +46,7 @@ def draw_curve(rng: np.random.Generator, *, order: int = 5, least: float = 0.02)
     n = np.arange(1, order + 1)
     while True:
         a = rng.uniform(-1, 1, order)
-        if np.min(GRID[:, None] ** (n - 1) @ (n * a / a.sum())) >= least:
+        if np.min(polynomial.GRID[:, None] ** (n - 1) @ (n * a / a.sum())) >= least:
             break
     M = (np.arange(order - 1) + 0.5) / (order - 1)  # N - 1 points fix the N - 1 numbers c
     return np.asarray(np.linalg.solve(terms(M, order)[:, 1:], M[:, None] ** n @ (a / a.sum()) - M))
@@ -66,7 +65,7 @@ def draw_trial(
     R = rng.uniform(0.45, 0.55, 3) if ratios is None else np.asarray(ratios, dtype=np.float64)
     exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
     E = 10 ** rng.uniform(-2, 0, pixels)
-    M = brightness(E[:, None] * exposures, c)
+    M = polynomial.brightness(E[:, None] * exposures, c)
     M = M + sigma * rng.standard_normal(M.shape)
     return Trial(c, R, np.rint(255 * np.clip(M, 0, 1)).astype(np.intp))
 
@@ -107,7 +106,7 @@ def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Dri
     Each curve is compared with the truth, and with the truth to the power u = ln R / ln (true R): the second
     fits ever better, so u alone drifts.
     """
-    M = average(one.Z)
+    M = self_calibration.average(one.Z)
     M = M[np.all((M > 0.05) & (M < 0.98), axis=1)]
     z = np.linspace(0, 1, 256)
     truth, rows = value(z, one.c), []
@@ -123,7 +122,7 @@ def brightness_error(M: F64, R: F64, c: F64) -> float:
 
     Eq. 7 itself does not measure R: it is small wherever f^-1 is flat, as f^-u is over most of its range.
     """
-    return float(np.sqrt(np.mean(misfit(M, R, c) ** 2)))
+    return float(np.sqrt(np.mean(polynomial.misfit(M, R, c) ** 2)))
 
 
 def scan_ratios(M: F64, R: ArrayLike, order: int) -> F64:

@@ -23,8 +23,7 @@ from hdrlab.core.bracket import Bracket
 from hdrlab.core.colour import encode_srgb, luminance
 from hdrlab.fast import debevec
 from hdrlab.scenes.subjects import Subject
-from hdrlab.show.plots import curves
-from hdrlab.show.plots.figures import fit
+from hdrlab.show.plots import curves, figures
 from hdrlab.show.plots.lectures import sensors
 
 F = 8.0  # f-number of the benches
@@ -49,7 +48,7 @@ def meter_scene(
     scene: Subject, mode: str = "spot", at: metering.At = (0.5, 0.5), *, sensor: Sensor = SENSOR, rng: int = 0
 ) -> Shot:
     """Return the photograph that automatic exposure takes of a scene, in a mode, the spot at a place."""
-    coarse = fit(scene.E, COARSE)
+    coarse = figures.fit(scene.E, COARSE)
     photograph = partial(autoexposure.measure_brightness, aperture=F)
     EV = autoexposure.expose(coarse, mode, at=at, photograph=photograph)
     fills = float(exposure.saturating_luminance(1.0, F=F))

@@ -20,9 +20,8 @@ from hdrlab.align import mtb
 from hdrlab.capture.movers import shift_layer
 from hdrlab.core.arrays import ArrayLike, Mask, NDArray, describe
 from hdrlab.diagnostics.registration import Validation
-from hdrlab.show.plots import picture_axes
+from hdrlab.show.plots import nearest, picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
-from hdrlab.show.plots.nearest import show
 
 Offset = tuple[int, int]
 AGREE = ((26, 26, 26), (255, 255, 255))  # both 0, both 1
@@ -45,7 +44,7 @@ def overlay(fixed: ArrayLike, moved: ArrayLike, compared: ArrayLike | None = Non
 def difference(fixed: Mask, moving: Mask, offset: Offset, *, title: str = "") -> Axes:
     """Draw the difference of two photographs' bits, the second moved by an offset, under its error."""
     ax = _under(fixed.shape[1] / fixed.shape[2], above=0.32 + 0.21 * title.count("\n"))
-    show(ax, _picture(fixed, moving, offset))
+    nearest.show(ax, _picture(fixed, moving, offset))
     off = 100 * mtb.error(fixed, moving, offset)
     ax.set_title(title or f"moved by {_pair(offset)}: {off:.2f} % of the bits differ", fontsize=11)
     return ax
@@ -72,7 +71,7 @@ def nine(state: mtb.State) -> Figure:
         left, top = gap + column * (side + gap), 0.4 + row * (tall + 0.25)
         place = (left / WIDTH, 1 - (top + 0.22 + tall) / total, side / WIDTH, tall / total)
         ax = figure.add_axes(place)
-        show(ax, _picture(state.fixed, state.moving, offset))
+        nearest.show(ax, _picture(state.fixed, state.moving, offset))
         ax.set_title(f"{_pair(offset)}: {100 * error:.2f} %", fontsize=10, pad=2)
         ax.set(xticks=(), yticks=())
         framed = BEST if offset == state.offset else CENTRE if offset == centre else "#D9D9D9"

@@ -16,10 +16,8 @@ from matplotlib.figure import Figure
 from hdrlab.align.cerman import State
 from hdrlab.align.light import differences as compare, error, lattice
 from hdrlab.core.arrays import F64, ArrayLike, describe
-from hdrlab.show.plots import bare, picture_axes
-from hdrlab.show.plots.figures import false_colour
+from hdrlab.show.plots import bare, figures, nearest, picture_axes
 from hdrlab.show.plots.lectures.offsets import WIDTH, draw_offsets
-from hdrlab.show.plots.nearest import show
 
 REACH = 0.6  # d at which the colours end: one photograph 1.86 times as bright as the other
 COLOURS = "PuOr_r"
@@ -41,7 +39,7 @@ def difference(X: ArrayLike, H: ArrayLike, *, title: str = "") -> Axes:
     d, e = differences(X, H)
     tall = WIDTH * d.shape[0] / d.shape[1]
     ax = picture_axes(WIDTH, tall + 0.4, (0, 0, 1, tall / (tall + 0.4)))
-    show(ax, false_colour(d, -REACH, REACH, colours=COLOURS))
+    nearest.show(ax, figures.false_colour(d, -REACH, REACH, colours=COLOURS))
     ax.set_title(f"{title}error e = {e:.4f}", fontsize=11)
     return ax
 
@@ -61,7 +59,7 @@ def level(state: State) -> Figure:
     total = tall + 2.3
     figure = Figure(figsize=(WIDTH, total), dpi=100)
     above = figure.add_axes((0, 1.9 / total, 1, tall / total))
-    show(above, false_colour(d, -REACH, REACH, colours=COLOURS))
+    nearest.show(above, figures.false_colour(d, -REACH, REACH, colours=COLOURS))
     bare(above)
     size = f"{d.shape[1]} × {d.shape[0]} pixels"
     above.set_title(f"level {state.level}, {size}: error e = {found:.4f}", fontsize=11)

@@ -15,12 +15,9 @@ from matplotlib.axes import Axes
 from matplotlib.colors import Normalize
 from matplotlib.patheffects import withStroke
 
-from hdrlab.capture.photon_transfer import Transfer
-from hdrlab.capture.planning import Plan
-from hdrlab.capture.ranges import ExposedLevels
+from hdrlab.capture import photon_transfer, planning, ranges
 from hdrlab.core.arrays import ArrayLike, NDArray, as_picture, describe
-from hdrlab.show.plots import Ends, axes, fix_limits, logarithmic, picture_axes, with_legend
-from hdrlab.show.plots.nearest import show
+from hdrlab.show.plots import Ends, axes, fix_limits, logarithmic, nearest, picture_axes, with_legend
 
 FULL, NOISE, KEPT = "#D55E00", "#0072B2", "#B8B8B8"
 ORANGE, BLUE = np.array([213, 94, 0], np.uint8), np.array([0, 114, 178], np.uint8)
@@ -39,7 +36,7 @@ def mark_lost(picture: ArrayLike, full: ArrayLike, noise: ArrayLike) -> NDArray[
     return shown
 
 
-def window(L: ArrayLike, held: ExposedLevels, *, limits: Ends = None) -> Axes:
+def window(L: ArrayLike, held: ranges.ExposedLevels, *, limits: Ends = None) -> Axes:
     """Draw how the pixels of a scene spread over luminance, and which of them one exposure holds."""
     L, ax = np.asarray(L, np.float64).ravel(), axes()
     if L.shape != np.shape(held.full) or not np.all(L > 0):
@@ -57,7 +54,7 @@ def window(L: ArrayLike, held: ExposedLevels, *, limits: Ends = None) -> Axes:
     return logarithmic(with_legend(ax, "upper right"))
 
 
-def staircase(L: ArrayLike, held: ExposedLevels) -> Axes:
+def staircase(L: ArrayLike, held: ranges.ExposedLevels) -> Axes:
     """Draw the converter's level over luminance, and where nothing is told [Battiato08 fig. 1.10 to 1.12]."""
     L, ax = np.asarray(L, np.float64), axes()
     if L.shape != np.shape(held.Z) or L.ndim != 1:
@@ -73,7 +70,7 @@ def staircase(L: ArrayLike, held: ExposedLevels) -> Axes:
     return logarithmic(ax)
 
 
-def transfer(found: Transfer, *, span: Ends = None, limits: Ends = None) -> Axes:
+def transfer(found: photon_transfer.Transfer, *, span: Ends = None, limits: Ends = None) -> Axes:
     """Draw a photon transfer curve: variance over signal, the line through it, and what was left out.
 
     `span` and `limits` fix the axes, so that a slider turns the line and nothing else.
@@ -88,7 +85,7 @@ def transfer(found: Transfer, *, span: Ends = None, limits: Ends = None) -> Axes
     return with_legend(ax, "upper left")
 
 
-def coverage(plan: Plan, low: float, high: float) -> Axes:
+def coverage(plan: planning.Plan, low: float, high: float) -> Axes:
     """Draw which luminances each photograph of a plan holds, the shortest on top, and those of the scene."""
     ax = axes()
     ax.axvspan(low, high, color=KEPT, alpha=0.45, label="the scene", linewidth=0)
@@ -118,7 +115,7 @@ def draw_titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None,
     high = width * shown.shape[0] / shown.shape[1]
     lines = 0.25 * (text.count("\n") + 1) + 0.12
     ax = picture_axes(width, high + lines, (0, 0, 1, high / (high + lines)))
-    show(ax, shown, colours="gray", norm=Normalize(0, 255))
+    nearest.show(ax, shown, colours="gray", norm=Normalize(0, 255))
     if ring is not None and 0 < np.asarray(ring, float).mean() < 1:
         edge = ax.contour(np.asarray(ring, float), [0.5], colors="white", linewidths=1.2)
         edge.set_path_effects([withStroke(linewidth=3, foreground="black")])
