@@ -15,8 +15,7 @@ from hdrlab.capture import camera, responses
 from hdrlab.capture.hand_motion import views
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.metrics import Truth
-from hdrlab.io.photos import write_picture
-from hdrlab.io.radiance import write_radiance
+from hdrlab.io import photos, radiance
 from hdrlab.pipeline.pictures import Developed
 from hdrlab.show.pages.report import write_report
 
@@ -58,8 +57,8 @@ def _assemble_steps(out: Path, bracket: Bracket) -> Generator[str, None, tuple[p
     made = pipeline.develop_and_describe(assembly.E)
     yield f"picture    {made.settings}"
     for suffix in (".hdr", ".exr", ".pfm"):
-        write_radiance(out / f"radiance{suffix}", assembly.E)
-    write_picture(out / "picture.png", made.picture)
+        radiance.write_radiance(out / f"radiance{suffix}", assembly.E)
+    photos.write_picture(out / "picture.png", made.picture)
     yield f"files      radiance.hdr, .exr, .pfm and picture.png in {out}"
     return assembly, made
 

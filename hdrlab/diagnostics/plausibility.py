@@ -17,10 +17,8 @@ that there is no such thing.
 
 import numpy as np
 
+from hdrlab.core import bracket, metrics, sampling
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, Mask, as_mask, as_response, as_stack, as_times
-from hdrlab.core.bracket import short_to_long
-from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
-from hdrlab.core.sampling import by_rank
 from hdrlab.diagnostics.doubts import say
 
 # stops between neighbours; a bracket with wrong times that is still worth a map comes to 1.8
@@ -46,7 +44,7 @@ def ranks(stack: Array, valid: Mask | None) -> Indices:
     every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PIXELS)))
     few = slice(None), slice(None, None, every), slice(None, None, every)
     shown = None if valid is None or not valid[few].all(axis=0).any() else valid[few]
-    Z = by_rank(stack[few], RANKS, valid=shown)
+    Z = sampling.by_rank(stack[few], RANKS, valid=shown)
     return Z.reshape(*Z.shape[:2], -1)
 
 
@@ -56,7 +54,7 @@ def neighbour_errors(Z: Indices, t: F64, g: F64) -> tuple[F64, F64]:
     NaN where two frames hold too few ranks between the levels 10 and 250, or have the same time.
     """
     channel = np.arange(Z.shape[-1])
-    inside = (Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)
+    inside = (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
     both = inside[:, 1:] & inside[:, :-1] & (np.diff(t) > 0)[:, None]
     apart = np.abs(np.diff(g[Z, channel], axis=1) - np.diff(np.log(t))[:, None]) / np.log(2)
     darker = np.diff(Z, axis=1) < -RANK_NOISE
@@ -99,7 +97,7 @@ def validate_response(g: F64, images: ArrayLike, times: ArrayLike, *, valid: Arr
     """
     stack = as_stack(images)
     t, curve = as_times(times, len(stack)), as_response(g, 256, stack[0, 0, 0].size)
-    order = short_to_long(stack, t)
+    order = bracket.short_to_long(stack, t)
     Z, t = ranks(stack, as_mask(valid, stack))[:, order], t[order]
     error, darker_share = neighbour_errors(Z, t, curve)
     if np.any(darker_share > 0.5):

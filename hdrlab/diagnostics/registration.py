@@ -20,11 +20,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hdrlab.align import homography, light
-from hdrlab.align.mtb import exclusion
+from hdrlab.align import homography, light, mtb
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
-from hdrlab.core.filters import warp
-from hdrlab.core.filters.blur import blur_matrix
+from hdrlab.core.filters import blur, warp
 
 # pixels of the overview: the distances at which other answers are compared
 NEAR, FAR = 2, 8
@@ -148,7 +146,7 @@ def compare_bits(
     Y are the fixed one's levels, t the threshold of the overview; count(offset, level) returns d of a level.
     """
     tile, scale = _middle(Y[overview], BITS_TILE), 2**overview
-    signs = np.where(exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
+    signs = np.where(mtb.exclusion(tile, t), np.where(tile > t, 1, -1), np.nan).astype(np.float32)
 
     def differences(H: F64, pixel: int = scale) -> F64:
         level = min(pixel.bit_length(), len(Y)) - 1
@@ -235,7 +233,7 @@ def rivals(middle: F32) -> list[Array]:
     """Return the shifts at which a picture resembles itself most: peaks of its autocorrelation, by half."""
     (h, w), kept, r = middle.shape, np.isfinite(middle), round(4 * light.NEIGHBOURHOOD)
     k = np.exp(-0.5 * (np.arange(-r, r + 1) / light.NEIGHBOURHOOD) ** 2)
-    down, across = (blur_matrix(n, k / k.sum()) for n in (h, w))
+    down, across = (blur.blur_matrix(n, k / k.sum()) for n in (h, w))
     total, share = (down @ one @ across for one in (np.where(kept, middle, 0), kept))  # `light.local_mean`
     x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
     c = np.fft.fftshift(np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2)[:, :w], axes=0)

@@ -9,9 +9,7 @@ from collections import Counter, defaultdict
 from collections.abc import Sequence
 from pathlib import Path
 
-from hdrlab.io import raw
-from hdrlab.io.decode import Header, look
-from hdrlab.io.files import OtherPixels
+from hdrlab.io import decode, files, raw
 
 SUFFIXES = raw.SUFFIXES | {".jpg", ".jpeg", ".jfif", ".png", ".tif", ".tiff"}
 SUFFIXES |= {".webp", ".avif", ".heic", ".heif", ".hif", ".jxl"}
@@ -100,9 +98,9 @@ def _alike(paths: list[Path]) -> Selection:
     notes = []
     for path in paths:
         try:
-            shape, dtype = (header := look(path)).shape, header.dtype
+            shape, dtype = (header := decode.look(path)).shape, header.dtype
             kinds[path] = (*sorted(shape[:2]), shape[2:], dtype, header.kind == "RAW")
-        except OtherPixels as error:
+        except files.OtherPixels as error:
             notes.append(f"{error}: left out")
     most, count = Counter(kinds.values()).most_common(1)[0] if kinds else (None, 0)
     odd = [path for path in kinds if kinds[path] != most and count > max(1, len(kinds) / 2)]
@@ -110,7 +108,7 @@ def _alike(paths: list[Path]) -> Selection:
     return [path for path in kinds if path not in odd], notes
 
 
-def turn_alike(headers: list[Header]) -> tuple[list[Header], list[str]]:
+def turn_alike(headers: list[decode.Header]) -> tuple[list[decode.Header], list[str]]:
     """Return headers turned as most of them are, and a note, where some of one size stand and some lie.
 
     A camera that looks straight down or up does not know which way is up, and says now this and now that.

@@ -17,10 +17,8 @@ from PIL import Image
 from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
-from hdrlab.io import raw
-from hdrlab.io.album import Paths, select, turn_alike
+from hdrlab.io import album, files, raw
 from hdrlab.io.decode import Header, decode, look
-from hdrlab.io.files import replacing, require_suffix
 from hdrlab.io.times import Times, are_inverse, bracket_times
 
 PICTURES: dict[str, dict[str, Any]] = {".png": {"compress_level": 1}}
@@ -60,7 +58,7 @@ def read_photo(path: str | Path) -> Array:
 
 
 def read_bracket(
-    paths: Paths,
+    paths: album.Paths,
     times: Times | None = None,
     *,
     mask: tuple[int, int, int] | None = None,
@@ -97,8 +95,8 @@ def read_bracket(
     >>> read_bracket(folder, {"a.png": 1.0, "b.png": 0.25}).names
     ('b.png', 'a.png')
     """
-    found, notes = select(paths)
-    headers, more = turn_alike([look(path) for path in found])
+    found, notes = album.select(paths)
+    headers, more = album.turn_alike([look(path) for path in found])
     _check_alike(headers)
     for said in (*notes, *more, *_processed(headers)):
         note(said)
@@ -152,8 +150,8 @@ def write_picture(path: str | Path, image: ArrayLike) -> None:
     >>> read_photo(path).tolist()
     [[0, 255], [0, 255]]
     """
-    suffix, picture = require_suffix(path, PICTURES, "a picture file"), as_picture(image)
-    with replacing(path) as name:
+    suffix, picture = files.require_suffix(path, PICTURES, "a picture file"), as_picture(image)
+    with files.replacing(path) as name:
         if suffix == ".png" and imagecodecs:  # no search for repetitions, which photographs hardly have
             name.write_bytes(imagecodecs.png_encode(picture, level=1, strategy=2, filter=128))
         else:

@@ -12,11 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.align import cerman, homography, light, mtb
+from hdrlab.core import colour, steps, transfer
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_stack, as_table, as_times, levels
-from hdrlab.core.colour import decode_srgb
 from hdrlab.core.filters import warp
-from hdrlab.core.steps import last
-from hdrlab.core.transfer import brightness_transfer, histograms
 from hdrlab.diagnostics import registration as judgement
 from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue
@@ -110,7 +108,7 @@ def register_by_light(images: Array, as_light: AsLight, method: str) -> Iterator
     for moving, fixed in pairwise(mtb.by_brightness(images)):
         pyramid = as_light(moving, fixed, Z[moving], Z[fixed])
         pair = judgement.compare_light(moving, fixed, pyramid[0])
-        yield judgement.validate(pair, last(SEARCHES[method](pyramid)).H)
+        yield judgement.validate(pair, steps.last(SEARCHES[method](pyramid)).H)
 
 
 def improve(
@@ -122,7 +120,7 @@ def improve(
     pair = judgement.compare_light(best.moving, best.fixed, pyramid[0], scale)
     d = pair.differences(best.step)
     for method, search in SEARCHES.items():
-        found = judgement.validate(pair, homography.enlarge(last(search(pyramid)).H, scale))
+        found = judgement.validate(pair, homography.enlarge(steps.last(search(pyramid)).H, scale))
         left = pair.differences(found.H)
         overlaps = max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
         if found.known and overlaps and found.confidence >= judgement.LOST and pair.lower(left, d)[-1]:
@@ -171,12 +169,12 @@ def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
     given = g if g is None or callable(g) else as_table(g, n)
 
     def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:
-        table, curve = decode_srgb(np.arange(n) / (n - 1)), given() if callable(given) else given
+        table, curve = colour.decode_srgb(np.arange(n) / (n - 1)), given() if callable(given) else given
         if curve is not None:
             table = np.exp(as_table(curve, n).reshape(n, -1)[:, :2][:, -1])  # the only one, or green
         f_inv = table[:: (n - 1) // np.iinfo(dark.dtype).max]  # an overview has 8 bits
         if curve is None:
-            T = brightness_transfer(*histograms([dark, bright])[0])
+            T = transfer.brightness_transfer(*transfer.histograms([dark, bright])[0])
             T[0], T[-1] = 0, len(f_inv) - 1
             z, known = np.arange(len(f_inv)), np.flatnonzero(np.isfinite(T))
             matched = np.interp(np.interp(z, known, T[known]), z, f_inv)

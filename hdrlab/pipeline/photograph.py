@@ -15,9 +15,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hdrlab.core import colour
+from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance
-from hdrlab.core.extremes import positive_median
 from hdrlab.core.filters.blur import blur_matrix
 from hdrlab.fast._bands import banded
 from hdrlab.tonemap.reinhard import display
@@ -77,7 +76,7 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
 
 def find_logarithm(L: F32) -> Callable[[F32], F32]:
     """Return the function to lL = log10 L, for which black is a millionth of the median of this L."""
-    floor = np.float32(max(DARK * positive_median(L), 1e-37))
+    floor = np.float32(max(DARK * extremes.positive_median(L), 1e-37))
     return lambda L: np.log(np.maximum(L, floor)) * np.float32(1 / np.log(10))
 
 

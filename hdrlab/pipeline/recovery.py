@@ -16,16 +16,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core import weights
+from hdrlab.core import metrics, sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.metrics import HIGH_LEVEL, LOW_LEVEL
-from hdrlab.core.sampling import by_rank
-from hdrlab.diagnostics import consistency
-from hdrlab.diagnostics.doubts import say
-from hdrlab.diagnostics.plausibility import validate_response
-from hdrlab.fast import debevec, robertson
-from hdrlab.fast.merge import merge_with_quality
+from hdrlab.diagnostics import consistency, doubts, plausibility
+from hdrlab.fast import debevec, merge, robertson
 from hdrlab.pipeline import catalogue
 from hdrlab.pipeline.assembly import Method
 from hdrlab.response import self_calibration, space
@@ -65,7 +60,7 @@ def find_validated_method(response: Method) -> Recover:
 
 def _recover(method: Recover, images: ArrayLike, times: ArrayLike, *, valid: ArrayLike | None = None) -> F64:
     """Return the response that a method finds, or raise a ValueError: see `validate_response`."""
-    return validate_response(method(images, times, valid=valid), images, times, valid=valid)
+    return plausibility.validate_response(method(images, times, valid=valid), images, times, valid=valid)
 
 
 def share_curve(method: Recover) -> Recover:
@@ -118,7 +113,7 @@ def find_widest_gap(Z: ArrayLike) -> int:
     99
     """
     Z = np.asarray(Z)
-    inside = (Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)
+    inside = (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
     shared, shown = Z[inside & (inside.sum(axis=1, keepdims=True) > 1)], Z[inside]
     if not len(shown):
         return 256
@@ -134,7 +129,7 @@ def measure_spread(method: Recover, fit: Bracket, held: Bracket) -> float:
         g = method(fit.images, fit.times, valid=fit.valid)
     except ValueError:
         return np.inf
-    E = merge_with_quality(held.images, held.times, g, weights.gaussian(len(g)), valid=held.valid).E
+    E = merge.merge_with_quality(held.images, held.times, g, weights.gaussian(len(g)), valid=held.valid).E
     medians = consistency.measure_level_exposures(held.images, held.times, E, valid=held.valid)
     spreads = [consistency.measure_spread(one[:, None]) for one in medians.swapaxes(0, 1)]
     return float(np.nan_to_num(np.mean(spreads), nan=np.inf))
@@ -150,7 +145,7 @@ def choose_response(response: Method, bracket: Bracket) -> Choice:
     if response != "auto" or bracket.linear:
         method = find_validated_method("linear" if response == "auto" else response)
         return Choice(method, measure_spread(method, fit, held))
-    Z = by_rank(fit.images, SAMPLES, valid=fit.valid).reshape(SAMPLES, len(fit.times), -1)
+    Z = sampling.by_rank(fit.images, SAMPLES, valid=fit.valid).reshape(SAMPLES, len(fit.times), -1)
     open_levels = any(find_widest_gap(Z[..., c]) > WIDEST_GAP for c in range(Z.shape[-1]))
     name, enough, spreads = "", np.inf, {}
     for one, method in CANDIDATES.items():
@@ -187,8 +182,8 @@ def find_response(response: Method, choice: Choice, bracket: Bracket) -> tuple[F
     try:
         g = space.recover(images, times, valid=valid)
     except ValueError as error:
-        raise ValueError(say("in_common", error=error)) from None
+        raise ValueError(doubts.say("in_common", error=error)) from None
     try:
-        return validate_response(g, images, times, valid=valid), (said,), ""
+        return plausibility.validate_response(g, images, times, valid=valid), (said,), ""
     except ValueError:
         return g, (said,), said

@@ -7,9 +7,8 @@ good light, 203 cd/m2 [ITU-R BT.2408]; so PQ, which ends at 10,000 cd/m2, has ro
 
 import numpy as np
 
-from hdrlab.core import gainmap, gamut
+from hdrlab.core import colour, gainmap, gamut
 from hdrlab.core.arrays import F32, F64, ArrayLike, as_picture, as_radiance
-from hdrlab.core.colour import decode_srgb
 from hdrlab.io.web import as_rgb
 from hdrlab.tonemap.transfer import BRIGHTEST, pq
 
@@ -30,5 +29,5 @@ def signal(hdr: ArrayLike, *, primaries: str = "bt2020") -> F64:
 
 def light(picture: ArrayLike, E: ArrayLike, *, headroom: float = np.inf) -> F32:
     """Return the light of a map (H, W, 3), 1 = white, as bright in the mean of logarithms as its picture."""
-    sdr = decode_srgb(as_rgb(as_picture(picture)) / np.float32(255))
+    sdr = colour.decode_srgb(as_rgb(as_picture(picture)) / np.float32(255))
     return gainmap.expose(as_rgb(as_radiance(E)), sdr, headroom)

@@ -10,10 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.core import weights
+from hdrlab.core import steps, weights
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.steps import last
 from hdrlab.diagnostics import consistency, motion
 from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions, warn_of_contradictions
 from hdrlab.diagnostics.doubts import say
@@ -22,9 +21,8 @@ from hdrlab.fast.merge import Expendable, merge_with_quality
 from hdrlab.pipeline import recovery, timing
 from hdrlab.pipeline.assembly import Assembly, Method, Table, take_frames
 from hdrlab.pipeline.registration import aligned
-from hdrlab.radiance import flare as lens
+from hdrlab.radiance import flare as lens, scales
 from hdrlab.radiance.merge import METHODS, Merged
-from hdrlab.radiance.scales import fit_unit
 
 STAGES = ("align", "times", "response", "merge", "compare")
 TIMES = ("correct", "stated", "estimate")
@@ -92,7 +90,7 @@ def assemble(bracket: Bracket, **knobs: Any) -> Assembly:
     >>> assembly.E.shape, assembly.doubts
     ((96, 144, 3), ())
     """
-    return last(assemble_steps(bracket, **knobs))
+    return steps.last(assemble_steps(bracket, **knobs))
 
 
 def assemble_steps(
@@ -207,7 +205,7 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     """Return the Assembly with E in cd/m^2, by what a meter read at a pixel of it: see `scales.fit_unit`."""
     if state.quality[y : y + 1, x : x + 1].any():
         raise ValueError(f"expected a place that the photographs measured, got {x},{y}, which none did")
-    k = fit_unit(state.E, x, y, reading)
+    k = scales.fit_unit(state.E, x, y, reading)
     note = f"1 in the map is 1 cd/m^2: {reading:g} cd/m^2 were read at {x},{y}"
     s = None if state.s is None else state.s * np.float32(k)
     return state._replace(E=state.E * np.float32(k), s=s, notes=(*state.notes, note))

@@ -11,8 +11,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, as_radiance
 from hdrlab.core.optional import tifffile
-from hdrlab.io import decode
-from hdrlab.io.files import replacing
+from hdrlab.io import decode, files
 
 
 def read(path: str | Path) -> F32:
@@ -69,6 +68,6 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     ((2, 3, 3), ['unit: cd/m2'])
     """
     E, text = as_radiance(E), "\n".join(comments).encode()
-    with replacing(path) as name:
+    with files.replacing(path) as name:
         kind = decode.KINDS[E.shape[2] if E.ndim == 3 else 1].lower()
         tifffile.imwrite(name, E, photometric=kind, metadata=None, description=text or None)

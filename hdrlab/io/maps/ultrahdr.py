@@ -16,12 +16,10 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from hdrlab.core import gainmap
+from hdrlab.core import colour, gainmap
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_picture, as_radiance, describe
-from hdrlab.core.colour import decode_srgb
-from hdrlab.io import files
+from hdrlab.io import decode, files
 from hdrlab.io.codecs import DECODERS, jpeg_end
-from hdrlab.io.decode import BEST_COMPRESSION_RATIO, Header, look, upright
 from hdrlab.io.photos import PICTURES, read_photo
 from hdrlab.io.web import as_rgb
 
@@ -60,7 +58,7 @@ def read(path: str | Path) -> F32:
     >>> read(file).round(2)[0, 0].tolist()
     [0.5, 0.5, 0.5]
     """
-    sdr, header = decode_srgb(read_photo(path) / np.float32(255)), look(path)
+    sdr, header = colour.decode_srgb(read_photo(path) / np.float32(255)), decode.look(path)
     try:
         part = _find(Path(path).read_bytes())
         return np.maximum(gainmap.apply_gain(sdr, _decode(header, part), **_meaning(part)), 0)
@@ -97,7 +95,7 @@ def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroo
     if picture.shape != E.shape or not 1 < headroom <= 2**16:
         got = f"{describe(picture)}, {describe(E)} and {headroom}"
         raise ValueError(f"expected picture and radiance of one shape, headroom of 1 to 65536; got {got}")
-    sdr = decode_srgb(DECODERS["JPEG"](_jpeg(picture, how), None) / np.float32(255))
+    sdr = colour.decode_srgb(DECODERS["JPEG"](_jpeg(picture, how), None) / np.float32(255))
     hdr = gainmap.expose(E, sdr, headroom)
     low, high = gainmap.find_range(gainmap.log_gain(sdr, hdr))
     g = np.rint(255 * gainmap.gain_map(sdr, hdr, low, high)).astype(np.uint8)
@@ -177,12 +175,12 @@ def _from_xmp(part: bytes) -> Array:
     return np.concatenate([*said[:2], np.transpose(np.broadcast_arrays(*said[2:])).ravel()])
 
 
-def _decode(header: Header, part: bytes) -> F32:
+def _decode(header: decode.Header, part: bytes) -> F32:
     """Return the gain map, upright and of the picture's size and channels."""
     height, width = header.shape[:2] if header.orientation < 5 else header.shape[1::-1]
     # of what Pillow thinks odd in a gain map's own EXIF nobody is to be told
     with warnings.catch_warnings(action="ignore"), Image.open(io.BytesIO(part), formats=("JPEG",)) as image:
-        least = image.height * image.width // BEST_COMPRESSION_RATIO
+        least = image.height * image.width // decode.BEST_COMPRESSION_RATIO
         files.check_size(header.path, *image.size[::-1], least, available=len(part))
         g = image.convert("L" if len(header.shape) == 2 else "RGB").resize((width, height))
-    return upright(np.asarray(g, np.float32) / 255, header.orientation)
+    return decode.upright(np.asarray(g, np.float32) / 255, header.orientation)
