@@ -7,23 +7,20 @@ the kernel stays as it is. It is the practice tier: it keeps mistakes apart, and
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from hdrlab.course import grading, plan as plans, variants as choices
-from hdrlab.course.code import closure
-from hdrlab.course.code.names import imported
+from hdrlab.course import grading, plan as plans, submission, variants as choices
+from hdrlab.course.code import closure, names
 from hdrlab.course.material import handouts
-from hdrlab.course.reports import feedback
-from hdrlab.course.reports.results import Result
-from hdrlab.course.submission import Submission
+from hdrlab.course.reports import feedback, results
 
 PRACTICE = plans.Conditions(tier="practice")
-_latest: dict[str, Result] = {}  # of each task in this kernel, for the homework's bar
+_latest: dict[str, results.Result] = {}  # of each task in this kernel, for the homework's bar
 _plan: dict[str, plans.Homework] = {}  # the homeworks whose sheets said in this kernel what is asked
 
 
 class Feedback:
     """A Result as a notebook shows it; as text, what a terminal would show."""
 
-    def __init__(self, result: Result, homework: plans.Homework) -> None:
+    def __init__(self, result: results.Result, homework: plans.Homework) -> None:
         self.result, self.homework = result, homework
 
     @property
@@ -64,7 +61,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     sources, _ = closure.closed(_history(), tasks, handouts.given_cells(homework.name))
     absent = [task for task in tasks if task not in sources]
     missing = tuple(f"{task} is not there yet: run the cell that defines it" for task in absent)
-    read = Submission(sources, missing, "", tuple(imported(sources.values())))
+    read = submission.Submission(sources, missing, "", tuple(names.imported(sources.values())))
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)

@@ -20,8 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from hdrlab.course import plan
-from hdrlab.course.checks import MISTAKES, rewording
-from hdrlab.course.checks.compare import as_listed, plain
+from hdrlab.course.checks import MISTAKES, compare, rewording
 from hdrlab.course.code import inline
 
 Call = tuple[Sequence[Any], dict[str, Any], Any]
@@ -159,7 +158,7 @@ GAUGES: dict[str, Callable[[Any], Any]] = {
 def in_gauge(task: str, answer: Any) -> Any:
     """Return an answer in the gauge or scale in which it is compared; one of another form as it is."""
     try:
-        return GAUGES[task](as_listed(answer) if task in ("hat", "recover", "solve") else answer)
+        return GAUGES[task](compare.as_listed(answer) if task in ("hat", "recover", "solve") else answer)
     except Exception:  # which a student may answer in any form
         return answer
 
@@ -180,7 +179,7 @@ def call_quietly(function: Callable[..., Any], given: Sequence[Any], named: dict
     with warnings.catch_warnings(), np.errstate(all="ignore"):
         warnings.simplefilter("ignore")
         try:
-            return plain(function(*given, **named))
+            return compare.plain(function(*given, **named))
         except Exception:  # a wrong function may fail in any way, and then it has no answer
             return None
 
@@ -199,7 +198,7 @@ def difference(a: Any, b: Any) -> float:
         return max((difference(one, other) for one, other in zip(a, b, strict=True)), default=0.0)
     if a is None or b is None or isinstance(b, bytes | str):
         return 0.0 if type(a) is type(b) and a == b else MOST
-    a = as_listed(a) if isinstance(a, tuple | list) else a
+    a = compare.as_listed(a) if isinstance(a, tuple | list) else a
     if isinstance(a, tuple | list | dict):  # which may be ragged
         return MOST
     a, b = np.asarray(a).squeeze(), np.asarray(b).squeeze()

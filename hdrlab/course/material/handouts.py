@@ -19,8 +19,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks import rewording
-from hdrlab.course.code import inline
-from hdrlab.course.code.closure import Cell
+from hdrlab.course.code import closure, inline
 from hdrlab.course.material import materials, stubs
 from hdrlab.course.plan import ByHand, Homework, Plan, Task
 from hdrlab.course.submission import cells_of
@@ -242,12 +241,12 @@ def write_text(file: Path, text: str) -> Path:
 
 
 @cache
-def cells(homework: str) -> tuple[Cell, ...]:
+def cells(homework: str) -> tuple[closure.Cell, ...]:
     """Return the cells of code in a homework's handout, out of our own copy of it, if there is one."""
     file = materials.folder("assignments") / f"{homework}.ipynb"
     return tuple(cells_of(file.read_bytes(), file.name)[0]) if file.is_file() else ()
 
 
-def given_cells(homework: str) -> tuple[Cell, ...]:
+def given_cells(homework: str) -> tuple[closure.Cell, ...]:
     """Return those that the handout gives."""
     return tuple(cell for cell in cells(homework) if cell.given)
