@@ -5,8 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.io import radiance
-from hdrlab.io.decode import look
+from hdrlab.io import decode, radiance
 from hdrlab.io.maps import exr, layers, pfm, rgbe
 from hdrlab.show.pages import wording
 
@@ -41,7 +40,7 @@ def describe_file(path: str | Path) -> dict[str, Any]:
 
 
 def _photo(path: str | Path) -> dict[str, Any]:
-    header = look(path, light=None)
+    header = decode.look(path, light=None)
     height, width, channels = (*header.shape, 1)[:3]
     return {
         "format": header.kind,

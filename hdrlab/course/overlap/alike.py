@@ -14,12 +14,11 @@ from typing import NamedTuple
 import numpy as np
 from copydetect import compare_files
 
-from hdrlab.course import variants
+from hdrlab.course import plan, variants
 from hdrlab.course.checks import rewording
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.code import inline
 from hdrlab.course.overlap import authored, similarity
-from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 from hdrlab.io.files import write
 from hdrlab.show.pages.templates import templates
@@ -46,7 +45,7 @@ class Row(NamedTuple):
 
 
 def write_steps(
-    out: Path, homework: Homework, handins: Mapping[str, Handin], secret: str = ""
+    out: Path, homework: plan.Homework, handins: Mapping[str, Handin], secret: str = ""
 ) -> Iterator[str]:
     """Write page and table of a class; yield each team when its work is read, the files are there at the end.
 
@@ -71,7 +70,7 @@ def write_steps(
     write(out / "similar.html", page(homework, each, found, asked), private=True)
 
 
-def asked_of(homework: Homework, work: authored.Work, secret: str) -> Asked:
+def asked_of(homework: plan.Homework, work: authored.Work, secret: str) -> Asked:
     """Return of which tasks a team is asked which variant, and its sheet another."""
     tasks = variants.draw(homework, work.team, secret, work.variants).tasks
     own, said = {task.id: task.variant for task in tasks}, work.variants
@@ -89,7 +88,7 @@ def exchanged(one: Asked, other: Asked) -> int:
     return len(one[1].items() & other[0].items()) + len(other[1].items() & one[0].items())
 
 
-def library(homework: Homework) -> str:
+def library(homework: plan.Homework) -> str:
     """Return the library's functions of a homework as `authored` reads those of a team."""
     alone = {task.id: inline.inlined({task.id: task.function})[task.id].text for task in homework.tasks}
     texts = [
@@ -100,7 +99,7 @@ def library(homework: Homework) -> str:
     return "\n".join(authored.own(text, homework.name, {*alone} - {name}) for name, text in texts)
 
 
-def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[authored.Work]:
+def works(homework: plan.Homework, handins: Mapping[str, Handin]) -> Iterator[authored.Work]:
     """Yield what each team wrote itself, by the teams' names; an archive is unpacked for it."""
     tasks = [task.id for task in homework.tasks]
     for team, one in sorted(handins.items()):
@@ -108,7 +107,7 @@ def works(homework: Homework, handins: Mapping[str, Handin]) -> Iterator[authore
 
 
 def page(
-    homework: Homework,
+    homework: plan.Homework,
     each: Sequence[similarity.Printed],
     found: similarity.Likeness,
     asked: Mapping[str, Asked],

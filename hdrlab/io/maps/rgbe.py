@@ -19,8 +19,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, ArrayLike, NDArray, as_radiance
 from hdrlab.core.optional import imagecodecs
-from hdrlab.io.decode import upright
-from hdrlab.io.files import check_size, replacing
+from hdrlab.io import decode, files
 
 # the last line of the header, such as -Y 768 +X 512
 RESOLUTION = re.compile(r"([-+])([XY]) +(\d{1,10}) +([-+])([XY]) +(\d{1,10})")
@@ -93,9 +92,9 @@ def read(path: str | Path) -> F32:
     if 8 <= length <= 32767 and b"\2\2\0" <= data[:3] < b"\2\2\x80" and len(data) > 3:
         E = _run_lengths(path, data, scanlines, length)
     else:
-        check_size(path, scanlines, length, 4 * scanlines, available=len(data))
+        files.check_size(path, scanlines, length, 4 * scanlines, available=len(data))
         E = to_radiance(_pixels(path, data, scanlines, length))
-    E = np.ascontiguousarray(upright(E, 1 + AXES.index(header.axes)))
+    E = np.ascontiguousarray(decode.upright(E, 1 + AXES.index(header.axes)))
     if np.any(header.exposure != 1):
         E /= header.exposure.astype(np.float32)
     return E
@@ -129,7 +128,7 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
         raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
     E = np.broadcast_to(E if E.ndim == 3 else E[..., None], (height, width, 3))
     room = bytearray(BAND_ROWS * (4 + 4 * (width + width // 128 + 1)))  # for a band in which nothing repeats
-    with replacing(path) as name, open(name, "wb") as file:
+    with files.replacing(path) as name, open(name, "wb") as file:
         said = "".join(f"# {line}\n" for one in comments for line in wrap(one, COMMENT))
         head = f"#?RADIANCE\n{said}FORMAT=32-bit_rle_rgbe\n\n-Y {height} +X {width}\n"
         file.write(head.encode("ascii", "replace"))
@@ -163,7 +162,7 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
     if (stated := data[2] * 256 + data[3]) != length:
         raise ValueError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
     least = scanlines * (4 + 4 * 2 * -(-length // LONGEST_RUN))
-    check_size(path, scanlines, length, least, available=len(data))
+    files.check_size(path, scanlines, length, least, available=len(data))
     E = np.empty((scanlines, length, 3), np.float32)
     try:
         return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
@@ -221,7 +220,7 @@ def parse(path: str | Path, head: bytes) -> Header:
     if axis == axis2:
         raise ValueError(f"{path}: expected one X and one Y in the resolution, got {line[:60]!r}")
     height, width = (int(first), int(second))[:: 1 if axis == "Y" else -1]
-    check_size(path, height, width)
+    files.check_size(path, height, width)
     return Header(height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start)
 
 
