@@ -1,4 +1,4 @@
-"""Commands about exposure: which photographs to take, and what a meter would have said."""
+"""Commands about exposure: which photographs to take, to take them, and what a meter would have said."""
 
 import tomllib
 from collections.abc import Sequence
@@ -7,7 +7,7 @@ from typing import Any
 
 import click
 
-from hdrlab.cli import common
+from hdrlab.cli import common, photographs
 
 MODES = ("spot", "partial", "centre", "average", "matrix")
 
@@ -121,6 +121,44 @@ def correct(photo: Path, out: Path, by: str, way: str, target: float) -> None:
     click.echo(f"what matters: {found.by}, {part}, mean level {found.before:.0f}")
     decision = f"{found.delta:+.1f} stops: mean level {found.after:.0f}" if found.delta else "left as it is"
     click.echo(f"{out}: {decision}")
+
+
+@common.command()
+@click.option("-o", "--out", required=True, type=common.OUT, help="Folder for the photographs, new or empty.")
+@click.option("--frames", type=click.IntRange(2), default=7, help="How many photographs.")
+@click.option("--stops", type=click.FloatRange(0, min_open=True), default=2.0, help="From one to the next.")
+@click.option("--assemble", "map_", type=common.OUT, help="Radiance map to make of them: .hdr, .exr, ...")
+def shoot(out: Path, frames: int, stops: float, map_: Path | None) -> None:
+    """Take a bracket with the camera on the USB cable.
+
+    Focus, ISO and white balance are fixed, and put back at the end; the aperture stays. The middle time is
+    what the camera then shows: in A (Av) what its meter says, in M what you have set. The others are those of
+    its times that lie nearest. Each photograph is in the folder as soon as it is taken, with its time in
+    exposures.csv. This wants the extra `camera`, which is for Linux and macOS.
+    """
+    from hdrlab.capture import exposure, planning
+    from hdrlab.io import files, radiance, sequence, tethered
+
+    common.require("camera", ["gphoto2"])
+    sequence.require_new(out)
+    if map_:
+        radiance.format_of(map_)  # an unknown suffix is better known before the work than after it
+    with tethered.connected() as camera:
+        common.say("note", camera.fix("light"))
+        metered, names = camera.shutter()
+        dial = exposure.read_dial(names)
+        chosen = planning.around(exposure.seconds(metered), dial.values, frames, stops)
+        common.say("note", camera.fix("mode"))
+        out.mkdir(exist_ok=True)
+        lines = ["file,exposure_time_s"]
+        for j in common.progress(chosen, "taking", frames):
+            taken = camera.photograph(dial.names[j], out / f"{len(lines):02d}")
+            lines.append(f"{taken[0].name},{dial.values[j]:.6g}")
+            files.write(out / "exposures.csv", "\n".join(lines) + "\n")
+            click.echo(f"{taken[0]}: {dial.names[j]}")
+    if map_:
+        words = ["-o", str(map_), "--times", str(out / "exposures.csv"), "--", str(out)]
+        photographs.assemble.main(words, standalone_mode=False)
 
 
 def _camera(file: Path, known: Sequence[str]) -> dict[str, Any]:
