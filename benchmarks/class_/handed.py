@@ -25,7 +25,7 @@ from benchmarks.measure import ROOT
 from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
 from hdrlab.course.checks import misconceptions
-from hdrlab.course.classroom import imitation
+from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import sheets
 
@@ -98,7 +98,7 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
         some = [homework._replace(tasks=homework.tasks[: 1 + k % (len(ids) - 1)]) for k in range(count)]
         return [(part.tasks[-1].id, ".ipynb", _filled(homework, part)) for part in some]
     if kind == "blank":
-        blank = imitation.notebook(homework).encode()
+        blank = solutions.notebook(homework).encode()
         each = [("handout", blank), ("cut short", blank[:3000]), ("no notebook", b"hello"), ("empty", b"")]
         return [(which, ".ipynb", data) for which, data in islice(cycle(each), count)]
     if kind == "attack":
@@ -109,8 +109,8 @@ def _of(kind: str, count: int, homework: Homework, target: Path) -> list[Made]:
 
 
 def _right(homework: Homework) -> list[Made]:
-    cells = imitation.texts(homework)
-    notebook, script = imitation.notebook(homework, cells).encode(), imitation.script(cells).encode()
+    cells = solutions.texts(homework)
+    notebook, script = solutions.notebook(homework, cells).encode(), solutions.script(cells).encode()
     archive = packed({"work/hw2.ipynb": notebook, "work/notes.txt": b"All of it.\n"})
     return [("notebook", ".ipynb", notebook), ("script", ".py", script), ("archive", ".zip", archive)]
 
@@ -118,11 +118,11 @@ def _right(homework: Homework) -> list[Made]:
 @cache
 def _mistaken(name: str) -> bytes:
     homework = plan.read().homeworks["hw2"]
-    return imitation.notebook(homework, imitation.texts(homework, [name])).encode()
+    return solutions.notebook(homework, solutions.texts(homework, [name])).encode()
 
 
 def _filled(homework: Homework, part: Homework) -> bytes:
-    return imitation.notebook(homework, imitation.texts(part)).encode()
+    return solutions.notebook(homework, solutions.texts(part)).encode()
 
 
 def attack(text: str, task: str) -> bytes:

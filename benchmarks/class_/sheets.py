@@ -7,7 +7,7 @@ from typing import Any
 from benchmarks.measure import ROOT
 from hdrlab.course import plan, submission, variants
 from hdrlab.course.checks import rewording
-from hdrlab.course.material import variant_sheets
+from hdrlab.course.material import handouts
 
 SECRET = "sheets of a class"
 COUNT, MINUTES = 300, 3
@@ -29,7 +29,9 @@ def build(folder: Path, count: int = COUNT) -> dict[str, Any]:
     """Return how long the sheets of a class take, and whether each asks what its student is graded by."""
     asked, teams = varied(), [f"s{number:03d}" for number in range(count)]
     clock, processor = time.perf_counter(), time.process_time()
-    files = [*variant_sheets.build_steps(asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None)]
+    files = [
+        *handouts.build_for_teams_steps(asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None)
+    ]
     clock, processor = time.perf_counter() - clock, time.process_time() - processor
     wrong, different = 0, set()
     for file in files:

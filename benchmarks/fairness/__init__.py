@@ -31,8 +31,8 @@ from benchmarks.experiments import Experiment, Hold, along, at_least, at_most
 from hdrlab.course import plan
 from hdrlab.course.checks import compare, misconceptions, plugin
 from hdrlab.course.checks.subject import TIMEOUT, NoAnswer, Subject
-from hdrlab.course.classroom import imitation
 from hdrlab.course.code.names import imported
+from hdrlab.course.material import solutions
 from hdrlab.course.plan import Homework
 from hdrlab.course.reports import causes
 from hdrlab.course.reports.results import Check, Outcome
@@ -72,7 +72,7 @@ def mistakes() -> dict[str, dict[str, str]]:
         for one in misconceptions.known():
             if one.task in [task.id for task in homework.tasks]:
                 own = tuple(task for task in homework.tasks if task.id == one.task)
-                cells = imitation.texts(homework._replace(tasks=own), [one.name])
+                cells = solutions.texts(homework._replace(tasks=own), [one.name])
                 found.setdefault(one.task, {})[one.name] = cells[one.task]
     return found
 

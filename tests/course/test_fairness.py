@@ -9,7 +9,7 @@ import scoring
 
 from hdrlab.course import grading, plan, submission
 from hdrlab.course.checks import compare, inprocess
-from hdrlab.course.classroom import imitation
+from hdrlab.course.material import solutions
 from hdrlab.course.reports import results
 
 FAIRNESS = Path(__file__).parents[2] / "benchmarks" / "fairness"
@@ -60,7 +60,7 @@ def test_the_benchmark_gives_the_points_and_the_name_that_check_gives():
     fairness = pytest.importorskip("benchmarks.fairness")
     way, whole_sheet, task = "hat_zero_in_the_middle", plan.read().homeworks["hw2"], plan.read().task("hat")
     homework = whole_sheet._replace(tasks=(task,))
-    source = imitation.texts(homework, [way])["hat"]
+    source = solutions.texts(homework, [way])["hat"]
     conditions = plan.Conditions("practice", "student 1", "fairness", draw=False)
     read = submission.Submission({"hat": source}, (), "", ())
     *_, result = grading.check_steps(read, homework, conditions)

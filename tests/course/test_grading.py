@@ -12,9 +12,8 @@ import processes
 import pytest
 
 from hdrlab.course import grading, plan
-from hdrlab.course.classroom import imitation
 from hdrlab.course.code import inline
-from hdrlab.course.material import handouts, materials
+from hdrlab.course.material import handouts, materials, solutions
 from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import feedback, gradebook, results
 from hdrlab.course.sandbox import tiers
@@ -80,7 +79,7 @@ def test_a_wrong_function_loses_what_it_breaks_and_is_recognised(graded):
 
 
 def test_a_difference_of_curves_is_drawn_with_an_alt_text(graded):
-    wrong = imitation.texts(of("hw2", "gsolve"), ["gsolve_smoothness_not_weighted"])["gsolve"]
+    wrong = solutions.texts(of("hw2", "gsolve"), ["gsolve_smoothness_not_weighted"])["gsolve"]
     found = graded(wrong, of("hw2", "gsolve"))
     drawn = [one.drawing for one in found.checks if one.drawing.frames]
     assert drawn and all("they differ by" in alt for drawing in drawn for alt in drawing.alts)
@@ -141,7 +140,7 @@ def test_a_reply_that_is_lost_fails_its_check_and_no_other(graded):
 
 
 def test_lambda_read_as_1_costs_half_and_is_told_once(graded):
-    wrong = imitation.texts(of("hw2", "gsolve"), ["gsolve_lambda_read_as_1"])["gsolve"]
+    wrong = solutions.texts(of("hw2", "gsolve"), ["gsolve_lambda_read_as_1"])["gsolve"]
     found = graded(wrong, of("hw2", "gsolve"), PRACTICE._replace(draw=False))
     assert 15 <= found.score < 20
     assert [one.follows for one in found.checks if one.outcome != "holds"].count("") == 1

@@ -10,7 +10,7 @@ import scoring
 
 from hdrlab.course import plan, submission
 from hdrlab.course.checks import inprocess, misconceptions
-from hdrlab.course.classroom import imitation
+from hdrlab.course.material import solutions
 
 HERE = Path(__file__).parents[1]
 HOMEWORKS = plan.read().homeworks
@@ -23,7 +23,7 @@ def function(name, task, cells, folder):
     """Return a task's function as the grader finds it in a notebook."""
     homework = HOMEWORKS[OF_TASK[task]]
     file = folder / f"{name}.ipynb"
-    file.write_text(imitation.notebook(homework, cells), encoding="utf8")
+    file.write_text(solutions.notebook(homework, cells), encoding="utf8")
     scope = {"__name__": "a student's module"}
     exec(submission.tasks_of(file, [task]).sources[task], scope)
     return scope[task]
@@ -31,7 +31,7 @@ def function(name, task, cells, folder):
 
 @pytest.mark.parametrize("one", KNOWN, ids=[one.name for one in KNOWN])
 def test_a_mistake_stands_by_itself(one, tmp_path):
-    cells = imitation.texts(HOMEWORKS[OF_TASK[one.task]], [one.name])
+    cells = solutions.texts(HOMEWORKS[OF_TASK[one.task]], [one.name])
     for text in cells.values():
         for node in ast.walk(ast.parse(text)):
             names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
@@ -51,7 +51,7 @@ def small(task):
 
 @pytest.mark.parametrize("one", HW2, ids=[one.name for one in HW2])
 def test_an_imitated_mistake_answers_as_its_file_does(one, tmp_path):
-    wrong = function(one.name, one.task, imitation.texts(HOMEWORKS["hw2"], [one.name]), tmp_path)
+    wrong = function(one.name, one.task, solutions.texts(HOMEWORKS["hw2"], [one.name]), tmp_path)
     for given, named in small(one.task):
         came, filed = (misconceptions.call_quietly(asked, given, named) for asked in (wrong, one.function))
         assert filed is not None and misconceptions.difference(came, filed) == 0
@@ -59,11 +59,11 @@ def test_an_imitated_mistake_answers_as_its_file_does(one, tmp_path):
 
 @pytest.mark.parametrize("homework", HOMEWORKS.values(), ids=HOMEWORKS)
 def test_without_a_mistake_it_is_the_solution_and_without_cells_the_handout(homework, tmp_path):
-    cells = imitation.texts(homework)
-    for name, text in (("a.ipynb", imitation.notebook(homework, cells)), ("a.py", imitation.script(cells))):
+    cells = solutions.texts(homework)
+    for name, text in (("a.ipynb", solutions.notebook(homework, cells)), ("a.py", solutions.script(cells))):
         (tmp_path / name).write_text(text, encoding="utf8")
         found = submission.tasks_of(tmp_path / name, [task.id for task in homework.tasks])
         assert set(found.sources) == {task.id for task in homework.tasks}
         assert not any("is yours to write" in source for source in found.sources.values())
     handout = (HERE.parent / "assignments" / f"{homework.name}.ipynb").read_text(encoding="utf8")
-    assert imitation.notebook(homework) == handout
+    assert solutions.notebook(homework) == handout

@@ -14,10 +14,10 @@ import scoring
 from hdrlab import cli
 from hdrlab.course import grading, notebook, plan, submission, variants
 from hdrlab.course.checks import SPECIFICATION, inprocess, misconceptions, rewording
-from hdrlab.course.classroom import imitation, roster
+from hdrlab.course.classroom import roster
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.export import autograder
-from hdrlab.course.material import handouts, materials
+from hdrlab.course.material import handouts, materials, solutions
 from hdrlab.course.overlap import alike, authored, similarity
 from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import sheets
@@ -248,9 +248,9 @@ def test_each_named_mistake_is_named_for_every_variant_and_costs_points_but_not_
 @pytest.mark.parametrize("task", TASKS)
 def test_mistakes_of_variants_can_be_imitated_for_a_class(task):
     for variant in rewording.every(task):
-        right = imitation.texts(homework_of(task, variant))
+        right = solutions.texts(homework_of(task, variant))
         for one in misconceptions.of_task(asked(task, variant)):
-            assert imitation.texts(homework_of(task, variant), [one.name])[task] != right[task]
+            assert solutions.texts(homework_of(task, variant), [one.name])[task] != right[task]
 
 
 def test_alignment_takes_whatever_exclusion_bitmap_its_student_was_asked():

@@ -5,5 +5,5 @@ run                      a class's grading: its pieces, their results, the feedb
 journal                  work that is done once, whatever happens meanwhile
 executors                who does it: processes of this machine, workers of a Dask cluster
 overview, marks          what comes of it: gradebooks, and a page about the class
-imitation, toy           made submissions, and a toy class of them
+toy                      a class of made submissions
 """

@@ -17,7 +17,7 @@ from typing import Any, NamedTuple
 
 from hdrlab.course import plan
 from hdrlab.course.archives.packing import packed
-from hdrlab.course.classroom import imitation
+from hdrlab.course.material import solutions
 from hdrlab.course.reports import sheets
 from hdrlab.show.pages.templates import render_page
 
@@ -42,8 +42,8 @@ def hand_ins(homework: plan.Homework) -> Iterator[Handed]:
     """Yield what the toy class has handed in: what toy.toml says of each file."""
     for name, one in HANDED.items():
         done = [task for task in homework.tasks if "done" not in one or task.id in one["done"]]
-        cells = imitation.texts(homework._replace(tasks=tuple(done)), one.get("mistakes", ()))
-        text = imitation.script(cells) if name.endswith(".py") else imitation.notebook(homework, cells)
+        cells = solutions.texts(homework._replace(tasks=tuple(done)), one.get("mistakes", ()))
+        text = solutions.script(cells) if name.endswith(".py") else solutions.notebook(homework, cells)
         data = ATTACKS.read_bytes() if one.get("attacks") else text.encode()
         if beside := one.get("beside"):
             data = packed({"hw2.ipynb": data, **{other: held.encode() for other, held in beside.items()}})
