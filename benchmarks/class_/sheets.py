@@ -7,7 +7,7 @@ from typing import Any
 from benchmarks.measure import ROOT
 from hdrlab.course import plan, submission, variants
 from hdrlab.course.checks import rewording
-from hdrlab.course.material import handouts
+from hdrlab.course.material import solutions
 
 SECRET = "sheets of a class"
 COUNT, MINUTES = 300, 3
@@ -30,7 +30,7 @@ def build(folder: Path, count: int = COUNT) -> dict[str, Any]:
     asked, teams = varied(), [f"s{number:03d}" for number in range(count)]
     clock, processor = time.perf_counter(), time.process_time()
     files = [
-        *handouts.build_for_teams_steps(asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None)
+        *solutions.build_for_teams_steps(asked, ROOT / "solutions", teams, SECRET, folder / "sheets", None)
     ]
     clock, processor = time.perf_counter() - clock, time.process_time() - processor
     wrong, different = 0, set()

@@ -29,7 +29,7 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_clas
     With --variants, sheets of which the plan's parameters are drawn by --secret-file, a folder for each team.
     """
     from hdrlab.course.classroom import roster
-    from hdrlab.course.material import handouts
+    from hdrlab.course.material import handouts, solutions as filled
     from hdrlab.course.site import execute
 
     common.require("course", ["jupytext"])
@@ -42,7 +42,7 @@ def build(sources: Path, out: Path, solutions: Path | None, jobs: int, **of_clas
                 raise ValueError("expected --secret-file with --variants, which draws them, as for grade")
             click.echo(note, nl=bool(note), err=True)
             teams = roster.read(file).teams()
-            made = handouts.build_for_teams_steps(plan, sources, teams, secret, out, solutions)
+            made = filled.build_for_teams_steps(plan, sources, teams, secret, out, solutions)
         common.list_files(common.progress(made, "handouts"))
     except execute.NotebookError as error:
         raise click.ClickException(str(error)) from None

@@ -13,13 +13,11 @@ use_plan("hw2")   gets the points of each task, so that `check` knows them where
 import json
 import tempfile
 import textwrap
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
-from itertools import product
 from pathlib import Path
 from typing import Any, NamedTuple
 
-from hdrlab.course import variants
 from hdrlab.course.checks import rewording
 from hdrlab.course.code import closure, inline
 from hdrlab.course.material import materials, stubs
@@ -191,33 +189,6 @@ def build_steps(
         yield from _own_checks(plan.homeworks[one.homework], assignments)
     if solutions is not None:
         yield from _solved(made, assignments, solutions, jobs)
-
-
-def build_for_teams_steps(
-    plan: Plan, sources: Path, teams: Iterable[str], secret: str, assignments: Path, solutions: Path | None
-) -> Iterator[Path]:
-    """Write the homeworks of which parameters vary for each team, in folders of their names; yield each file.
-
-    Parameters
-    ----------
-    plan, sources, assignments, solutions : as `build_steps` takes them; solutions are not run
-    teams : who work together, and get one sheet
-    secret : the course's, which draws the variants
-
-    Raises
-    ------
-    ValueError
-        Where no task of the plan has parameters, and for a source that does not ask what a variant rewords.
-    """
-    varied = [one for one in plan.homeworks.values() if any(task.parameters for task in one.tasks)]
-    if not varied:
-        raise ValueError("expected a plan that gives parameters to a task, got one that asks all the same")
-    for team, homework in product(teams, varied):
-        made = made_of(plan, variants.draw(homework, team, secret), sources)
-        for folder, sheet in ((assignments, made.assignment), (solutions, made.solution)):
-            if folder is not None:
-                file = folder / team / f"{homework.name}.ipynb"
-                yield write_text(file, to_text(sheet))
 
 
 def made_of(plan: Plan, homework: Homework, sources: Path) -> Handout:

@@ -1,4 +1,4 @@
-"""Handouts filled in, rightly or with a well-known mistake, and the pack of model solutions for instructors.
+"""Handouts filled in, rightly or with a well-known mistake; the pack of model solutions; a sheet for each team.
 
 What is right is the library's own function, that of the library that is installed, and a mistake changes it.
 Neither the wheel nor the source distribution holds the pack.
@@ -7,9 +7,11 @@ Neither the wheel nor the source distribution holds the pack.
 import json
 from collections.abc import Iterable, Iterator, Mapping
 from functools import reduce
+from itertools import product
 from pathlib import Path
 from typing import Any
 
+from hdrlab.course import variants
 from hdrlab.course.checks.misconceptions import put_in, solutions, task_of
 from hdrlab.course.material import handouts, materials
 from hdrlab.course.plan import Homework, Plan
@@ -66,3 +68,30 @@ def write(plan: Plan, folder: Path) -> Iterator[Path]:
             lines = len(cells[task.id].splitlines())
             table += f"| {name} | `{task.id}` | {task.points:g} | {lines} | `{task.function}` |\n"
     yield handouts.write_text(folder / "README.md", table)
+
+
+def build_for_teams_steps(
+    plan: Plan, sources: Path, teams: Iterable[str], secret: str, assignments: Path, solutions: Path | None
+) -> Iterator[Path]:
+    """Write the homeworks of which parameters vary for each team, in folders of their names; yield each file.
+
+    Parameters
+    ----------
+    plan, sources, assignments, solutions : as `handouts.build_steps` takes them; solutions are not run
+    teams : who work together, and get one sheet
+    secret : the course's, which draws the variants
+
+    Raises
+    ------
+    ValueError
+        Where no task of the plan has parameters, and for a source that does not ask what a variant rewords.
+    """
+    varied = [one for one in plan.homeworks.values() if any(task.parameters for task in one.tasks)]
+    if not varied:
+        raise ValueError("expected a plan that gives parameters to a task, got one that asks all the same")
+    for team, homework in product(teams, varied):
+        made = handouts.made_of(plan, variants.draw(homework, team, secret), sources)
+        for folder, sheet in ((assignments, made.assignment), (solutions, made.solution)):
+            if folder is not None:
+                file = folder / team / f"{homework.name}.ipynb"
+                yield handouts.write_text(file, handouts.to_text(sheet))
