@@ -1,4 +1,4 @@
-"""Handouts filled in, rightly or with a well-known mistake; the pack of model solutions; a sheet for each team.
+"""Handouts filled in, rightly or with a well-known mistake; the pack of solutions; a sheet for each team.
 
 What is right is the library's own function, that of the library that is installed, and a mistake changes it.
 Neither the wheel nor the source distribution holds the pack.
