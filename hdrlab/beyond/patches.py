@@ -23,14 +23,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.beyond import synthesis
+from hdrlab.beyond import ldr_values, patchmatch, synthesis
 from hdrlab.beyond.bidirectional import Search, search, similarity, vote
-from hdrlab.beyond.ldr_values import as_values, resize_picture
-from hdrlab.beyond.patchmatch import identity_field
-from hdrlab.beyond.synthesis import Ramp, Scene
+from hdrlab.core import bracket, steps
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Indices
-from hdrlab.core.bracket import short_to_long
-from hdrlab.core.steps import last
 
 # where the search of both ways begins
 Fields = tuple[Indices, tuple[Indices, ...]]
@@ -38,7 +34,7 @@ Fields = tuple[Indices, tuple[Indices, ...]]
 # of the sides of a scale to those of the next coarser one
 SCALE_RATIO = 2**0.5
 # levels, 1 the top, between which the reference begins to be trusted, and ceases to be
-TRUSTED_LEVELS: tuple[Ramp, Ramp] = ((0.05, 0.2), (0.85, 0.95))
+TRUSTED_LEVELS: tuple[synthesis.Ramp, synthesis.Ramp] = ((0.05, 0.2), (0.85, 0.95))
 
 
 class State(NamedTuple):
@@ -60,7 +56,7 @@ class State(NamedTuple):
 
 
 def improve(
-    state: State, scene: Scene, fields: list[Fields], settings: Search, rng: np.random.Generator
+    state: State, scene: synthesis.Scene, fields: list[Fields], settings: Search, rng: np.random.Generator
 ) -> tuple[State, list[Fields]]:
     """Return the next state: search and vote in every exposure, merge, blend, extract [Sen12 algorithm 1]."""
     pictures, found, unlike = [], [], []
@@ -83,10 +79,10 @@ def plan_scales(shape: tuple[int, ...], coarsest: int) -> list[tuple[int, int]]:
     return [(round(shape[0] / ratio), round(shape[1] / ratio)) for ratio in ratios]
 
 
-def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None) -> Scene:
+def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int | None) -> synthesis.Scene:
     """Return the Scene of photographs in any order, checked."""
-    each = as_values(images, times, g)
-    order = short_to_long(np.asarray(images), each.t)
+    each = ldr_values.as_values(images, times, g)
+    order = bracket.short_to_long(np.asarray(images), each.t)
     place = len(order) // 2
     if reference is not None:
         if not 0 <= reference < len(order):
@@ -94,7 +90,7 @@ def as_scene(images: ArrayLike, times: ArrayLike, g: ArrayLike, reference: int |
         place = int(np.flatnonzero(order == reference)[0])
     alpha = synthesis.trapezoid(each.z[order[place]], *TRUSTED_LEVELS)
     v, noise, clipped, t = each.v[order], each.noise[order], each.clipped[order], each.t[order]
-    return Scene(v, noise, clipped, t, each.full, place, alpha)
+    return synthesis.Scene(v, noise, clipped, t, each.full, place, alpha)
 
 
 def synthesise_steps(
@@ -116,7 +112,7 @@ def synthesise_steps(
     generator, state, fields = np.random.default_rng(rng), None, None
     for scale, (shape, count) in enumerate(zip(sizes, plan_rounds(rounds, len(sizes)), strict=True)):
         scene = synthesis.resize_scene(finest, shape)
-        H = resize_picture(synthesis.guess_radiance(finest) if state is None else state.H, shape)
+        H = ldr_values.resize_picture(synthesis.guess_radiance(finest) if state is None else state.H, shape)
         H = H if state is None else synthesis.blend_reference(H, scene)
         state = State(scale, 0, H, synthesis.extract_exposures(H, scene), np.full(len(scene.t), np.nan))
         yield state
@@ -175,7 +171,7 @@ def synthesise(images: ArrayLike, times: ArrayLike, g: ArrayLike, **knobs: Any) 
     >>> bool(np.allclose(H, 32 / 128, rtol=1e-3))
     True
     """
-    H = last(synthesise_steps(images, times, g, **knobs)).H
+    H = steps.last(synthesise_steps(images, times, g, **knobs)).H
     return H[..., 0] if np.ndim(images) == 3 else H
 
 
@@ -189,4 +185,6 @@ def plan_rounds(rounds: tuple[int, int], count: int) -> list[int]:
 def start_fields(shape: tuple[int, int], count: int, side: int) -> list[Fields]:
     """Return where each search begins: where the patch stands, in the photograph of the same exposure."""
     h, w = (n - side + 1 for n in shape)
-    return [(identity_field(h, w, k), (identity_field(h, w),) * count) for k in range(count)]
+    return [
+        (patchmatch.identity_field(h, w, k), (patchmatch.identity_field(h, w),) * count) for k in range(count)
+    ]

@@ -21,10 +21,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.beyond import ldr_values
+from hdrlab.beyond import ldr_values, neighbours, synthesis
 from hdrlab.beyond.flow import Flow, halve_flow, lands_inside, tvl1, warp
-from hdrlab.beyond.neighbours import slide_windows
-from hdrlab.beyond.synthesis import Ramp, trapezoid
 from hdrlab.core import weights
 from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_table, as_times, levels
 
@@ -33,7 +31,7 @@ VALUE_TOLERANCE = np.float32(16 / 255)
 # weight of B at least: where all are clipped, the shorter one is the better bound
 LEAST_WEIGHT = np.float32(1e-4)
 # levels, 1 the top, between which a frame begins to be well exposed, and ceases to be
-EXPOSED_LEVELS: tuple[Ramp, Ramp] = ((0.02, 0.1), (0.85, 0.95))
+EXPOSED_LEVELS: tuple[synthesis.Ramp, synthesis.Ramp] = ((0.02, 0.1), (0.85, 0.95))
 
 
 class Frame(NamedTuple):
@@ -144,7 +142,7 @@ def merge_steps(
     turn = as_times(turn, max(turn.size, 1))
     pairs = zip(frames, cycle(turn), strict=False)
     sized = require_one_size(as_frame(Z, float(t), g, w) for Z, t in pairs)
-    for number, (place, window) in enumerate(slide_windows(sized, 1)):
+    for number, (place, window) in enumerate(neighbours.slide_windows(sized, 1)):
         i, beside = window[place], [*window[:place], *window[place + 1 :]]
         there = [warp_frame(j, estimate_motion(i, j, flow)) for j in beside]
         between = warp_half_way(beside[0], beside[1], flow) if len(beside) == 2 else tuple(there)
@@ -211,7 +209,7 @@ def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None) -> Frame
     table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n)
     f_W = table.astype(np.float32)[stack.reshape(values.v.shape)][0]
     R = ldr_values.radiance(values.v[0], t, values.full)
-    alpha = trapezoid(values.z[0], *EXPOSED_LEVELS)
+    alpha = synthesis.trapezoid(values.z[0], *EXPOSED_LEVELS)
     return Frame(values.v[0], values.noise[0], values.clipped[0], R, f_W, alpha, t, values.full)
 
 

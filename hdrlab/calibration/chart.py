@@ -25,8 +25,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import PchipInterpolator
 
-from hdrlab.calibration import joining
-from hdrlab.calibration.blends import TABLE_SIZE, InverseResponse, make_blend, normalize
+from hdrlab.calibration import blends, joining
 from hdrlab.core.arrays import F64, ArrayLike, as_stack, as_times, describe, levels
 from hdrlab.core.filters import warp
 from hdrlab.core.optional import skimage_draw
@@ -156,7 +155,7 @@ def read_chart(image: ArrayLike, corners: ArrayLike, *, gap: float = GAP, core: 
     return read_patches(image, corners, ROWS, COLUMNS, gap=gap, core=core)
 
 
-def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> InverseResponse:
+def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> blends.InverseResponse:
     """Return the inverse response through the gray patches, interpolated so that it rises (PCHIP).
 
     Parameters
@@ -185,18 +184,18 @@ def recover_gray(M: ArrayLike, R: ArrayLike = NEUTRAL) -> InverseResponse:
     True
     """
     M, R = np.asarray(M, np.float64), np.asarray(R, np.float64)
-    samples = make_blend(R, M)
+    samples = blends.make_blend(R, M)
     order = np.argsort(samples.I)
     x, m = samples.I[order], samples.M[order]
     if len(x) < 3:
         raise ValueError(f"expected three gray patches in the measured range, got {len(x)} of {describe(M)}")
     if np.any(np.diff(x) <= 0) or np.any(np.diff(m) <= 0):
         raise ValueError(f"expected patches brighter the more they reflect, got {m.round(4).tolist()}")
-    brightness = np.linspace(m[0], m[-1], TABLE_SIZE)
-    return normalize(brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1))
+    brightness = np.linspace(m[0], m[-1], blends.TABLE_SIZE)
+    return blends.normalize(brightness, PchipInterpolator(m, x)(brightness), np.ones(1), np.zeros(1))
 
 
-def recover_bracket(M: ArrayLike, times: ArrayLike) -> InverseResponse:
+def recover_bracket(M: ArrayLike, times: ArrayLike) -> blends.InverseResponse:
     """Return the inverse response that patches photographed with several times join in [Wilburn08 sec. 5].
 
     Parameters
@@ -228,7 +227,7 @@ def recover_bracket(M: ArrayLike, times: ArrayLike) -> InverseResponse:
     if M.ndim != 2:
         raise ValueError(f"expected brightness (P, K) of K patches in P photographs, got {describe(M)}")
     times = as_times(times, len(M))
-    return joining.join([make_blend(times, patch) for patch in M.T], offset=False)
+    return joining.join([blends.make_blend(times, patch) for patch in M.T], offset=False)
 
 
 def read_bracket(images: ArrayLike, corners: ArrayLike, **knobs: float) -> F64:

@@ -15,8 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.calibration.blends import MAX_BRIGHTNESS, MIN_BRIGHTNESS, Blend, InverseResponse, make_blend
-from hdrlab.calibration.chart import read_patches
+from hdrlab.calibration import blends, chart
 from hdrlab.core.arrays import F64, ArrayLike, NDArray
 
 
@@ -121,9 +120,9 @@ def read_blends(
     schedule: Schedule = DEFAULT,
     *,
     core: float = 0.6,
-    low: float = MIN_BRIGHTNESS,
-    high: float = MAX_BRIGHTNESS,
-) -> list[list[Blend]]:
+    low: float = blends.MIN_BRIGHTNESS,
+    high: float = blends.MAX_BRIGHTNESS,
+) -> list[list[blends.Blend]]:
     """Return the blends of a photograph of the display: a list per channel, with a Blend per grid.
 
     `corners` are the outer corners of the corner patches of all grids together, see `chart.read_patches`;
@@ -136,12 +135,12 @@ def read_blends(
     """
     grids, rows, columns = len(schedule.high), schedule.rows, schedule.columns
     alpha, gap = mixing_ratios(rows, columns, schedule.steps).ravel(), schedule.border / schedule.patch
-    M = read_patches(image, corners, grids * rows, columns, gap=gap, core=core)
+    M = chart.read_patches(image, corners, grids * rows, columns, gap=gap, core=core)
     channels = np.moveaxis(M.reshape(grids, rows * columns, -1), -1, 0)
-    return [[make_blend(alpha, grid, low=low, high=high) for grid in channel] for channel in channels]
+    return [[blends.make_blend(alpha, grid, low=low, high=high) for grid in channel] for channel in channels]
 
 
-def recover_display(P: ArrayLike, joined: InverseResponse) -> tuple[F64, F64]:
+def recover_display(P: ArrayLike, joined: blends.InverseResponse) -> tuple[F64, F64]:
     """Return the display's own response: its pixel values (n + 1,), and their light over that of the largest.
 
     Blend j shows the pixel value P_j for the share alpha and black for the rest, so s_j is the light of P_j

@@ -15,12 +15,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.capture import camera, exposure
+from hdrlab.capture import camera, exposure, sensor
 from hdrlab.capture.metering import MIDDLE_GRAY, At, correction, reading, weights
-from hdrlab.capture.sensor import Seed
+from hdrlab.core import colour, steps
 from hdrlab.core.arrays import F32, F64, ArrayLike
-from hdrlab.core.colour import luminance
-from hdrlab.core.steps import last
 
 # stops: the loop ends when it asks for less than this
 STOP_TOLERANCE = 1 / 12
@@ -44,14 +42,14 @@ def measure_brightness(
     iso: float = 100.0,
     full_well: float = np.inf,
     read_noise: float = 0.0,
-    rng: Seed = 0,
+    rng: sensor.Seed = 0,
 ) -> F32:
     """Return B (H, W), the luminance of one linear photograph with T = F^2 / 2^EV, where 1 is full."""
     s = 1 / float(exposure.saturating_luminance(1.0, F=aperture, S=iso))
     linear = camera.Camera(
         response="linear", bits=16, sensitivity=s, full_well=full_well, read_noise=read_noise
     )
-    shot = camera.shoot(luminance(E), [aperture**2 / 2.0**EV], linear, rng=rng)
+    shot = camera.shoot(colour.luminance(E), [aperture**2 / 2.0**EV], linear, rng=rng)
     return shot.images[0].astype(np.float32) / 65535
 
 
@@ -109,4 +107,4 @@ def expose(E: ArrayLike, mode: str = "centre", **knobs: Any) -> float:
     >>> round(expose(gray) - expose(2 * gray), 2)
     -1.0
     """
-    return last(expose_steps(E, mode, **knobs)).EV_opt
+    return steps.last(expose_steps(E, mode, **knobs)).EV_opt

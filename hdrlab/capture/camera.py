@@ -19,9 +19,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hdrlab.capture import sensor as stages
+from hdrlab.capture import responses, sensor as stages
 from hdrlab.capture.hand_motion import views
-from hdrlab.capture.responses import Curve, Response, as_response
 from hdrlab.capture.sensor import Seed, Sensor
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask, NDArray, as_radiance, as_times, describe
 from hdrlab.core.bracket import Bracket, bracket
@@ -92,7 +91,7 @@ class Camera:
     8
     """
 
-    response: str | Curve | Response | None = "film"
+    response: str | responses.Curve | responses.Response | None = "film"
     bits: int = 8
     sensitivity: float = 1.0
     full_well: float = np.inf
@@ -174,7 +173,7 @@ def shoot(
     stuck = rng.random(light[0].shape) < camera.hot
     pairs = zip(light, times[order], strict=True)
     images = [photograph(view, time, camera, stuck, rng) for view, time in pairs]
-    linear = as_response(camera.response) is as_response("linear")
+    linear = responses.as_response(camera.response) is responses.as_response("linear")
     return bracket(np.stack(images), times[order], linear=linear)
 
 
@@ -190,6 +189,6 @@ def photograph(E: F32, time: float, camera: Camera, stuck: Mask, rng: np.random.
         N = stages.photons(X, full_well=camera.full_well, rng=rng)
         X = stages.readout(N, read_noise=camera.read_noise, rng=rng) / camera.full_well
     X = np.clip(X, 0, 1)
-    M = as_response(camera.response).f(X if camera.sensor is not None else np.where(stuck, 1, X))
+    M = responses.as_response(camera.response).f(X if camera.sensor is not None else np.where(stuck, 1, X))
     M = stages.grain(M, gray_noise=camera.gray_noise, bits=camera.bits, rng=rng)
     return stages.quantise(M, bits=camera.bits)

@@ -18,8 +18,7 @@ from typing import Any, NamedTuple
 from hdrlab.course.archives import unpack
 from hdrlab.course.archives.members import Limits, Refused
 from hdrlab.course.classroom.executors import alone
-from hdrlab.course.code import names
-from hdrlab.course.code.closure import Cell, closed
+from hdrlab.course.code import closure, names
 from hdrlab.course.wording import plain
 
 READ, PACKED = (".ipynb", ".py"), (".zip", ".tar", ".gz", ".tgz", ".xz", ".bz2")
@@ -49,7 +48,7 @@ class Submission(NamedTuple):
     variants: dict[str, str] | None = None
 
 
-def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] = ()) -> Submission:
+def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[closure.Cell] = ()) -> Submission:
     """Return what a notebook, a Python file or an archive of one holds, read in a process with limits.
 
     Raises
@@ -73,7 +72,7 @@ def read(path: Path, homework: str, tasks: Sequence[str], given: Sequence[Cell] 
     return Submission(said[0], tuple(said[1]), said[2], tuple(said[3]), said[4])
 
 
-def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[Cell]]) -> bytes:
+def _read(order: tuple[Path, Path, str, Sequence[str], Sequence[closure.Cell]]) -> bytes:
     path, scratch, homework, tasks, given = order
     opened_path, refused = opened(path, scratch, homework)
     found = Submission({}, (refused,), "") if refused else tasks_of(opened_path, tasks, given)
@@ -96,7 +95,7 @@ def opened(path: Path, scratch: Path, homework: str) -> tuple[Path, str]:
     return scratch / "files" / named[0], ""
 
 
-def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[Cell] = ()) -> Submission:
+def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[closure.Cell] = ()) -> Submission:
     """Return what a file holds of the tasks; what cannot be read is told, and the rest is still there.
 
     Parameters
@@ -110,7 +109,7 @@ def tasks_of(path: str | Path, tasks: Sequence[str], given: Sequence[Cell] = ())
     """
     data, problems = _bytes_of(Path(path))
     cells, told = cells_of(data, Path(path).name) if data else ([], [])
-    sources, said = closed(cells, tasks, given) if cells or not (problems or told) else ({}, [])
+    sources, said = closure.closed(cells, tasks, given) if cells or not (problems or told) else ({}, [])
     for task in [task for task, text in sources.items() if len(json.dumps(text)) > MOST_SOURCE]:
         del sources[task]
         said.append(f"{task} needs more than {MOST_SOURCE:,} characters of code")
@@ -131,7 +130,7 @@ def _bytes_of(path: Path) -> tuple[bytes, list[str]]:
     return data, [] if data.strip() else [f"{path.name} is empty"]
 
 
-def cells_of(data: bytes, name: str) -> tuple[list[Cell], list[str]]:
+def cells_of(data: bytes, name: str) -> tuple[list[closure.Cell], list[str]]:
     """Return the code cells of a file's bytes, and what is wrong with it, in words."""
     try:
         text = _decoded(data)
@@ -155,7 +154,7 @@ def _decoded(data: bytes) -> str:
     return data.decode(tokenize.detect_encoding(io.BytesIO(data).readline)[0])
 
 
-def _notebook(text: str, name: str) -> tuple[list[Cell], list[str]]:
+def _notebook(text: str, name: str) -> tuple[list[closure.Cell], list[str]]:
     try:
         read = json.loads(text)
     except (ValueError, RecursionError):
@@ -170,7 +169,7 @@ def _notebook(text: str, name: str) -> tuple[list[Cell], list[str]]:
     return [_cell(n, one) for n, one in code if one.get("cell_type") == "code"], []
 
 
-def _cell(n: int, read: dict[str, Any]) -> Cell:
+def _cell(n: int, read: dict[str, Any]) -> closure.Cell:
     """Return a cell out of JSON, of which nothing is believed."""
     source = read.get("source", read.get("input", ""))  # the latter in version 3
     lines = source if isinstance(source, list) else [source]
@@ -179,19 +178,19 @@ def _cell(n: int, read: dict[str, Any]) -> Cell:
     marked = metadata.get("hdrlab") if isinstance(metadata, dict) else None
     marked = marked if isinstance(marked, dict) else {}
     task = marked.get("task")
-    return Cell(text, task if isinstance(task, str) else "", marked.get("given") is True, f"cell {n}")
+    return closure.Cell(text, task if isinstance(task, str) else "", marked.get("given") is True, f"cell {n}")
 
 
-def _percent(text: str) -> list[Cell]:
+def _percent(text: str) -> list[closure.Cell]:
     """Return the cells of a Python file; one without fences is one cell."""
     fences = list(FENCE.finditer(text))
     ends = [*(one.start() for one in fences), len(text)]
-    cells = [Cell(text[: ends[0]], where="the file's beginning")]
+    cells = [closure.Cell(text[: ends[0]], where="the file's beginning")]
     line, counted = 1, 0
     for fence, start, end in zip(fences, (one.end() for one in fences), ends[1:], strict=True):
         if not fence["kind"]:
             marked = re.search(r'task="(\w+)"', fence["rest"])
             task, given = marked[1] if marked else "", "given=" in fence["rest"]
             line, counted = line + text.count("\n", counted, start), start
-            cells.append(Cell(text[start:end], task, given, f"line {line}"))
+            cells.append(closure.Cell(text[start:end], task, given, f"line {line}"))
     return [cell for cell in cells if cell.text.strip()]

@@ -4,8 +4,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.colour import decode_srgb
-from hdrlab.fast import _lookup
-from hdrlab.fast._bands import BAND, banded
+from hdrlab.fast import _bands, _lookup
 from hdrlab.tonemap import brush
 
 
@@ -14,8 +13,8 @@ def tonemap(L: ArrayLike, *, bins: int = 1024, limit: float = 4.0) -> F32:
     L = as_luminance(L)
     brush.check_knobs(bins, limit)
     low, high = brush.find_range(L)
-    t = banded(lambda L: brush.bin_position(L, low, high, bins), L)
-    parts = [t[top : top + BAND] for top in range(0, len(t), BAND)]
+    t = _bands.banded(lambda L: brush.bin_position(L, low, high, bins), L)
+    parts = [t[top : top + _bands.BAND] for top in range(0, len(t), _bands.BAND)]
     h = sum((brush.histogram(part, bins) * (part.size / t.size) for part in parts), np.zeros(bins))
     table = _lookup.tabulate(decode_srgb(brush.cumulative(brush.clip_histogram(h, limit=limit))))
-    return banded(lambda t: _lookup.interpolate(table, t), t)
+    return _bands.banded(lambda t: _lookup.interpolate(table, t), t)

@@ -1,19 +1,17 @@
 """Chiu's spatially nonuniform scaling, fast: blurs on coarse grids, the passes a band of rows at a time."""
 
 from hdrlab.core.arrays import F32
-from hdrlab.fast import with_parts
-from hdrlab.fast._bands import banded
+from hdrlab.fast import _bands, blur, with_parts
 from hdrlab.fast.bilateral import bilateral
-from hdrlab.fast.blur import gaussian
 from hdrlab.tonemap import chiu
 
 
 def smooth(s: F32, L: F32) -> F32:
     """Return the lesson's pass over s."""
-    return banded(chiu.smooth, s, L, margin=1)
+    return _bands.banded(chiu.smooth, s, L, margin=1)
 
 
-scale = with_parts(__name__, chiu.scale, gaussian_filter=gaussian)
+scale = with_parts(__name__, chiu.scale, gaussian_filter=blur.gaussian)
 tonemap_steps = with_parts(__name__, chiu.tonemap_steps, scale=scale, smooth=smooth)
 tonemap = with_parts(__name__, chiu.tonemap, tonemap_steps=tonemap_steps)
 halo = with_parts(__name__, chiu.halo, bilateral=bilateral)

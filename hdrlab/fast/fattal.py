@@ -6,19 +6,18 @@ from typing import Any
 import numpy as np
 
 from hdrlab.core.arrays import F32
-from hdrlab.fast import pyramid, with_parts
-from hdrlab.fast._bands import banded
+from hdrlab.fast import _bands, pyramid, with_parts
 from hdrlab.tonemap import fattal
 
 SATURATION = fattal.SATURATION
 
 
 def _slope(lL: F32, k: int) -> F32:
-    return banded(partial(fattal.slope, k=k), lL, margin=1)
+    return _bands.banded(partial(fattal.slope, k=k), lL, margin=1)
 
 
 def _attenuation(slope: F32, mean: float, **knobs: Any) -> F32:
-    return banded(partial(fattal.attenuation, mean=mean, **knobs), slope)
+    return _bands.banded(partial(fattal.attenuation, mean=mean, **knobs), slope)
 
 
 def _diverge(lL: F32, Phi: F32) -> F32:
@@ -32,7 +31,7 @@ def _diverge(lL: F32, Phi: F32) -> F32:
 
 def divergence(lL: F32, Phi: F32) -> F32:
     """Return div G, for `poisson.solve`: Laplacian lLd = div G [Fattal02; Battiato08 eq. 1.40]."""
-    return banded(_diverge, lL, Phi, margin=1)
+    return _bands.banded(_diverge, lL, Phi, margin=1)
 
 
 _parts = {"slope": _slope, "attenuation": _attenuation, "pyramid": pyramid}

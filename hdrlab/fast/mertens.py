@@ -6,8 +6,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, Array, levels
 from hdrlab.enhance import mertens
-from hdrlab.fast import pyramid, with_parts
-from hdrlab.fast._bands import banded
+from hdrlab.fast import _bands, pyramid, with_parts
 
 _BAND = 16  # rows
 
@@ -23,7 +22,7 @@ def weights(images: Array, powers: Sequence[float] = (1, 1, 1)) -> Iterator[F32]
     def measure(Z: Array) -> F32:
         return mertens.weight(_split_planes(np.moveaxis(Z, 0, -1)), powers)
 
-    each: list[F32] = [banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
+    each: list[F32] = [_bands.banded(measure, np.moveaxis(np.atleast_3d(Z), -1, 0), margin=1) for Z in images]
     total: F32 = np.zeros(images.shape[1:3], np.float32)
     for W in each:
         total += W

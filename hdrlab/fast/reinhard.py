@@ -8,11 +8,9 @@ from typing import Any
 
 import numpy as np
 
+from hdrlab.core import extremes, steps
 from hdrlab.core.arrays import F32, as_luminance
-from hdrlab.core.extremes import positive_median, robust_maximum
-from hdrlab.core.steps import last
-from hdrlab.fast import blur, with_parts
-from hdrlab.fast._bands import banded
+from hdrlab.fast import _bands, blur, with_parts
 from hdrlab.tonemap import reinhard
 
 # scaled luminance
@@ -26,7 +24,7 @@ REACH = len(KERNELS[-1]) // 2
 
 def log_average(L: F32, *, delta: float = 1e-6) -> float:
     """Return exp(mean(log(delta + L))), delta in medians of a quarter of a million pixels."""
-    floor = max(delta * (positive_median(L) or 1.0), TINY)
+    floor = max(delta * (extremes.positive_median(L) or 1.0), TINY)
     return float(np.exp(np.log(L + np.float32(floor)).mean(dtype=np.float64)))
 
 
@@ -38,12 +36,12 @@ def scale_to_key(L: F32, *, key: float = 0.18) -> F32:
 
 def white_point(Lm: F32) -> float:
     """Return the brightest Lm but for 0.01 % of the pixels, and at least 1."""
-    return max(1.0, robust_maximum(Lm))
+    return max(1.0, extremes.robust_maximum(Lm))
 
 
 def display(Lm: F32, adaptation: F32, white: float = np.inf) -> F32:
     """Return the lesson's Ld, a band of rows at a time."""
-    return banded(partial(reinhard.display, white=white), Lm, adaptation)
+    return _bands.banded(partial(reinhard.display, white=white), Lm, adaptation)
 
 
 def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold: float = 0.05) -> F32:
@@ -52,7 +50,7 @@ def local_adaptation(Lm: F32, *, key: float = 0.18, phi: float = 8.0, threshold:
     for top in range(0, len(Lm), BAND):
         rows, near = V1[top : top + BAND], padded[top : top + BAND + 2 * REACH]
         blurred = (blur._inside(near, k, REACH) for k in KERNELS)
-        found = last(reinhard.scale_steps(blurred, key=key, phi=phi, threshold=threshold)).adaptation
+        found = steps.last(reinhard.scale_steps(blurred, key=key, phi=phi, threshold=threshold)).adaptation
         rows[:] = found[: len(rows), : rows.shape[1]]
     return V1
 

@@ -3,8 +3,7 @@
 import numpy as np
 
 from hdrlab.core.arrays import F32, F64
-from hdrlab.fast import _lookup, with_parts
-from hdrlab.fast._bands import banded
+from hdrlab.fast import _bands, _lookup, with_parts
 from hdrlab.tonemap import ward
 
 _KNOTS = 1 << 14  # of the curve, in all: a line from knot to knot is the exponential
@@ -20,7 +19,7 @@ def display(L: F32, lnL: F64, lnLd: F64, *, black: float, white: float) -> F32:
     def read(L: F32) -> F32:
         return _lookup.interpolate(table, (np.log(np.maximum(L, ward.TINY)) - first) * scale)
 
-    return banded(read, L)
+    return _bands.banded(read, L)
 
 
 tonemap = with_parts(__name__, ward.tonemap, display=display)

@@ -8,8 +8,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32
 from hdrlab.core.bracket import Bracket
-from hdrlab.io.photos import read_bracket
-from hdrlab.io.radiance import read_radiance
+from hdrlab.io import photos, radiance
 from hdrlab.scenes.places import FOLDER, Shape, resample
 
 
@@ -38,7 +37,7 @@ def photographs(shape: Shape | None = None) -> Bracket:
     >>> photographs((100, 75)).images.shape
     (6, 100, 75, 3)
     """
-    taken = read_bracket(FOLDER / "tripod", FOLDER / "tripod/times.csv")
+    taken = photos.read_bracket(FOLDER / "tripod", FOLDER / "tripod/times.csv")
     if shape is None:
         return taken
     levels = [np.rint(resample(image, shape)).astype(np.uint8) for image in taken.images]
@@ -55,4 +54,4 @@ def probe() -> F32:
     >>> probe().shape
     (64, 128, 3)
     """
-    return read_radiance(FOLDER / "probe/studio.hdr")
+    return radiance.read_radiance(FOLDER / "probe/studio.hdr")

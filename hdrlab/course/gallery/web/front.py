@@ -12,14 +12,13 @@ from starlette.requests import Request
 from starlette.responses import HTMLResponse, JSONResponse, Response
 
 from hdrlab.course.gallery import store, tokens
-from hdrlab.course.gallery.web.guard import Rate, Rates, Refusal
-from hdrlab.course.gallery.web.writer import Writer
+from hdrlab.course.gallery.web import guard, writer
 from hdrlab.show.pages.templates import templates
 
 HERE = Path(__file__).parent
 KEPT_FILES, KEPT_CARDS = 400, 4000  # in memory: what a class looks at again and again
-REQUESTS = Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
-FAILURES = Rate(30, 0.5)  # of an address, with links or sessions that are none
+REQUESTS = guard.Rate(600, 20)  # of a voter: a wall of hundreds of pictures, at once
+FAILURES = guard.Rate(30, 0.5)  # of an address, with links or sessions that are none
 HINTS = {404: "There is nothing here.", 405: "This page does not take that."}
 
 
@@ -33,8 +32,8 @@ class Front:
         self.host, self.secure = parts.netloc, parts.scheme == "https"
         self.origin = f"{parts.scheme}://{parts.netloc}"
         self.cookie = "__Host-gallery" if self.secure else "gallery"
-        self.folder, self.clock, self.rates = Path(folder), clock, Rates()
-        self.db, self.writer = store.connect(folder), Writer(folder)
+        self.folder, self.clock, self.rates = Path(folder), clock, guard.Rates()
+        self.db, self.writer = store.connect(folder), writer.Writer(folder)
         self.pages = templates(HERE / "templates")
         self.bytes_of = lru_cache(KEPT_FILES)(Path.read_bytes)
         self.card = lru_cache(KEPT_CARDS)(self.pages.get_template("card.html").render)
@@ -58,9 +57,9 @@ class Front:
         if voter is None or shown is None:
             if text:
                 self.failed(request)
-            raise Refusal(401, "To see the gallery, open the personal link that your course sent you.")
+            raise guard.Refusal(401, "To see the gallery, open the personal link that your course sent you.")
         if not self.rates.take("requests", voter.id, REQUESTS):
-            raise Refusal(429, "That was a lot at once. Wait a moment, and try again.")
+            raise guard.Refusal(429, "That was a lot at once. Wait a moment, and try again.")
         return voter, shown
 
     def failed(self, request: Request) -> None:
@@ -69,11 +68,11 @@ class Front:
         What is good passes always: a class behind one address is not locked out by one of it.
         """
         if not self.rates.take("failures", request.client.host if request.client else "", FAILURES):
-            raise Refusal(429, "Too many tries from this address. Wait a minute, and try again.")
+            raise guard.Refusal(429, "Too many tries from this address. Wait a minute, and try again.")
 
     async def refused(self, request: Request, error: Exception) -> Response:
         """Say why, in a page or in JSON."""
-        if isinstance(error, Refusal):
+        if isinstance(error, guard.Refusal):
             status, why = error.status, error.said
         else:
             status = error.status_code if isinstance(error, HTTPException) else 500
