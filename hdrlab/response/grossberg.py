@@ -19,10 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core import weights
+from hdrlab.core import transfer, weights
 from hdrlab.core.arrays import F64, Array, ArrayLike, Indices, as_stack, as_times, to_256
-from hdrlab.core.transfer import brightness_transfer, histograms
-from hdrlab.core.weights import make_monotone, second_differences
 from hdrlab.response.mitsunaga import curve, terms
 
 
@@ -48,7 +46,7 @@ def build_equations(h: Array, times: F64, w: F64) -> Equations:
     """
     rows = []
     for a, b in pairwise(np.argsort(times, kind="stable")):
-        T = brightness_transfer(h[a], h[b])
+        T = transfer.brightness_transfer(h[a], h[b])
         m = np.flatnonzero(np.isfinite(T) & (h[a] > 0) & (times[a] < times[b]))
         weight = np.minimum(w[m], np.interp(T[m], np.arange(len(w)), w)) * np.sqrt(h[a][m] / h[a].sum())
         rows.append((m, T[m], np.full(len(m), times[a] / times[b]), weight))
@@ -78,7 +76,7 @@ def solve_table(found: Equations, w: F64, *, smoothness: float = 2.0) -> F64:
         raise ValueError(f"expected levels measured well in two exposures, smoothness > 0, got {smoothness}")
     z = np.arange(len(w))
     data = found.weight[:, None] * (interpolate_levels(found.T, len(w)) - np.eye(len(w))[found.m])
-    penalty = second_differences(w, smoothness)
+    penalty = weights.second_differences(w, smoothness)
     A = np.vstack([data, penalty, z == len(w) // 2])
     b = np.concatenate([-found.weight * np.log(found.R), penalty @ np.log(np.maximum(z, 0.25)), [0]])
     g, constrained = np.linalg.lstsq(A, b)[0], A.any(axis=0)
@@ -143,9 +141,9 @@ def recover(
     """
     stack = as_stack(images)
     times, w = as_times(times, len(stack), distinct=2), weights.cut(weights.gaussian(), below=0.02)
-    channels = [build_equations(h, times, w) for h in histograms(to_256(stack), valid)]
+    channels = [build_equations(h, times, w) for h in transfer.histograms(to_256(stack), valid)]
     g = np.stack([solve_table(found, w, smoothness=smoothness) for found in channels], axis=-1)
-    return make_monotone(g).reshape(256, *stack.shape[3:])
+    return weights.make_monotone(g).reshape(256, *stack.shape[3:])
 
 
 def recover_polynomial(
@@ -162,6 +160,6 @@ def recover_polynomial(
     """
     stack = as_stack(images)
     times, w = as_times(times, len(stack), distinct=2), weights.cut(weights.hat())
-    channels = [build_equations(h, times, w) for h in histograms(to_256(stack), valid)]
+    channels = [build_equations(h, times, w) for h in transfer.histograms(to_256(stack), valid)]
     g = np.stack([curve(solve_polynomial(found, order=order)) for found in channels], axis=-1)
     return g.reshape(256, *stack.shape[3:])

@@ -22,8 +22,7 @@ from scipy.sparse import csr_array
 from scipy.special import ndtr
 
 from hdrlab.core.arrays import F64, ArrayLike, Indices
-from hdrlab.response.mitsunaga import terms, value
-from hdrlab.response.polynomial import brightness, slope
+from hdrlab.response import mitsunaga, polynomial
 
 EDGES = np.concatenate([[-np.inf], (np.arange(255) + 0.5) / 255, [np.inf]])  # of the levels' cells, in M
 STRAY = 1e-12  # probability of a level that the noise does not explain: a pixel that moved pulls at nothing
@@ -56,7 +55,7 @@ def nodes(c: F64, tau: F64, count: int) -> Nodes:
     """
     x = (np.arange(count) + 0.5) / count
     clipped_next = np.append(np.exp(tau[:-1] - tau[1:]), 0)  # exposure from which only this frame is left
-    own = [x[value(x, c) > least] for least in clipped_next]
+    own = [x[mitsunaga.value(x, c) > least] for least in clipped_next]
     return Nodes(np.concatenate(own), np.repeat(np.arange(len(own)), [len(one) for one in own]))
 
 
@@ -68,12 +67,12 @@ def predict(c: F64, tau: F64, at: Nodes) -> tuple[F64, F64]:
     """
     order, P = len(c) + 1, len(tau)
     rho = np.exp(tau[:, None] - tau[at.at])
-    X = rho * value(at.x, c)
-    m = brightness(X, c)
-    dc = (rho[..., None] * terms(at.x, order) - terms(m, order))[..., 1:]
+    X = rho * mitsunaga.value(at.x, c)
+    m = polynomial.brightness(X, c)
+    dc = (rho[..., None] * mitsunaga.terms(at.x, order) - mitsunaga.terms(m, order))[..., 1:]
     own = np.arange(P)[:, None] == np.arange(P - 1)
     dtau = X[..., None] * (own[:, None, :].astype(float) - own[at.at])
-    return m, np.where(X < 1, 1 / slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)
+    return m, np.where(X < 1, 1 / polynomial.slope(m, c), 0)[..., None] * np.concatenate([dc, dtau], axis=-1)
 
 
 def masses(m: ArrayLike, sigma: float, z: ArrayLike) -> tuple[F64, F64, F64]:

@@ -22,9 +22,8 @@ import numpy as np
 
 from hdrlab.core.arrays import F64, ArrayLike, Indices, describe
 from hdrlab.core.steps import last
-from hdrlab.response import likelihood
+from hdrlab.response import likelihood, polynomial
 from hdrlab.response.mitsunaga import curve
-from hdrlab.response.polynomial import GRID, limit_slope, slope
 from hdrlab.response.self_calibration import HIGHEST, calibrate as self_calibrate, levels_by_time
 
 # slope of f^-1
@@ -93,7 +92,7 @@ def ascend(here: Point, task: Task) -> tuple[Point, float]:
     for half in range(12):
         theta = here.theta + step / 2**half
         theta[-1] = max(theta[-1], np.log(FINEST))
-        if slope(GRID, unpack(theta, len(task.near.at))[0]).min() >= LEAST:
+        if polynomial.slope(polynomial.GRID, unpack(theta, len(task.near.at))[0]).min() >= LEAST:
             there = evaluate(theta, p, task)
             if there.likelihood >= here.likelihood:
                 return there, float(s @ step)
@@ -133,7 +132,7 @@ def fit_steps(
     if Z.ndim != 2 or Z.dtype.kind not in "iu" or not R.shape == stated.shape == (Z.shape[1] - 1,):
         raise ValueError(f"expected levels Z (N, P) and R (P - 1,), got {describe(Z)} and {describe(R)}")
     theta, prior = (
-        np.r_[limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(NOISE)] for r in (R, stated)
+        np.r_[polynomial.limit_slope(c), np.cumsum(np.log(r)[::-1])[::-1], np.log(NOISE)] for r in (R, stated)
     )
     stiff = likelihood.stiffness(len(theta), Z.shape[1], trust)
     for blur in (3.0, 2.0):

@@ -13,10 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from hdrlab.core import bracket, sampling, steps
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack, as_times, describe
-from hdrlab.core.bracket import short_to_long
-from hdrlab.core.sampling import by_grid
-from hdrlab.core.steps import last
 from hdrlab.response.mitsunaga import Fit, coefficients, curve, fit_steps, gram, in_range, neighbours
 from hdrlab.response.polynomial import misfit
 
@@ -89,8 +87,8 @@ def levels_by_time(
     """Return levels Z (C, N, P) of a grid of pixels, from short to long, and the ratios R of the times."""
     stack = as_stack(images)
     times = as_times(times, len(stack), distinct=2)
-    by_time = short_to_long(stack, times)
-    Z = by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
+    by_time = bracket.short_to_long(stack, times)
+    Z = sampling.by_grid(stack, pixels, valid=as_mask(valid, stack))[:, by_time]
     return np.moveaxis(Z.reshape(*Z.shape[:2], -1), -1, 0), times[by_time][:-1] / times[by_time][1:]
 
 
@@ -153,7 +151,7 @@ def calibrate(
     M = np.concatenate(parts, axis=1)
     if not np.all(in_range(M).any(axis=(1, 2))):
         raise ValueError("expected pixels from 0.05 to 0.98 of the top level in two neighbours; got none")
-    return last(fit_steps(M, R, choose_order(parts, R) if order is None else order, eps=eps))
+    return steps.last(fit_steps(M, R, choose_order(parts, R) if order is None else order, eps=eps))
 
 
 def find_response(

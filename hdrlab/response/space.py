@@ -15,10 +15,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core import weights
+from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack, as_table, as_times, describe
-from hdrlab.core.sampling import by_rank
-from hdrlab.core.weights import make_monotone
 from hdrlab.response import families
 
 
@@ -148,7 +146,7 @@ def recover(
     noise: float = 0.02,
     samples: int = 1000,
     w: ArrayLike | None = None,
-    choose: Callable[..., Indices] = by_rank,
+    choose: Callable[..., Indices] = sampling.by_rank,
     valid: ArrayLike | None = None,
 ) -> F64:
     """Return the MAP estimate of the response g in a space of responses, each channel by itself.
@@ -211,4 +209,4 @@ def recover(
     systems = [build_equations(own, np.log(times), w / w.max(), space) for own in channels]
     c = np.stack([solve_map(A / noise, b / noise, space.sd) for A, b in systems])
     g = reconstruct(c, space).T
-    return make_monotone(g - g[128]).reshape(256, *stack.shape[3:])
+    return weights.make_monotone(g - g[128]).reshape(256, *stack.shape[3:])

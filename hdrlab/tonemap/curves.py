@@ -19,9 +19,8 @@ from typing import Literal
 
 import numpy as np
 
+from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance
-from hdrlab.core.colour import decode_srgb
-from hdrlab.core.extremes import robust_maximum, robust_minimum
 
 LAWS = ("monotone", "exposure")
 
@@ -118,7 +117,7 @@ def tonemap(
         raise ValueError(f"expected a curve, one of {', '.join(CURVES)}, got {curve!r}")
     if not (0 < gamma < np.inf and 0 <= cut < 0.5):
         raise ValueError(f"expected gamma > 0 and a cut in [0, 0.5), got gamma={gamma} and cut={cut}")
-    low, high = robust_minimum(L, cut=cut) or 1.0, robust_maximum(L, cut=cut) or 1.0
+    low, high = extremes.robust_minimum(L, cut=cut) or 1.0, extremes.robust_maximum(L, cut=cut) or 1.0
     own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low}}
     F = CURVES[curve](L, high=high, **own[curve])
-    return decode_srgb(F).astype(np.float32) if encoded else F
+    return colour.decode_srgb(F).astype(np.float32) if encoded else F
