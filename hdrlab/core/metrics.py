@@ -13,18 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import (
-    F64,
-    Array,
-    ArrayLike,
-    NDArray,
-    as_radiance,
-    as_response,
-    as_stack,
-    as_table,
-    describe,
-    to_256,
-)
+from hdrlab.core import arrays
+from hdrlab.core.arrays import F64, Array, ArrayLike, NDArray
 
 # Of 256 levels: noise dominates below, the cut of the weights above.
 LOW_LEVEL, HIGH_LEVEL = 10, 250
@@ -75,8 +65,8 @@ def response_rmse(g: ArrayLike, truth: ArrayLike) -> F64:
     >>> response_rmse(g + 3, g).round(6) + 0.0  # another unit of exposure is no error
     array([0.])
     """
-    found = as_table(g, 256).reshape(256, -1)
-    true = as_response(truth, 256, found.shape[1])
+    found = arrays.as_table(g, 256).reshape(256, -1)
+    true = arrays.as_response(truth, 256, found.shape[1])
     X, X_true = (np.exp(one - one[HIGH_LEVEL])[RELIABLE_LEVELS] for one in (found, true))
     s = (X * X_true).sum(axis=0) / (X * X).sum(axis=0)
     return 100 * np.sqrt(((s * X - X_true) ** 2).mean(axis=0))
@@ -84,8 +74,8 @@ def response_rmse(g: ArrayLike, truth: ArrayLike) -> F64:
 
 def well_exposed(images: ArrayLike, valid: NDArray[np.bool_] | None = None) -> NDArray[np.bool_]:
     """Return where some frame (P, H, W[, 3]) has a pixel's levels, in all channels, within 10 to 250."""
-    stack = as_stack(images)
-    Z = to_256(stack).reshape(*stack.shape[:3], -1)
+    stack = arrays.as_stack(images)
+    Z = arrays.to_256(stack).reshape(*stack.shape[:3], -1)
     inside = ((Z >= LOW_LEVEL) & (Z <= HIGH_LEVEL)).all(axis=-1)
     return np.any(inside if valid is None else inside & valid, axis=0)
 
@@ -106,10 +96,10 @@ def radiance_errors(E: ArrayLike, truth: ArrayLike, well: ArrayLike) -> F64:
     >>> radiance_errors([[10.0, 20.0, 44.0]], truth, truth > 0).round(3)
     array([[0. , 0. , 0.1]])
     """
-    E, truth = as_radiance(E).astype(np.float64), as_radiance(truth)
+    E, truth = arrays.as_radiance(E).astype(np.float64), arrays.as_radiance(truth)
     well = np.asarray(well)
     if not (E.shape == truth.shape and E.shape[:2] == well.shape and well.dtype == bool):
-        raise ValueError(f"expected maps of one shape, got {E.shape}, {truth.shape}, {describe(well)}")
+        raise ValueError(f"expected maps of one shape, got {E.shape}, {truth.shape}, {arrays.describe(well)}")
     ratio = E / np.where(truth > 0, truth, np.nan)
     median = np.median(ratio[well][np.isfinite(ratio[well])]) if np.isfinite(ratio[well]).any() else 0.0
     if not median > 0:
@@ -121,7 +111,9 @@ def offset_errors(found: ArrayLike, truth: ArrayLike) -> NDArray[np.int64]:
     """Return found - truth (P, 2) in pixels, less the shift that most frames share: the whole map's."""
     found, truth = np.asarray(found, np.int64), np.asarray(truth, np.int64)
     if found.shape != truth.shape or found.ndim != 2 or found.shape[1] != 2:
-        raise ValueError(f"expected offsets (P, 2) twice, got {describe(found)} and {describe(truth)}")
+        raise ValueError(
+            f"expected offsets (P, 2) twice, got {arrays.describe(found)} and {arrays.describe(truth)}"
+        )
     apart = found - truth
     common = [np.bincount(axis - axis.min()).argmax() + axis.min() for axis in apart.T]
     return apart - np.array(common)

@@ -13,19 +13,8 @@ import warnings
 
 import numpy as np
 
-from hdrlab.core.arrays import (
-    F32,
-    F64,
-    ArrayLike,
-    Flags,
-    Mask,
-    as_mask,
-    as_radiance,
-    as_response,
-    as_stack,
-    as_times,
-    to_256,
-)
+from hdrlab.core import arrays
+from hdrlab.core.arrays import F32, F64, ArrayLike, Flags, Mask
 
 # away from the noise below and the shoulder above
 LEVELS = slice(30, 226)
@@ -62,12 +51,12 @@ def measure_level_exposures(
     array([[-1.,  0.],
            [-1.,  0.]])
     """
-    stack, E = as_stack(images), as_radiance(E)
-    times, mask = as_times(times, len(stack)), as_mask(valid, stack)
+    stack, E = arrays.as_stack(images), arrays.as_radiance(E)
+    times, mask = arrays.as_times(times, len(stack)), arrays.as_mask(valid, stack)
     if E.shape != stack.shape[1:]:
         raise ValueError(f"expected a map of shape {stack.shape[1:]}, got {E.shape}")
     few, channels = choose_grid(E.shape), 1 if E.ndim == 2 else E.shape[-1]
-    Z = np.moveaxis(to_256(stack[:, *few]).reshape(len(stack), -1, channels), -1, 0).copy()
+    Z = np.moveaxis(arrays.to_256(stack[:, *few]).reshape(len(stack), -1, channels), -1, 0).copy()
     whole: Mask = np.all(Z <= TOP, axis=0)
     if mask is not None:
         whole &= mask[:, *few].reshape(len(stack), -1)
@@ -123,7 +112,7 @@ def measure_residuals(medians: F64, g: ArrayLike) -> F64:
     >>> measure_residuals(medians, g)[:, 0, 64].tolist()
     [0.0, 1.0]
     """
-    return as_response(g, 256, medians.shape[1]).T / np.log(2) - medians
+    return arrays.as_response(g, 256, medians.shape[1]).T / np.log(2) - medians
 
 
 def measure_spread(medians: F64) -> float:

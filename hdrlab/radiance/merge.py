@@ -19,20 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core.arrays import (
-    F32,
-    F64,
-    Array,
-    ArrayLike,
-    Flags,
-    Mask,
-    as_mask,
-    as_response,
-    as_stack,
-    as_table,
-    as_times,
-    levels,
-)
+from hdrlab.core import arrays
+from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Flags, Mask
 from hdrlab.core.weights import hat
 from hdrlab.radiance.stuck import repair_stuck
 
@@ -200,7 +188,7 @@ def merge_with_quality(
     ['MEASURED', 'CLIPPED']
     """
     stack, t, w, curves, first = as_tables(images, times, g, w, method, top)
-    mask, Z = as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1)
+    mask, Z = arrays.as_mask(valid, stack), stack.reshape(*stack.shape[:3], -1)
     shown = np.broadcast_to(True if mask is None else mask[..., None], Z.shape)
     W, X = weigh(Z, w, first, shown), np.exp(curves[Z, np.arange(Z.shape[-1])])
     bounds, flags = bound(Z, np.log(t), curves, first, shown)
@@ -217,9 +205,9 @@ def as_tables(
     images: ArrayLike, times: ArrayLike, g: ArrayLike, w: ArrayLike | None, method: str, top: float
 ) -> tuple[Array, F64, F64, F64, int]:
     """Return the stack, its times, w (n,), g (n, C) and the first clipped level, or raise a ValueError."""
-    stack = as_stack(images)
-    n, channels = levels(stack), stack[0, 0, 0].size
-    weights, curves = as_table(hat(n) if w is None else w, n), as_response(g, n, channels)
+    stack = arrays.as_stack(images)
+    n, channels = arrays.levels(stack), stack[0, 0, 0].size
+    weights, curves = arrays.as_table(hat(n) if w is None else w, n), arrays.as_response(g, n, channels)
     if weights.ndim != 1 or not np.all(weights >= 0) or not weights.any():
         raise ValueError(f"expected weights (n,), not negative and not all 0, got shape {weights.shape}")
     if method not in METHODS:
@@ -227,4 +215,4 @@ def as_tables(
     if not 0 < top <= 1:
         raise ValueError(f"expected top as a fraction of the top level, 0 to 1, got {top}")
     first = min(int(top * (n - 1)) + 1, n - 1)
-    return stack, as_times(times, len(stack)), weights, curves, first
+    return stack, arrays.as_times(times, len(stack)), weights, curves, first
