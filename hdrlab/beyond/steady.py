@@ -20,9 +20,8 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.beyond.neighbours import slide_windows
+from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, ArrayLike, as_radiance
-from hdrlab.core.colour import encode_srgb, luminance
-from hdrlab.core.extremes import robust_maximum
 
 SMALLEST_LUMINANCE = float(np.finfo(np.float32).tiny)
 
@@ -58,10 +57,10 @@ class FrameStatistics(NamedTuple):
 def measure_frame(E: ArrayLike, *, delta: float = 1e-6) -> FrameStatistics:
     """Return mean(ln(delta + L)), delta in medians of L as in `tonemap.reinhard`, and the brightest L."""
     E = as_radiance(E)
-    L = luminance(E)
-    floor = max(delta * robust_maximum(L, cut=0.5), SMALLEST_LUMINANCE)
+    L = colour.luminance(E)
+    floor = max(delta * extremes.robust_maximum(L, cut=0.5), SMALLEST_LUMINANCE)
     mean = float(np.log(L + np.float32(floor)).mean(dtype=np.float64))
-    return FrameStatistics(E, L, mean, robust_maximum(L))
+    return FrameStatistics(E, L, mean, extremes.robust_maximum(L))
 
 
 def adapt(window: Sequence[FrameStatistics], *, key: float) -> tuple[float, float]:
@@ -128,7 +127,7 @@ def flicker(Ld: Iterable[ArrayLike], still: ArrayLike | None = None) -> float:
     >>> round(flicker(np.full((2, 2), y) for y in (0.1, 0.2, 0.1, 0.2)), 1)
     17.3
     """
-    shown = [encode_srgb(np.asarray(one, np.float64)) for one in Ld]
+    shown = [colour.encode_srgb(np.asarray(one, np.float64)) for one in Ld]
     part = ... if still is None else np.asarray(still, bool)
     y = np.array([255 * float(one[part].mean()) for one in shown])
     if len(y) < 3:

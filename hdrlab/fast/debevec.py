@@ -13,10 +13,9 @@ from hdrlab.core.arrays import F64, ArrayLike, Indices, describe
 from hdrlab.core.sampling import require_two_exposures
 from hdrlab.fast import with_parts
 from hdrlab.response import debevec
-from hdrlab.response.debevec import Solution
 
 
-def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solution:
+def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debevec.Solution:
     """Return the same least-squares solution as the lesson; g[n // 2] = 0 exactly.
 
     Raises
@@ -39,7 +38,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> Solut
     r = np.zeros(n)
     np.add.at(r, Z, W * (B - means[:, None]))
     g = _solve_with_gauge(S, r)
-    return Solution(g, np.where(has_weight, (W * g[Z]).sum(axis=1) / D - means, 0.0))
+    return debevec.Solution(g, np.where(has_weight, (W * g[Z]).sum(axis=1) / D - means, 0.0))
 
 
 def _stiffness(w: F64, smoothness: float) -> F64:

@@ -17,12 +17,10 @@ from collections.abc import Callable, Iterator
 import numpy as np
 import scipy
 
+from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_mask, as_stack, as_times
-from hdrlab.core.sampling import by_rank
-from hdrlab.core.weights import second_differences
 from hdrlab.fast import with_parts
 from hdrlab.response import robertson
-from hdrlab.response.robertson import State
 
 # samples at a time: their indices stay in the processor's cache
 BLOCK = 2**15
@@ -83,7 +81,7 @@ class Smooth:
 
     def __call__(
         self, Z: Indices, times: ArrayLike, w: F64, *, tolerance: float = 1e-4, max_iterations: int = 200
-    ) -> Iterator[State]:
+    ) -> Iterator[robertson.State]:
         """Yield the States of one channel; parameters as of `recover_steps`."""
         matrix, line = None, robertson.linear(len(w))
 
@@ -101,7 +99,7 @@ def _smoother(means: F64, w: F64, smoothness: float) -> F64:
     """Return the matrix from r (n,) to s."""
     level = np.arange(len(w))
     known = ~np.isnan(means) & (level > 0) & (level <= np.max(level[w > 0]))
-    bends, data = second_differences(w, smoothness), np.diag(np.where(known, 1.0, 1e-6))
+    bends, data = weights.second_differences(w, smoothness), np.diag(np.where(known, 1.0, 1e-6))
     A = data + bends.T @ bends  # five diagonals, of which the lower three say all
     bands = [np.pad(np.diagonal(A, -k), (0, k)) for k in range(3)]
     return np.asarray(scipy.linalg.solveh_banded(bands, data, lower=True))
@@ -113,7 +111,7 @@ def _thinned(images: ArrayLike, count: int, *, valid: ArrayLike | None = None) -
     every = max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / max(PIXELS, 4 * count))))
     few = (slice(None), slice(every // 2, None, every), slice(every // 2, None, every))
     shown = as_mask(valid, stack)
-    return by_rank(stack[few], count, valid=None if shown is None else shown[few])
+    return sampling.by_rank(stack[few], count, valid=None if shown is None else shown[few])
 
 
 def recover(
@@ -124,7 +122,7 @@ def recover(
     w: ArrayLike | None = None,
     choose: Callable[..., Indices] = _thinned,
     valid: ArrayLike | None = None,
-    steps: Callable[..., Iterator[State]] = recover_steps,
+    steps: Callable[..., Iterator[robertson.State]] = recover_steps,
 ) -> F64:
     """Return the response g of the lesson, whose parameters these are, with the `recover_steps` above."""
     stack = as_stack(images)

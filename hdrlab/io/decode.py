@@ -16,8 +16,7 @@ from PIL import ExifTags, Image
 
 from hdrlab.core.arrays import Array
 from hdrlab.core.optional import pillow_heif, tifffile
-from hdrlab.io import jpegxl, profiles, raw
-from hdrlab.io.codecs import avif_depth, stored_pixels
+from hdrlab.io import codecs, jpegxl, profiles, raw
 from hdrlab.io.exif_exposure import Exposure, exif_exposure
 from hdrlab.io.files import OtherPixels, check_size
 
@@ -92,7 +91,7 @@ def decode(header: Header, out: Array, *, balance: raw.Balance | None = None) ->
     if header.kind == "RAW":
         pixels = raw.decode(header.path, balance)
     else:
-        stored = stored_pixels(header.path, header.kind, out if header.orientation == 1 else None)
+        stored = codecs.stored_pixels(header.path, header.kind, out if header.orientation == 1 else None)
         pixels = upright(opaque(header.path, stored), header.orientation)
         if header.icc and pixels.dtype.kind == "u":
             pixels = profiles.to_srgb(header.path, pixels, header.icc)
@@ -128,7 +127,7 @@ def _look_pillow(path: Path, kind: str, head: bytes) -> Header:
             warnings.simplefilter("ignore")  # of sizes, which check_size judges, and of odd EXIF
             with Image.open(path, formats=(kind,)) as image:
                 (width, height), mode, info = image.size, image.mode, dict(image.info)
-        depth = {"PNG": lambda: head[24], "AVIF": lambda: avif_depth(head)}.get(kind, lambda: 8)()
+        depth = {"PNG": lambda: head[24], "AVIF": lambda: codecs.avif_depth(head)}.get(kind, lambda: 8)()
     except Image.DecompressionBombError as error:
         raise ValueError(f"{path}: its header claims an absurd size ({error})") from None
     except Exception as error:  # on damaged files Pillow raises what it likes

@@ -11,9 +11,8 @@ from hdrlab.core.arrays import F64, Array
 from hdrlab.core.bracket import Bracket
 from hdrlab.core.filters import warp
 from hdrlab.diagnostics.registration import Validation
-from hdrlab.pipeline import alignment
+from hdrlab.pipeline import alignment, recovery
 from hdrlab.pipeline.assembly import Assembly, Method
-from hdrlab.pipeline.recovery import find_validated_method
 
 # what to do where photographs do not lie on each other, by the method
 ADVICE = {"mtb": 'align by "auto", which rotates them too, or leave one out'}
@@ -78,7 +77,7 @@ def provisional(bracket: Bracket, response: Method) -> F64 | None:
     """
     if not callable(response):
         response = "linear" if response == "linear" or (response == "auto" and bracket.linear) else "debevec"
-    recover = find_validated_method(response)
+    recover = recovery.find_validated_method(response)
     try:
         return np.asarray(recover(bracket.images, bracket.times, valid=bracket.valid), np.float64)
     except ValueError:  # nothing that two photographs see well: alignment can do without

@@ -17,9 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core import weights
+from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack, as_times, describe
-from hdrlab.core.sampling import by_rank
 
 
 class Solution(NamedTuple):
@@ -123,7 +122,7 @@ def recover(
     smoothness: float = 30.0,
     samples: int = 1000,
     w: ArrayLike | None = None,
-    choose: Callable[..., Indices] = by_rank,
+    choose: Callable[..., Indices] = sampling.by_rank,
     valid: ArrayLike | None = None,
 ) -> F64:
     """Return the response g recovered from a bracket, each channel by itself.

@@ -22,9 +22,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core import weights
+from hdrlab.core import sampling, weights
 from hdrlab.core.arrays import F64, ArrayLike, Indices, as_stack
-from hdrlab.core.sampling import by_rank, require_two_exposures
 
 
 class State(NamedTuple):
@@ -101,7 +100,7 @@ def recover_steps(
     [inf, 0.992, 0.0]
     """
     t = np.asarray(times, np.float64) / np.max(times)
-    require_two_exposures(Z, t, w)
+    sampling.require_two_exposures(Z, t, w)
     means, f_inv = alternate(Z, t, w), linear(len(w))
     yield State(f_inv, np.inf)
     for _ in range(max_iterations):
@@ -119,7 +118,7 @@ def recover(
     *,
     samples: int = 4_000,
     w: ArrayLike | None = None,
-    choose: Callable[..., Indices] = by_rank,
+    choose: Callable[..., Indices] = sampling.by_rank,
     valid: ArrayLike | None = None,
     steps: Callable[..., Iterator[State]] = recover_steps,
 ) -> F64:

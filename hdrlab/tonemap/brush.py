@@ -14,9 +14,8 @@ of 1 is the plain logarithm; without one the equalisation is full, and shows the
 
 import numpy as np
 
+from hdrlab.core import colour, extremes
 from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
-from hdrlab.core.colour import decode_srgb
-from hdrlab.core.extremes import robust_maximum, robust_minimum
 
 LAWS = ("monotone", "exposure")
 # ratio of luminances that the bins span at least: what is flatter is not stretched further
@@ -26,7 +25,7 @@ TINY = np.finfo(np.float32).tiny
 
 def find_range(L: F32) -> tuple[float, float]:
     """Return the darkest and the brightest of the window but for 0.01 %, at least a stop apart."""
-    low, high = robust_minimum(L) or 1.0, robust_maximum(L) or 1.0
+    low, high = extremes.robust_minimum(L) or 1.0, extremes.robust_maximum(L) or 1.0
     widen = max(1.0, SMALLEST_RANGE * low / high) ** 0.5
     return low / widen, high * widen
 
@@ -72,7 +71,7 @@ def equalise(L: F32, *, bins: int = 1024, limit: float = 4.0) -> F32:
     check_knobs(bins, limit)
     t = bin_position(L, *find_range(L), bins)
     P = cumulative(clip_histogram(histogram(t, bins), limit=limit))
-    return np.interp(t, np.arange(bins + 1), decode_srgb(P)).astype(np.float32)
+    return np.interp(t, np.arange(bins + 1), colour.decode_srgb(P)).astype(np.float32)
 
 
 def place_window(shape: tuple[int, ...], centre: tuple[float, float], side: int) -> tuple[slice, slice]:

@@ -20,10 +20,9 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
+from hdrlab.core import extremes, steps
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
-from hdrlab.core.extremes import positive_median, robust_maximum
 from hdrlab.core.filters.bilateral import bilateral
-from hdrlab.core.steps import last
 
 LAWS = ("exposure",)
 # sigma of the blur, of the longer side: narrower, every place is as bright as every other
@@ -53,7 +52,7 @@ def choose_sigma(L: F32, sigma: float | None = None) -> float:
 def divide_by_median(L: F32) -> F32:
     """Return L in medians of L, and what is beyond all measure like any other: so sums stay finite."""
     with np.errstate(over="ignore"):
-        return np.minimum(L / np.float32(max(positive_median(L), TINY)), LIMIT)
+        return np.minimum(L / np.float32(max(extremes.positive_median(L), TINY)), LIMIT)
 
 
 def scale(L: F32, *, headroom: float = 8.0, sigma: float | None = None) -> F32:
@@ -85,7 +84,7 @@ def tonemap_steps(
 
     The brightest 0.01 % count no more than the next: a hot pixel would darken all that the blur reaches.
     """
-    s = clamp(scale(np.minimum(L, np.float32(robust_maximum(L))), headroom=headroom, sigma=sigma), L)
+    s = clamp(scale(np.minimum(L, np.float32(extremes.robust_maximum(L))), headroom=headroom, sigma=sigma), L)
     yield State(s, L)
     for _ in range(passes):
         s = smooth(s, L)
@@ -98,7 +97,7 @@ def halo(L: F32, s: F32, *, headroom: float = 8.0, sigma: float | None = None, c
     Positive is a bright halo, negative a dark one. The base is a bilateral mean as wide as the blur, of
     neighbours that differ by about `contrast` decades.
     """
-    lL = np.log10(np.maximum(L, 1e-6 * max(positive_median(L), TINY)))
+    lL = np.log10(np.maximum(L, 1e-6 * max(extremes.positive_median(L), TINY)))
     base = bilateral(lL, sigma_s=choose_sigma(L, sigma), sigma_r=contrast).mean
     return np.log2(s * np.float32(headroom)) + base * np.float32(np.log2(10))
 
@@ -137,5 +136,5 @@ def tonemap(L: ArrayLike, *, headroom: float = 8.0, sigma: float | None = None, 
         raise ValueError(
             f"expected headroom and sigma > 0, passes >= 0, got {headroom=}, {sigma=}, {passes=}"
         )
-    state = last(tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes))
+    state = steps.last(tonemap_steps(divide_by_median(L), headroom=headroom, sigma=sigma, passes=passes))
     return np.clip(state.Ld, 0, 1)

@@ -20,9 +20,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from hdrlab.core import extremes, steps
 from hdrlab.core.arrays import F32, F64, ArrayLike, as_luminance
-from hdrlab.core.extremes import robust_maximum, robust_minimum
-from hdrlab.core.steps import last
 
 LAWS = ("monotone", "exposure")
 TINY = np.finfo(np.float32).tiny
@@ -137,11 +136,11 @@ def curve(
         got = f"{black=}, {white=}, {bins=}, {field=}, {tolerance=}"
         raise ValueError(f"expected 0 < black < white, bins >= 1, field > 0, 0 < tolerance < 1, got {got}")
     Lf = foveal_image(L, field=field)
-    low, high = robust_minimum(Lf), robust_maximum(Lf)
+    low, high = extremes.robust_minimum(Lf), extremes.robust_maximum(Lf)
     if not low < high:
         low, high = (high or 1.0) / np.e, high or 1.0
     (h, db), D = histogram(Lf, low=low, high=high, bins=bins), np.log(white / black)
-    state = last(adjust_steps(h, db, D, tolerance=tolerance))
+    state = steps.last(adjust_steps(h, db, D, tolerance=tolerance))
     empty = state.h.sum() <= tolerance * h.sum()
     if empty and np.log(high / low) <= D:
         low, P = high * black / white, np.linspace(0, 1, bins + 1)

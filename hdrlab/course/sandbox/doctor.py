@@ -12,8 +12,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from hdrlab.course.checks.subject import NoAnswer, Subject
-from hdrlab.course.sandbox import practice, tiers
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox import practice, running, tiers
 
 TRIES = 3  # of a tier that does not start: somebody may have ended it
 BREAK_OUT = Path(__file__).with_name("break_out.txt").read_text("utf8")  # a function that tries
@@ -55,7 +54,7 @@ def examine(tier: str) -> Finding:
     credit = tier != "practice"
     try:
         broken, start = _tried(tier)
-    except (Unavailable, NoAnswer, OSError) as error:
+    except (running.Unavailable, NoAnswer, OSError) as error:
         return Finding(tier, False, credit, str(error), remedy(str(error)))
     if not credit:
         stops = "; ".join(practice.DOES_NOT_STOP)
@@ -69,7 +68,7 @@ def examine(tier: str) -> Finding:
 def _tried(tier: str) -> tuple[list[str], float]:
     """Return what `_trial` does; it fails where no answer comes again and again."""
     for _ in range(TRIES - 1):
-        with suppress(Unavailable, NoAnswer):
+        with suppress(running.Unavailable, NoAnswer):
             return _trial(tier)
     return _trial(tier)
 

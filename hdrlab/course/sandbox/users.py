@@ -7,8 +7,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from hdrlab.course.sandbox import descent
-from hdrlab.course.sandbox.running import Unavailable
+from hdrlab.course.sandbox import descent, running
 
 SPARE = range(60706, 61184)  # no system gives these to anybody [systemd.io/UIDS-GIDS]
 
@@ -29,7 +28,7 @@ def lease() -> tuple[int, socket.socket]:
                 held.bind(f"\0hdrlab-user-{user}")  # a name without a file, which nobody else can have
                 return user, held
             held.close()
-    raise Unavailable(f"no user number of {SPARE.start} to {SPARE.stop - 1} is free here")
+    raise running.Unavailable(f"no user number of {SPARE.start} to {SPARE.stop - 1} is free here")
 
 
 def _mapped() -> list[range]:
