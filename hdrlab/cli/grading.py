@@ -16,9 +16,7 @@ FOLDER = click.Path(path_type=Path, exists=True, file_okay=False)
 PLAN = click.option("--plan", type=FILE, help="A plan of your own instead of the package's plan.toml.")
 HOMEWORK = click.option("--homework", metavar="NAME", help="Such as hw2; by default the file's name says it.")
 
-SECRET = click.option(
-    "--secret-file", type=common.FILE, help="Draws each student's inputs, for credit; made on first use."
-)
+SECRET = click.option("--secret-file", type=common.FILE, help="Draws students' inputs; made on first use.")
 
 
 @common.command()

@@ -49,12 +49,8 @@ def lab(folder: Path, copy_only: bool, options: tuple[str, ...]) -> None:
 
 @common.command()
 @click.option("--out", type=common.OUT, default="site", help="Folder for the site: empty, or one of before.")
-@click.option(
-    "--notebooks", metavar="FILE", multiple=True, type=grading.FILE, help="One in place of all. Repeatable."
-)
-@click.option(
-    "--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Notebooks at a time."
-)
+@click.option("--notebooks", multiple=True, type=grading.FILE, help="One in place of all. Repeatable.")
+@click.option("--jobs", type=click.IntRange(1), default=min(4, os.cpu_count() or 1), help="Runs at a time.")
 @click.option("--address", default="", help="Where it will stand, https:// and all, for a link's preview.")
 def site(out: Path, notebooks: tuple[Path, ...], jobs: int, address: str) -> None:
     """Make a site of the course: notebooks that were run, guides, and the reference.

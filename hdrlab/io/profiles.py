@@ -13,9 +13,7 @@ from typing import Any
 import numpy as np
 from PIL import ImageCms
 
-from hdrlab.core.arrays import Array
-from hdrlab.core.colour import decode_srgb
-from hdrlab.core.optional import imagecodecs
+from hdrlab.core import arrays, colour, optional
 
 # stands for the profile of a camera that says Adobe RGB in EXIF, by R03, and holds none
 ADOBE = b"adobergb"
@@ -27,7 +25,7 @@ PRIMARIES, WHITE = (0.68, 0.32, 1, 0.265, 0.69, 1, 0.15, 0.06, 1), (0.3127, 0.32
 SRGB = ((0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141))
 
 
-def to_srgb(path: str | Path, pixels: Array, icc: bytes) -> Array:
+def to_srgb(path: str | Path, pixels: arrays.Array, icc: bytes) -> arrays.Array:
     """Return pixels (H, W, 3) uint8 or uint16 of that profile in sRGB; gray ones as they are.
 
     Raises
@@ -52,14 +50,14 @@ def _is_srgb(icc: bytes) -> bool:
     return all(colorants) and np.allclose([one[0] for one in colorants if one], SRGB, atol=0.005)
 
 
-def _convert(pixels: Array, icc: bytes) -> Array:
-    srgb = imagecodecs.cms_profile("srgb")
-    source = imagecodecs.cms_profile("adobergb") if icc == ADOBE else icc
+def _convert(pixels: arrays.Array, icc: bytes) -> arrays.Array:
+    srgb = optional.imagecodecs.cms_profile("srgb")
+    source = optional.imagecodecs.cms_profile("adobergb") if icc == ADOBE else icc
     if icc == DISPLAY_P3:
-        curve = decode_srgb(np.linspace(0, 1, 4096, dtype=np.float32))
+        curve = colour.decode_srgb(np.linspace(0, 1, 4096, dtype=np.float32))
         known: dict[str, Any] = {"whitepoint": WHITE, "primaries": PRIMARIES, "transferfunction": curve}
-        source = imagecodecs.cms_profile("rgb", **known)
+        source = optional.imagecodecs.cms_profile("rgb", **known)
     # LittleCMS is quick by tables, which are right to a level of 255 for 8 bits, and off by 19 for 16
-    flags = 0 if pixels.dtype == np.uint8 else imagecodecs.CMS.FLAGS.NOOPTIMIZE
+    flags = 0 if pixels.dtype == np.uint8 else optional.imagecodecs.CMS.FLAGS.NOOPTIMIZE
     how = {"colorspace": "rgb", "outcolorspace": "rgb", "flags": flags}
-    return imagecodecs.cms_transform(np.ascontiguousarray(pixels), source, srgb, **how)
+    return optional.imagecodecs.cms_transform(np.ascontiguousarray(pixels), source, srgb, **how)

@@ -9,8 +9,7 @@ from types import ModuleType
 
 import numpy as np
 
-from hdrlab.core import gamut
-from hdrlab.core.arrays import F32, ArrayLike, as_radiance
+from hdrlab.core import arrays, gamut
 from hdrlab.io.files import require_suffix
 from hdrlab.io.maps import exr, pfm, rgbe, tiff, ultrahdr
 
@@ -20,7 +19,7 @@ SUFFIXES |= {".tif": tiff, ".tiff": tiff}
 READ = SUFFIXES | {".jpg": ultrahdr, ".jpeg": ultrahdr, ".jxl": tiff}
 
 
-def read_radiance(path: str | Path, *, clean: bool = False) -> F32:
+def read_radiance(path: str | Path, *, clean: bool = False) -> arrays.F32:
     """Read a radiance map, in the format that the file's suffix names.
 
     Parameters
@@ -59,11 +58,11 @@ def read_sanitized(path: str | Path) -> gamut.Sanitized:
     return found._replace(E=gamut.to_srgb(found.E, primaries))
 
 
-def read_valid(path: str | Path) -> F32:
+def read_valid(path: str | Path) -> arrays.F32:
     """Return the radiance map; or raise a ValueError that counts the values which are no radiance."""
     E = format_of(path, READ).read(path)
     try:
-        E = as_radiance(E)
+        E = arrays.as_radiance(E)
     except ValueError as error:
         raise ValueError(f"{path}: {error}; clean=True repairs them") from None
     primaries = primaries_of(path)
@@ -86,7 +85,7 @@ def primaries_of(path: str | Path) -> tuple[float, ...] | None:
 
 
 def write_radiance(
-    path: str | Path, E: ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
+    path: str | Path, E: arrays.ArrayLike, *, half: bool = False, comments: Sequence[str] = ()
 ) -> None:
     """Write a radiance map, in the format that the file's suffix names, whole or not at all.
 

@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, NDArray
-from hdrlab.core.optional import rawpy
+from hdrlab.core import arrays, optional
 from hdrlab.io.exif_exposure import Exposure
 from hdrlab.io.files import check_size
 
@@ -56,18 +55,18 @@ def balance(path: str | Path) -> Balance:
     return red, green, blue, green2 or green
 
 
-def decode(path: str | Path, white_balance: Balance | None = None) -> NDArray[np.uint16]:
+def decode(path: str | Path, white_balance: Balance | None = None) -> arrays.NDArray[np.uint16]:
     """Return Z, linear sRGB (H, W, 3); the photograph's own white balance serves where none is given."""
     white_balance = balance(path) if white_balance is None else white_balance
     with _open(path) as file:
         matrix = file.color_matrix[:, :3].astype(np.float32)
         alike = {"gamma": (1, 1), "no_auto_bright": True, "adjust_maximum_thr": 0.0, "output_bps": 16}
-        sensor = rawpy.ColorSpace.raw
+        sensor = optional.rawpy.ColorSpace.raw
         camera = file.postprocess(output_color=sensor, user_wb=list(white_balance), **alike)
     return to_srgb(camera, matrix)
 
 
-def to_srgb(camera: NDArray[np.uint16], matrix: F32) -> NDArray[np.uint16]:
+def to_srgb(camera: arrays.NDArray[np.uint16], matrix: arrays.F32) -> arrays.NDArray[np.uint16]:
     """Return the camera's colours as sRGB's, Z = M camera, and white where any of them is clipped."""
     Z = np.empty_like(camera)
     for y in range(0, len(camera), BAND_ROWS):  # of a whole photograph the float values would fill the memory
@@ -82,9 +81,9 @@ def _open(path: str | Path) -> Iterator[Any]:
     with open(path, "rb") as stream:  # a missing file is a FileNotFoundError here as elsewhere
         packed = JPEG_XL.search(stream.read(1 << 18))
     try:
-        with rawpy.imread(str(path)) as file:
+        with optional.rawpy.imread(str(path)) as file:
             yield file
-    except (rawpy.LibRawError, rawpy.NotSupportedError) as error:
+    except (optional.rawpy.LibRawError, optional.rawpy.NotSupportedError) as error:
         reason = error.args[0].decode() if isinstance(error.args[0], bytes) else error
         reason = "it does not read JPEG XL, set the camera to lossless JPEG" if packed else reason
         raise ValueError(f"{path}: expected a RAW photograph, LibRaw says: {reason}") from None

@@ -7,15 +7,14 @@ good light, 203 cd/m2 [ITU-R BT.2408]; so PQ, which ends at 10,000 cd/m2, has ro
 
 import numpy as np
 
-from hdrlab.core import colour, gainmap, gamut
-from hdrlab.core.arrays import F32, F64, ArrayLike, as_picture, as_radiance
+from hdrlab.core import arrays, colour, gainmap, gamut
 from hdrlab.io.web import as_rgb
 from hdrlab.tonemap.transfer import BRIGHTEST, pq
 
 WHITE = 203.0  # cd/m2
 
 
-def signal(hdr: ArrayLike, *, primaries: str = "bt2020") -> F64:
+def signal(hdr: arrays.ArrayLike, *, primaries: str = "bt2020") -> arrays.F64:
     """Return PQ's signal (H, W, 3), 0 to 1, of light with the primaries of sRGB whose white is 1.
 
     Examples
@@ -27,7 +26,7 @@ def signal(hdr: ArrayLike, *, primaries: str = "bt2020") -> F64:
     return pq(np.clip(WHITE * wide, 0, BRIGHTEST))
 
 
-def light(picture: ArrayLike, E: ArrayLike, *, headroom: float = np.inf) -> F32:
+def light(picture: arrays.ArrayLike, E: arrays.ArrayLike, *, headroom: float = np.inf) -> arrays.F32:
     """Return the light of a map (H, W, 3), 1 = white, as bright in the mean of logarithms as its picture."""
-    sdr = colour.decode_srgb(as_rgb(as_picture(picture)) / np.float32(255))
-    return gainmap.expose(as_rgb(as_radiance(E)), sdr, headroom)
+    sdr = colour.decode_srgb(as_rgb(arrays.as_picture(picture)) / np.float32(255))
+    return gainmap.expose(as_rgb(arrays.as_radiance(E)), sdr, headroom)

@@ -10,9 +10,8 @@ from itertools import pairwise
 import numpy as np
 
 from hdrlab.align import light, mtb
-from hdrlab.core.arrays import F64, ArrayLike, levels
+from hdrlab.core import arrays, colour
 from hdrlab.core.bracket import Bracket, bracket as make_bracket
-from hdrlab.core.colour import decode_srgb
 from hdrlab.diagnostics import exposure_times, plausibility
 from hdrlab.diagnostics.doubts import say
 from hdrlab.diagnostics.exposure_times import Estimate
@@ -29,13 +28,13 @@ TRUE, WORTHLESS = 0.01, 0.5
 PIXELS = 400_000
 
 
-def usual_response(n: int, linear: bool = False) -> F64:
+def usual_response(n: int, linear: bool = False) -> arrays.F64:
     """Return ln exposure of n levels for a usual camera, or a linear one; level 0 has a quarter level's."""
     z = np.maximum(np.arange(n), 0.25) / (n - 1)
-    return np.log(z) if linear else np.log(decode_srgb(z)) / STEEPNESS
+    return np.log(z) if linear else np.log(colour.decode_srgb(z)) / STEEPNESS
 
 
-def space_by_stops(bracket: Bracket, stops: ArrayLike) -> Bracket:
+def space_by_stops(bracket: Bracket, stops: arrays.ArrayLike) -> Bracket:
     """Return the bracket with relative times: from dark to bright, each so many stops above the last.
 
     Parameters
@@ -60,7 +59,7 @@ def estimate_relative_times(bracket: Bracket) -> Bracket:
     """Return the bracket with the times that histograms give under a usual response, the shortest being 1."""
     images = bracket.images if bracket.images.ndim == 3 else bracket.images[..., 1]
     every = max(1, int(np.sqrt(images[0].size / PIXELS)))
-    Z, g = images[:, ::every, ::every], usual_response(levels(images), bracket.linear)
+    Z, g = images[:, ::every, ::every], usual_response(arrays.levels(images), bracket.linear)
     pairs = pairwise(mtb.by_brightness(bracket.images))
     k = [light.exposure_ratio(Z[dark], Z[bright], g) for dark, bright in pairs]
     return space_by_stops(bracket, np.maximum(np.log2(k), 0))
@@ -94,7 +93,7 @@ def complete_times(bracket: Bracket, times: str) -> tuple[Bracket, tuple[str, ..
     return found, (same + describe_steps(found.times),)
 
 
-def describe_steps(times: F64) -> str:
+def describe_steps(times: arrays.F64) -> str:
     """Return the sentence on relative times: how they were found, and how far to trust them."""
     return say("relative", steps=", ".join(f"{step:.1f}" for step in np.diff(np.log2(times))))
 
@@ -125,7 +124,7 @@ def refine_times(state: Assembly, response: Method, before: float) -> Assembly:
 def correct_times(bracket: Bracket, response: Method, before: float | None) -> tuple[Estimate, float]:
     """Return the Estimate of an aligned bracket's times, and the spread that its times leave."""
 
-    def measure(times: F64) -> float:
+    def measure(times: arrays.F64) -> float:
         return recovery.choose_response(response, bracket._replace(times=times)).spread
 
     images, times, _, valid, linear = bracket

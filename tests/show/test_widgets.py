@@ -529,7 +529,6 @@ def test_a_large_map_is_brushed_by_means_of_its_pixels():
         ({"size": 63}, "expected size from 64 to 512, got 63"),
         ({"magnification": 9}, "expected magnification from 1 to 8"),
         ({"limit": 0.5}, "expected limit from 1 to 16"),
-        ({"bins": 1}, "expected bins from 2"),
         ({"picture": ROOM}, "expected a picture of the size of E"),
         ({"E": -np.ones((9, 9))}, "expected"),
     ],

@@ -10,7 +10,7 @@ import contextlib
 import hashlib
 import os
 from collections import Counter, deque
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple, Protocol, Self
 
@@ -27,6 +27,9 @@ class Piece(NamedTuple):
     owner: str
     path: Path
     key: str
+
+
+Work = Callable[[Piece], bytes]  # what is done of a piece
 
 
 class Done(NamedTuple):

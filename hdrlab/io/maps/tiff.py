@@ -9,12 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from hdrlab.core.arrays import F32, ArrayLike, as_radiance
-from hdrlab.core.optional import tifffile
+from hdrlab.core import arrays, optional
 from hdrlab.io import decode, files
 
 
-def read(path: str | Path) -> F32:
+def read(path: str | Path) -> arrays.F32:
     """Read a TIFF or JPEG XL file of floating-point samples.
 
     Parameters
@@ -45,7 +44,7 @@ def read(path: str | Path) -> F32:
         return E.astype(np.float32, copy=False)
 
 
-def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> None:
+def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()) -> None:
     """Write radiance as a TIFF file of 32-bit floats, whole or not at all.
 
     Parameters
@@ -67,7 +66,7 @@ def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> No
     >>> read(file).shape, decode.look(file, light=True).comments
     ((2, 3, 3), ['unit: cd/m2'])
     """
-    E, text = as_radiance(E), "\n".join(comments).encode()
+    E, text = arrays.as_radiance(E), "\n".join(comments).encode()
     with files.replacing(path) as name:
         kind = decode.KINDS[E.shape[2] if E.ndim == 3 else 1].lower()
-        tifffile.imwrite(name, E, photometric=kind, metadata=None, description=text or None)
+        optional.tifffile.imwrite(name, E, photometric=kind, metadata=None, description=text or None)

@@ -18,10 +18,9 @@ from PIL import Image
 
 from hdrlab.core import colour, gainmap
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_picture, as_radiance, describe
-from hdrlab.io import decode, files
+from hdrlab.io import decode, files, web
 from hdrlab.io.codecs import DECODERS, jpeg_end
 from hdrlab.io.photos import PICTURES, read_photo
-from hdrlab.io.web import as_rgb
 
 ISO, ADOBE, INDEX = b"urn:iso:std:iso:ts:21496:-1\0", b"http://ns.adobe.com/xap/1.0/\0", b"MPF\0"
 # of XMP, in the order of ISO, and what they are where nothing is said: headrooms, then of each channel
@@ -91,7 +90,7 @@ def write_picture(path: str | Path, picture: ArrayLike, E: ArrayLike, *, headroo
     (4, 6, 3)
     """
     how = PICTURES[files.require_suffix(path, (".jpg", ".jpeg"), "an Ultra HDR picture")]
-    picture, E = as_rgb(as_picture(picture)), as_rgb(as_radiance(E))
+    picture, E = web.as_rgb(as_picture(picture)), web.as_rgb(as_radiance(E))
     if picture.shape != E.shape or not 1 < headroom <= 2**16:
         got = f"{describe(picture)}, {describe(E)} and {headroom}"
         raise ValueError(f"expected picture and radiance of one shape, headroom of 1 to 65536; got {got}")

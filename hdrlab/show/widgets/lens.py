@@ -50,7 +50,6 @@ def brush(
     size: int = 256,
     magnification: int = 1,
     limit: float = 4.0,
-    bins: int = 1024,
 ) -> Brush:
     """Return a widget with a brush that equalises the window under it, wherever it is moved.
 
@@ -68,8 +67,6 @@ def brush(
         Pixels shown for each pixel of E along a side, 1 to 8; a slider changes it.
     limit : float
         How many times an even share a bin of the histogram may count, 1 to 16; a slider changes it.
-    bins : int
-        Of the histogram.
 
     Raises
     ------
@@ -86,7 +83,7 @@ def brush(
     """
     E = as_radiance(E)
     knobs = {"size": (size, *SIZES), "magnification": (magnification, *MAGNIFICATIONS)}
-    for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16), "bins": (bins, 2, 65536)}).items():
+    for name, (value, low, high) in (knobs | {"limit": (limit, 1, 16)}).items():
         if not low <= value <= high:
             raise ValueError(f"expected {name} from {low} to {high}, got {value}")
     around = fit(pipeline.develop(E) if picture is None else render(picture), SIDE)
@@ -94,7 +91,7 @@ def brush(
     if around.shape[:2] != E.shape[:2]:
         raise ValueError(f"expected a picture of the size of E, {E.shape[:2]}, got {around.shape[:2]}")
     data, scale = web.encode_halves(E)
-    traits: dict[str, Any] = {"size": size, "magnification": magnification, "limit": limit, "bins": bins}
+    traits: dict[str, Any] = {"size": size, "magnification": magnification, "limit": limit}
     traits |= {"shape": [*E.shape[:2], 3 if E.ndim == 3 else 1], "radiance": data, "scale": scale}
     traits |= {"centre": [E.shape[0] // 2, E.shape[1] // 2], "alt": require_alt(alt)}
     return Brush(picture=web.encode_webp(around, quality=90), **traits)

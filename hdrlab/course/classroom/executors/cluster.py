@@ -22,8 +22,9 @@ from distributed.comm import resolve_address
 import hdrlab
 from hdrlab.course import grading, scratch
 from hdrlab.course.checks.running import LIBRARY
-from hdrlab.course.classroom.executors import alone as process, processes
-from hdrlab.course.classroom.journal import Ending, Piece
+from hdrlab.course.classroom.executors import alone as process
+from hdrlab.course.classroom.executors.processes import LOOK, PATIENCE
+from hdrlab.course.classroom.journal import Ending, Piece, Work
 
 CONNECT = 5.0  # seconds to find the cluster in, and to fetch a result in
 LONELY = 120.0  # seconds without any worker, after which the run ends
@@ -35,7 +36,7 @@ WARNING = {"distributed.admin.large-graph-warning-threshold": "4 GiB"}
 class Task(NamedTuple):
     """What travels to a worker: the work, the piece and its bytes, and which hdrlab they are of."""
 
-    work: Callable[[Piece], bytes]
+    work: Work
     ready: Callable[[], object]
     piece: Piece
     data: bytes
@@ -98,11 +99,7 @@ class Cluster:
     """
 
     def __init__(
-        self,
-        address: str,
-        work: Callable[[Piece], bytes],
-        ready: Callable[[], object] = version,
-        patience: float = processes.PATIENCE,
+        self, address: str, work: Work, ready: Callable[[], object] = version, patience: float = PATIENCE
     ) -> None:
         self._address, self._work, self._ready, self._patience = address, work, ready, patience
         self._running: dict[Future[Any], tuple[Piece, str]] = {}  # with its worker's address
@@ -142,7 +139,7 @@ class Cluster:
 
     def endings(self) -> list[Ending]:
         """Wait a little, and return what has ended, and those whose worker is lost."""
-        until = time.monotonic() + processes.LOOK
+        until = time.monotonic() + LOOK
         while not any(one.done() for one in self._running) and time.monotonic() < until:
             time.sleep(TICK)
         ended = [one for future in list(self._running) if (one := self._ending(future))]

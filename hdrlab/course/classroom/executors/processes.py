@@ -2,12 +2,11 @@
 
 import os
 import threading
-from collections.abc import Callable
 from concurrent.futures import FIRST_COMPLETED, Future, ThreadPoolExecutor, wait
 from typing import Self
 
 from hdrlab.course.classroom.executors import alone as process
-from hdrlab.course.classroom.journal import Ending, Piece
+from hdrlab.course.classroom.journal import Ending, Piece, Work
 
 PATIENCE = 1800.0  # seconds for one try of a piece
 LOOK = 0.5  # seconds to wait for an ending
@@ -23,9 +22,7 @@ class Processes:
     patience : seconds for one try
     """
 
-    def __init__(
-        self, work: Callable[[Piece], bytes], jobs: int | None = None, patience: float = PATIENCE
-    ) -> None:
+    def __init__(self, work: Work, jobs: int | None = None, patience: float = PATIENCE) -> None:
         self._work, self._patience = work, patience
         self._jobs = jobs or os.cpu_count() or 1
         self._running: dict[Future[bytes], Piece] = {}
