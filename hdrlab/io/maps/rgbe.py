@@ -17,7 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from hdrlab.core import arrays, optional
+from hdrlab.core.arrays import F32, F64, ArrayLike, NDArray, as_radiance
+from hdrlab.core.optional import imagecodecs
 from hdrlab.io import decode, files
 
 # the last line of the header, such as -Y 768 +X 512
@@ -50,12 +51,12 @@ class Header(NamedTuple):
     height: int
     width: int
     axes: str
-    exposure: arrays.F64
+    exposure: F64
     lines: tuple[str, ...]
     start: int
 
 
-def read(path: str | Path) -> arrays.F32:
+def read(path: str | Path) -> F32:
     """Read a Radiance RGBE file: flat, old or new run-length scanlines, in any of the eight orientations.
 
     Parameters
@@ -99,7 +100,7 @@ def read(path: str | Path) -> arrays.F32:
     return E
 
 
-def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()) -> None:
+def write(path: str | Path, E: ArrayLike, *, comments: Sequence[str] = ()) -> None:
     """Write radiance as a Radiance RGBE file, whole or not at all.
 
     Parameters
@@ -121,7 +122,7 @@ def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()
     >>> read(file).shape
     (4, 10, 3)
     """
-    E = arrays.as_radiance(E)
+    E = as_radiance(E)
     height, width = E.shape[:2]
     if E.max() >= 2.0**127:
         raise ValueError(f"expected radiance below 2^127 for RGBE, got values up to {E.max():.6g}")
@@ -133,15 +134,15 @@ def write(path: str | Path, E: arrays.ArrayLike, *, comments: Sequence[str] = ()
         file.write(head.encode("ascii", "replace"))
         for y in range(0, height, BAND_ROWS):
             band = np.ascontiguousarray(E[y : y + BAND_ROWS])
-            file.write(optional.imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))
+            file.write(imagecodecs.rgbe_encode(band, header=False, rle=True, out=room))
 
 
-def to_radiance(pixels: arrays.NDArray[np.uint8]) -> arrays.F32:
+def to_radiance(pixels: NDArray[np.uint8]) -> F32:
     """Return E = m / 256 2^(e - 128) of pixels (H, W, 4), three mantissas m and the exponent e [Ward91]."""
     return pixels[..., :3] * SCALE[pixels[..., 3:]]
 
 
-def to_pixels(E: arrays.F32) -> arrays.NDArray[np.uint8]:
+def to_pixels(E: F32) -> NDArray[np.uint8]:
     """Return m = floor(256 E 2^(128 - e)) and e, so that the largest m is 128 or more [Ward91].
 
     Examples
@@ -156,7 +157,7 @@ def to_pixels(E: arrays.F32) -> arrays.NDArray[np.uint8]:
     return np.where(brightest < 1e-32, 0, pixels).astype(np.uint8)  # Ward's limit: below it, black
 
 
-def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> arrays.F32:
+def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> F32:
     """Return E of run-length scanlines, each of which begins with 2, 2 and its length in two bytes."""
     if (stated := data[2] * 256 + data[3]) != length:
         raise ValueError(f"{path}: expected scanlines of {length} pixels, got one of {stated}")
@@ -164,12 +165,12 @@ def _run_lengths(path: str | Path, data: bytes, scanlines: int, length: int) -> 
     files.check_size(path, scanlines, length, least, available=len(data))
     E = np.empty((scanlines, length, 3), np.float32)
     try:
-        return optional.imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
-    except (optional.imagecodecs.RgbeError, ValueError):
+        return imagecodecs.rgbe_decode(data, header=False, rle=True, out=E)
+    except (imagecodecs.RgbeError, ValueError):
         raise ValueError(f"{path}: expected {scanlines} scanlines, they are damaged or cut short") from None
 
 
-def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> arrays.NDArray[np.uint8]:
+def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArray[np.uint8]:
     """Return the pixels (H, W, 4) of flat scanlines, among which (1, 1, 1, n) repeats the pixel before it.
 
     Such marks in a row are the digits of one count in base 256, the lowest first: the oldest run lengths.
@@ -223,7 +224,7 @@ def parse(path: str | Path, head: bytes) -> Header:
     return Header(height, width, sign + axis + sign2 + axis2, _exposure(path, lines), tuple(lines), start)
 
 
-def _exposure(path: str | Path, lines: list[str]) -> arrays.F64:
+def _exposure(path: str | Path, lines: list[str]) -> F64:
     """Return the product of the EXPOSURE and COLORCORR lines: each tool that changed the pixels adds one."""
     product = np.ones(3)
     for line in lines:
