@@ -13,7 +13,7 @@ SAID = [
     (node.args[0].value, {one.arg for one in node.keywords})
     for file in FILES
     for node in ast.walk(ast.parse(file.read_text("utf8")))
-    if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "say"
+    if isinstance(node, ast.Call) and ast.unparse(node.func) in ("say", "doubts.say")
 ]
 
 
