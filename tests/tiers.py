@@ -74,6 +74,13 @@ TIERS = {
         "tests/course/test_traps_in_a_class.py",
         "tests/course/test_variants.py::test_a_class_is_graded",
         "tests/course/test_variants.py::test_grading_asks",
+        "tests/course/test_viva.py::test_a_change_that_never_ends",
+        "tests/course/test_viva.py::test_a_function_that_breaks",
+        "tests/course/test_viva.py::test_an_attack_breaks",
+        "tests/course/test_viva.py::test_five_questions",
+        "tests/course/test_viva.py::test_of_one_function",
+        "tests/course/test_viva.py::test_the_command_writes",
+        "tests/course/test_viva.py::test_the_same_seed",
         "tests/course/test_windows.py",
     ),
     "papers": (

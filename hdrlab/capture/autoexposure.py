@@ -15,8 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from hdrlab.capture import camera, exposure, sensor
-from hdrlab.capture.metering import MIDDLE_GRAY, At, correction, reading, weights
+from hdrlab.capture import camera, exposure, metering, sensor
 from hdrlab.core import colour, steps
 from hdrlab.core.arrays import F32, F64, ArrayLike
 
@@ -57,9 +56,9 @@ def expose_steps(
     E: ArrayLike,
     mode: str = "centre",
     *,
-    at: At = (0.5, 0.5),
+    at: metering.At = (0.5, 0.5),
     start: float = 12.0,
-    target: float = MIDDLE_GRAY,
+    target: float = metering.MIDDLE_GRAY,
     max_shots: int = 8,
     photograph: Callable[[ArrayLike, float], F32] = measure_brightness,
 ) -> Iterator[State]:
@@ -67,9 +66,9 @@ def expose_steps(
     EV = start
     for _ in range(max_shots):
         B = photograph(E, EV)
-        w = weights(B, mode, at=at)
-        EV_opt = EV - correction(B, w, target)
-        yield State(EV, B, w, reading(B, w), EV_opt)
+        w = metering.weights(B, mode, at=at)
+        EV_opt = EV - metering.correction(B, w, target)
+        yield State(EV, B, w, metering.reading(B, w), EV_opt)
         if abs(EV_opt - EV) < STOP_TOLERANCE:
             return
         EV = EV_opt

@@ -54,33 +54,44 @@ def grade(path: str | Path, homework: Homework, conditions: Conditions = STRICT)
 
 def grade_steps(path: str | Path, homework: Homework, conditions: Conditions = STRICT) -> Iterator[Result]:
     """Yield the Result as it grows: first with all checks unanswered, then after each."""
+    yield from check_steps(*read_tasks(path, homework, conditions), conditions)
+
+
+def read_tasks(path: str | Path, homework: Homework, conditions: Conditions) -> tuple[Submission, Homework]:
+    """Return what a file holds of a homework's tasks, and the homework as its student was given it."""
     tasks = [task.id for task in homework.tasks]
     read = submission.read(Path(path), homework.name, tasks, handouts.given_cells(homework.name))
     homework = variants.draw(homework, conditions.student, conditions.secret, read.variants)
     if others := ", ".join(variants.others(homework, read.variants)):
         said = f"The sheet is of another variant than yours, which is what the checks ask: {others}"
         read = read._replace(problems=(*read.problems, said))
-    yield from check_steps(read, homework, conditions)
+    return read, homework
 
 
 def check_steps(read: Submission, homework: Homework, conditions: Conditions) -> Iterator[Result]:
     """Yield the Result of tasks that are read already, as it grows."""
+    heard: list[dict[str, Any]] = []
+    for line in heard_steps(read, homework, conditions):
+        heard.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
+        if "ended" in line:
+            yield _result(heard, read, homework, conditions)
+    yield _result(heard, read, homework, conditions)
+
+
+def heard_steps(read: Submission, homework: Homework, conditions: Conditions, **more: Any) -> Iterator[Any]:
+    """Yield what the checks write down as they run, and first their digest; `more` stands in the job."""
     if conditions.hidden is not None and not conditions.hidden.is_dir():
         raise ValueError(f"expected a folder with hidden checks, got {conditions.hidden}")
     tiers.choose(conditions.tier)  # an error where it cannot be had: no other takes its place
     with tempfile.TemporaryDirectory(prefix="hdrlab-checks-") as name:
         folder = Path(name)
         files = _reworded(files_of(homework, conditions.hidden), homework, folder)
-        asked = specification(files)
-        job = _job(folder, read, homework, conditions)
-        heard: list[dict[str, Any]] = []
+        yield {"specification": specification(files)}
+        job = _job(folder, read, homework, conditions, **more)
         for line in running.run(folder, job, files, WHOLE):
             if "unavailable" in line:
                 raise Unavailable(line["unavailable"])
-            heard.append(line | {"drawing": _drawn(line)} if line.get("differs") else line)
-            if "ended" in line:
-                yield _result(heard, read, homework, conditions, asked)
-    yield _result(heard, read, homework, conditions, asked)
+            yield line
 
 
 def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
@@ -109,7 +120,7 @@ def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[P
     return asked
 
 
-def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions) -> Path:
+def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditions, **more: Any) -> Path:
     job = {
         "sources": read.sources,
         "modules": read.modules,
@@ -121,10 +132,11 @@ def _job(folder: Path, read: Submission, homework: Homework, conditions: Conditi
         "tasks": homework.tasks,
         "out": str(folder / "lines"),
         "grader": os.getpid(),
+        "by": "hdrlab.course.checks.plugin:Checking",
     }
     (folder / "lines").touch()
     file = folder / "job.json"
-    file.write_text(json.dumps(job), encoding="utf8")
+    file.write_text(json.dumps(job | more), encoding="utf8")
     return file
 
 
@@ -141,9 +153,7 @@ def _seed_id(homework: Homework, conditions: Conditions) -> str:
     return hashlib.sha256(json.dumps(_seeds(homework, conditions)).encode()).hexdigest()[:16]
 
 
-def _result(
-    heard: Sequence[dict[str, Any]], read: Submission, homework: Homework, conditions: Conditions, asked: str
-) -> Result:
+def _result(heard: Sequence[Any], read: Submission, homework: Homework, conditions: Conditions) -> Result:
     return Result(
         student=conditions.student,
         homework=homework.name,
@@ -153,7 +163,7 @@ def _result(
         misconceptions={line["recognised"]: line["sentence"] for line in heard if "recognised" in line},
         problems=read.problems,
         submission=read.hash,
-        specification=asked,
+        specification=heard[0]["specification"],
         seed=_seed_id(homework, conditions),
         versions=VERSIONS,
         at_most=homework.at_most,

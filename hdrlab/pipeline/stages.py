@@ -13,14 +13,11 @@ import numpy as np
 from hdrlab.core import steps, weights
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
-from hdrlab.diagnostics import consistency, motion
-from hdrlab.diagnostics.contradictions import Contradictions, find_contradictions, warn_of_contradictions
+from hdrlab.diagnostics import consistency, contradictions, motion, outlying_frames
 from hdrlab.diagnostics.doubts import say
-from hdrlab.diagnostics.outlying_frames import find_outlying_frames
 from hdrlab.fast.merge import Expendable, merge_with_quality
-from hdrlab.pipeline import recovery, timing
+from hdrlab.pipeline import recovery, registration, timing
 from hdrlab.pipeline.assembly import Assembly, Method, Table, take_frames
-from hdrlab.pipeline.registration import aligned
 from hdrlab.radiance import flare as lens, scales
 from hdrlab.radiance.merge import METHODS, Merged
 
@@ -116,7 +113,7 @@ def assemble_steps(
         if given not in known:
             raise ValueError(f"expected {what} out of {', '.join(known)}, got {given!r}")
     bracket, said = timing.complete_times(bracket, times)
-    state = aligned(bracket, align, response, in_place=in_place)
+    state = registration.aligned(bracket, align, response, in_place=in_place)
     apart = bool(state.doubts)  # photographs that do not lie on each other contradict each other, too
     yield (state := state._replace(notes=(*said, *state.notes)))
     choice = recovery.choose_response(response, state.bracket)
@@ -139,7 +136,7 @@ def assemble_steps(
     shown = None if valid is None else valid[few]
     E = merge(images[few], seconds, g, w(g), valid=shown, repair=False).E
     medians = consistency.measure_level_exposures(images[few], seconds, E, valid=shown)
-    contrary = find_contradictions(images, seconds, valid=valid)
+    contrary = contradictions.find_contradictions(images, seconds, valid=valid)
     moved, bands = motion.measure_motion(images, seconds, g, w(g), valid=valid)
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
     if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
@@ -162,7 +159,7 @@ def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:
     Of two frames either of which may be wrong, relative times make none: they are as rough as all others.
     """
     images, times, names, valid, _ = state.bracket
-    found, rivals = find_outlying_frames(images, times, valid=valid)
+    found, rivals = outlying_frames.find_outlying_frames(images, times, valid=valid)
     if not found:
         return state
     said = say("contrary", frames=", ".join(names[j] for j in found))
@@ -211,7 +208,9 @@ def calibrate(state: Assembly, x: int, y: int, reading: float) -> Assembly:
     return state._replace(E=state.E * np.float32(k), s=s, notes=(*state.notes, note))
 
 
-def assess(state: Assembly, medians: F64, found: Contradictions, moved: float, bands: float) -> Assembly:
+def assess(
+    state: Assembly, medians: F64, found: contradictions.Contradictions, moved: float, bands: float
+) -> Assembly:
     """Return the Assembly with the medians of each level, and the warnings that follow from what was found.
 
     `moved` is the share of the picture in which ghosts are left, `bands` those of light, stops; each counts
@@ -223,7 +222,7 @@ def assess(state: Assembly, medians: F64, found: Contradictions, moved: float, b
     names = state.bracket.names
     if np.isnan(state.spread):
         return state._replace(doubts=(*state.doubts, say("alone")), fallback=say("alone"))
-    said = warn_of_contradictions(found, names, state.spread)
+    said = contradictions.warn_of_contradictions(found, names, state.spread)
     if not said and moved > motion.MOVED:
         said = say("moved", percent=100 * moved)
     if not said and bands > motion.BANDED:

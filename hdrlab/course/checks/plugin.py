@@ -12,6 +12,7 @@ import re
 from contextlib import ExitStack, suppress
 from fractions import Fraction
 from pathlib import Path
+from pkgutil import resolve_name
 from typing import Any
 
 import numpy as np
@@ -39,9 +40,10 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Read the job, and know the specification's marker."""
+    """Read the job and who does it, and know the specification's marker."""
     config.addinivalue_line("markers", MARKER)
-    config.pluginmanager.register(Checking(config.getoption("--job")), "hdrlab-checking")
+    job = json.loads(Path(config.getoption("--job")).read_text(encoding="utf8"))
+    config.pluginmanager.register(resolve_name(job["by"])(job), "hdrlab-checking")
 
 
 class Missing:
@@ -59,9 +61,8 @@ class Missing:
 class Checking:
     """One run of the checks: the job, the subject, and what is written down."""
 
-    def __init__(self, job: str) -> None:
-        self.job = json.loads(Path(job).read_text(encoding="utf8"))
-        self.open = ExitStack()
+    def __init__(self, job: dict[str, Any]) -> None:
+        self.job, self.open = job, ExitStack()
         self.calls: dict[str, list[tuple[Any, ...]]] = {}
         self.failed: set[str] = set()
         self.late: set[str] = set()
@@ -77,9 +78,9 @@ class Checking:
     @pytest.fixture
     def subject(self, request: pytest.FixtureRequest) -> Subject | Missing:
         """Return the student's functions, afresh: nothing that one check left behind serves the next."""
-        if _task(request.node) not in self.job["sources"]:
+        if task_of(request.node) not in self.job["sources"]:
             return Missing()
-        if _task(request.node) in self.late:
+        if task_of(request.node) in self.late:
             return Missing("late")
         self.submission.fresh()
         compare.notes.clear()
@@ -88,7 +89,7 @@ class Checking:
     @pytest.fixture
     def rng(self, request: pytest.FixtureRequest) -> np.random.Generator:
         """Return what this student's inputs to this task are drawn from."""
-        return np.random.default_rng(int(self.job["seeds"].get(_task(request.node), 0)))
+        return np.random.default_rng(int(self.job["seeds"].get(task_of(request.node), 0)))
 
     def pytest_collection_finish(self, session: pytest.Session) -> None:
         """Write down every check before the first is run."""
@@ -96,9 +97,9 @@ class Checking:
             worth = item.get_closest_marker("points")
             self._write(
                 check=_id(item),
-                task=_task(item),
+                task=task_of(item),
                 name=_name(item),
-                promise=_promise(item),
+                promise=promise_of(item),
                 points=str(Fraction(str(worth.args[0] if worth else 1))),
                 needs=worth.kwargs.get("needs", "") if worth else "",
                 hints=hints(getattr(item, "function", None)),
@@ -117,7 +118,7 @@ class Checking:
         subject = getattr(item, "funcargs", {}).get("subject", Missing())
         said = ADDRESS.sub("", subject.said[:SAID])
         if not self._is_hidden(item) and isinstance(subject, Subject):
-            kept = self.calls.setdefault(_task(item), [])
+            kept = self.calls.setdefault(task_of(item), [])
             kept += [(one.args, one.kwargs, one.answer) for one in subject.calls[: CALLS - len(kept)]]
         if isinstance(raised, running.Unavailable):  # nothing can be said of the submission
             return self._write(unavailable=str(raised))
@@ -125,15 +126,15 @@ class Checking:
             notes = "\n".join(dict.fromkeys(compare.notes))[:LONGEST]
             return self._write(ended=_id(item), outcome="holds", message=notes, said=said)
         if not self._is_hidden(item):
-            self.failed.add(_task(item))
+            self.failed.add(task_of(item))
         kind = raised.kind if isinstance(raised, NoAnswer) else ""
         if kind == "late":
-            self.late.add(_task(item))
+            self.late.add(task_of(item))
         told = {"outcome": "no answer" if kind else "fails", "kind": kind}
         differs = _differs(raised) if self.job["draw"] else None
         self._write(ended=_id(item), **told, message=_message(raised), differs=differs, said=said)
 
-    def pytest_sessionfinish(self) -> None:
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write down which well-known mistakes the answers show."""
         for task in sorted(self.failed):
             with suppress(Exception):  # whatever was answered costs this task its sentence, and no other
@@ -158,7 +159,8 @@ def _id(item: pytest.Item) -> str:
     return f"{item.path}::{item.name}"
 
 
-def _task(item: pytest.Item) -> str:
+def task_of(item: pytest.Item) -> str:
+    """Return the id of the task that a check is of."""
     return item.path.stem.removeprefix("test_")
 
 
@@ -166,7 +168,7 @@ def _name(item: pytest.Item) -> str:
     return item.originalname if isinstance(item, pytest.Function) else item.name
 
 
-def _promise(item: pytest.Item) -> str:
+def promise_of(item: pytest.Item) -> str:
     """Return the promise in words, which is the name of the check."""
     words = _name(item).removeprefix("test_").replace("_", " ")
     return words[:1].upper() + words[1:]

@@ -105,9 +105,10 @@ class Subject:
             self._running.close()
             self._running = None
 
-    def fresh(self) -> None:
-        """Begin a new check: a new process, which knows nothing of the calls before."""
+    def fresh(self, **sources: str) -> None:
+        """Begin a new check, with other texts of some tasks: a process that knows nothing of those before."""
         self._drop()
+        self._sources |= sources
         self.calls, self.said, self._kept = [], "", 0
         self._left_of_check = CHECK * self._timeout
 

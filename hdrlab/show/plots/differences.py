@@ -32,7 +32,7 @@ def image(expected: ArrayLike, came: ArrayLike, *, what: str = "the answer") -> 
         raise ValueError(f"expected two images of one shape, got {truth.shape} and {answer.shape}")
     off = _worst_channel(answer - truth)
     place, error = _worst(off)
-    shown, label = [_drawn(one, truth) for one in (truth, answer)], "by logarithms" if _wide(truth) else ""
+    shown, label = [drawn(one, truth) for one in (truth, answer)], "by logarithms" if _wide(truth) else ""
     reach = float(np.nanmax(np.abs(np.where(np.isfinite(off), off, np.nan)), initial=0)) or 1.0
     colours = figures.false_colour(np.where(np.isfinite(off), off, np.nan), -reach, reach, colours="PuOr_r")
     frames = [pictures.encode(_large(one)) for one in shown] + [pictures.encode(_ringed(colours, place))]
@@ -92,7 +92,7 @@ def _wide(truth: Array) -> bool:
     return bool(light.size and np.nanmin(truth) >= 0 and light.max() > WIDE * light.min())
 
 
-def _drawn(values: Array, truth: Array) -> figures.Image:
+def drawn(values: Array, truth: Array) -> figures.Image:
     """Return values as gray or colours, black and white where they are in `truth`."""
     if _wide(truth):
         floor = truth[truth > 0].min()

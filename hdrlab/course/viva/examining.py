@@ -1,0 +1,238 @@
+"""The examiner's half of pytest: when the checks have run, questions are made of functions that pass them.
+
+A question has four options, and each of them is the right one for some change of the student's function.
+First four such changes are found, then one of the four is drawn and asked for: so the options alone do not
+show which one is right. All answers come of runs in the sandbox, and that to the one that is asked of two.
+
+call    (arguments, named arguments, answer) of the student's own function, as a check has called it
+value   of a version: what the options tell apart
+"""
+
+from collections.abc import Callable
+from contextlib import ExitStack, suppress
+from functools import cached_property
+from operator import ne
+from typing import Any, NamedTuple
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks import misconceptions, plugin, subject
+from hdrlab.course.sandbox import tiers
+from hdrlab.course.viva import changed, inputs
+
+KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
+QUESTIONS, OPTIONS = 5, 4
+VERSIONS, CALLS, DRAWS = 12, 2, 20  # that are tried; for a question of promises half of the versions
+HALFWAY, COMPARED = 2, 8  # promises told apart by half of these at least, and calls that are compared
+SEEN = 6.0  # levels that two pictures are apart, on average
+CLEARLY = 1.1  # times as much changes in a version's own part as in another's
+APART, SAME = 0.02, 1e-6  # relative: numbers that a person tells apart, and answers that are one
+GIVEN, ANSWERED, TENTH = 16, 6, 0.1  # numbers of a call by hand, and of the seconds of a check, at most
+
+
+class Found(NamedTuple):
+    """What a question is made of: four versions, their values, how these came, and what a page shows."""
+
+    versions: list[changed.Version]
+    values: list[Any]
+    view: Any
+    differ: Any
+    shown: dict[str, Any]
+
+
+class Examining(plugin.Checking):
+    """A run of the checks, and then of versions of what has passed them."""
+
+    asking = fell = False
+
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        """Write down questions: of different kinds, and of different tasks while there are any."""
+        self.asking, rng = True, np.random.default_rng(int(self.job["seed"]))
+        passed = [task for task in self.job["sources"] if self.calls.get(task) and task not in self.failed]
+        self._write(passed=passed)
+        left = [(kind, str(task)) for kind in KINDS for task in rng.permutation(passed)]
+        kinds, tasks = [""], [""]
+        while left and len(tasks) <= QUESTIONS:
+            kind, task = min(left, key=lambda pair: (tasks.count(pair[1]), kinds.count(pair[0])))
+            left.remove((kind, task))
+            items = [one for one in session.items if plugin.task_of(one) == task]
+            question = None
+            with suppress(Exception), ExitStack() as self.stack:  # whatever it answers costs one question
+                question = Asked(self, task, items, rng).question(kind)
+            if question:
+                kinds, tasks = [*kinds, kind], [*tasks, task]
+                self._write(question=question)
+
+    def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
+        self.fell = self.fell or raised is not None
+        return None if self.asking else super()._ended(item, raised)
+
+
+class Asked:
+    """A task that is asked about, in a sandbox of its own; KINDS are methods."""
+
+    def __init__(self, run: Examining, task: str, items: list[pytest.Item], rng: np.random.Generator) -> None:
+        self.run, self.task, self.items, self.rng = run, task, items, rng
+        self.source = run.job["sources"][task]
+        self.calls = [run.calls[task][k] for k in rng.permutation(len(run.calls[task]))]
+
+    def question(self, kind: str) -> dict[str, Any] | None:
+        """Return a question as a page shows it, or None where the task has none of this kind."""
+        found: Found | None = getattr(self, kind)()
+        right = int(self.rng.integers(OPTIONS))
+        if found is None or not self.holds(found, right):
+            return None
+        versions = [one._asdict() for one in found.versions]
+        return {"kind": kind, "task": self.task, "right": right, "versions": versions, **found.shown}
+
+    def holds(self, found: Found, k: int) -> bool:
+        """Return whether a version, in another process, has its value again, and none of the three others."""
+        again = found.view(found.versions[k])
+        same = [again is not None and not found.differ(again, value) for value in found.values]
+        return same == [one == k for one in range(OPTIONS)]
+
+    def promise(self) -> Found | None:
+        """Ask which of these promises, in this order, a version breaks first."""
+        versions, broken, known = [], [], []
+        for version in self._versions()[: VERSIONS // 2]:
+            failed = self._broken(version)
+            if not failed and self._is_same(version.source):
+                continue
+            versions.append(version)
+            broken.append(failed)
+            every = sorted(set().union(*broken), key=lambda one: (sum(one in each for each in broken), one))
+            first = [next((one for one in every if one in each), "") for each in broken]
+            known = [one for one in [*every, ""] if one in first]
+            if len(known) >= OPTIONS or (len(known) < HALFWAY and len(versions) == VERSIONS // 4):
+                break
+        if len(known) < OPTIONS:
+            return None
+        chosen = [known[k] for k in sorted(self.rng.choice(len(known), OPTIONS, replace=False))]
+
+        def view(version: changed.Version) -> str:
+            failed = self._broken(version)
+            return next((one for one in chosen if one in failed), "")
+
+        return Found([versions[first.index(one)] for one in chosen], chosen, view, ne, {"texts": chosen})
+
+    def line(self) -> Found | None:
+        """Ask which of three lines could be taken out without changing any answer."""
+        idle = changed.unused(self.source)
+        for _ in range(DRAWS * (len(idle) >= OPTIONS - 1)):
+            lines = sorted(self.rng.choice(list(idle), OPTIONS - 1, replace=False).tolist())
+            versions = [changed.Version(text, text) for text in (*(idle[k] for k in lines), self.source)]
+            texts = [[one.source.split("\n")[k - 1].strip() for k in lines] for one in versions]
+            if texts.count(texts[0]) == OPTIONS:  # else what is written out shows in an option
+                break
+        else:
+            return None
+
+        def view(version: changed.Version) -> int | None:
+            gone = [k for k in lines if self._is_same(changed.without(version.source, k))]
+            return sum(gone) if len(gone) < 2 and self._is_same(version.source) else None
+
+        if [view(one) for one in versions] != [*lines, 0]:
+            return None
+        return Found(versions, [*lines, 0], view, ne, {"lines": lines, "texts": texts[0]})
+
+    def part(self) -> Found | None:
+        """Ask in which part of a photograph, or of a curve, an answer changes most."""
+
+        def differ(a: np.ndarray, b: np.ndarray) -> Any:
+            i, j = a.argmax(), b.argmax()
+            return i != j and a[i] > CLEARLY * a[j] and b[j] > CLEARLY * b[i]
+
+        def see(came: np.ndarray, own: np.ndarray) -> np.ndarray | None:
+            return parts if (parts := inputs.parts(np.abs(came - own))).any() else None
+
+        found = self._drawn(see, differ)
+        return found and found._replace(
+            shown=found.shown | {"marks": [int(one.argmax()) for one in found.values]}
+        )
+
+    def picture(self) -> Found | None:
+        """Ask which of four pictures or curves a version draws."""
+        found = self._drawn(inputs.levels, lambda a, b: np.abs(a.astype(float) - b).mean() > SEEN)
+        return found and found._replace(shown=found.shown | {"figures": [*map(inputs.figure, found.values)]})
+
+    def value(self) -> Found | None:
+        """Ask what a call returns."""
+        for call in [one for one in self.calls if inputs.count(inputs.small(one[:2])) <= GIVEN][:CALLS]:
+            args, kwargs = inputs.small(call[:2])
+
+            def view(version: changed.Version, given: Any = (args, kwargs)) -> Any:
+                came = self._answer(version.source, given)
+                return came if inputs.is_readable(came, ANSWERED) else None
+
+            if found := self._four(view, lambda a, b: misconceptions.difference(a, b) > APART):
+                said = ", ".join([*map(repr, args), *(f"{name}={one!r}" for name, one in kwargs.items())])
+                texts = [*map(inputs.told, found.values)]
+                return found._replace(shown={"call": f"{self.task}({said})", "texts": texts})
+        return None
+
+    def _drawn(self, see: Callable[[Any, Any], Any], differ: Any) -> Found | None:
+        """Return four versions whose drawn answers differ; a photograph takes the place of images."""
+        photos = self.run.job["photographs"]
+        for call in [one for one in self.calls if inputs.shown(one[2]) is not None][:CALLS]:
+            given = inputs.photographed(call[:2], np.array(photos[self.rng.integers(len(photos))], np.uint8))
+            own = inputs.shown(self._answer(self.source, given))
+            if own is None or own.min() == own.max():
+                continue
+
+            def view(version: changed.Version, given: Any = given, own: Any = own) -> Any:
+                came = inputs.shown(self._answer(version.source, given))
+                return None if came is None or came.shape != own.shape else see(came, own)
+
+            if found := self._four(view, differ):
+                return found._replace(shown={"own": inputs.figure(inputs.levels(own, own))})
+        return None
+
+    def _four(self, view: Any, differ: Any) -> Found | None:
+        """Return the first four versions, as they are drawn, whose values differ, also from the own."""
+        found, own = Found([], [], view, differ, {}), view(changed.Version(self.source, self.source))
+        for version in self._versions():
+            value = view(version)
+            if value is not None and all(
+                differ(value, one) for one in [own, *found.values] if one is not None
+            ):
+                found.versions.append(version)
+                found.values.append(value)
+            if len(found.values) == OPTIONS:
+                return found
+        return None
+
+    def _versions(self) -> list[changed.Version]:
+        every = changed.versions(self.source)
+        return [every[k] for k in self.rng.permutation(len(every))[:VERSIONS]]
+
+    @cached_property
+    def _subject(self) -> subject.Subject:
+        job = self.run.job
+        sandbox, seconds = tiers.choose(job["tier"]), TENTH * job["timeout"]
+        one = subject.Subject(job["sources"], sandbox, seconds, job["modules"])
+        self.run.submission = self.run.stack.enter_context(one)
+        return one
+
+    def _answer(self, source: str, call: Any) -> Any:
+        """Return what a version answers, None where it does not."""
+        self._subject.fresh(**{self.task: source})
+        try:
+            return getattr(self._subject, self.task)(*call[0], **call[1])
+        except subject.NoAnswer:
+            return None
+
+    def _is_same(self, source: str) -> bool:
+        """Return whether a version answers what the student's own function has answered to the checks."""
+        calls = sorted(self.calls, key=lambda call: inputs.count(call[:2]))[:COMPARED]
+        return all(misconceptions.difference(self._answer(source, call), call[2]) <= SAME for call in calls)
+
+    def _broken(self, version: changed.Version) -> set[str]:
+        """Return the promises that a version breaks."""
+        self._subject.fresh(**{self.task: version.source})
+        broken = set()
+        for item in self.items:
+            self.run.fell = False
+            item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
+            broken |= {plugin.promise_of(item)} if self.run.fell else set()
+        return broken

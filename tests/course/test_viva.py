@@ -1,0 +1,314 @@
+"""Questions on a student's own functions, which were answered by running changes of them."""
+
+import base64
+import difflib
+import json
+import re
+import time
+from html.parser import HTMLParser
+from types import SimpleNamespace
+
+import nbformat
+import numpy as np
+import pytest
+import siege
+from click.testing import CliRunner
+
+from benchmarks import viva as bench
+from hdrlab.cli import main
+from hdrlab.course import grading, plan
+from hdrlab.course.plan import Conditions
+from hdrlab.course.sandbox import tiers
+from hdrlab.course.sandbox.inside import system
+from hdrlab.course.viva import changed, examining, inputs, pages
+
+HOMEWORKS = plan.read().homeworks
+SOLUTIONS = {name: bench.solutions(one) for name, one in HOMEWORKS.items()}
+SHEETS = [name for name in HOMEWORKS if name != "project"]
+NASTY = "</pre><script>alert(1)</script>{{ 7 * 7 }}```\x1b[31m\u202e&"
+HOSTILE = f'def twice(x):\n    """{NASTY}"""\n    return 2 * x  # {NASTY}\n'
+
+
+def examined(name, seed=0, tasks=None, **more):
+    """Return the questions that the library's solution of a homework is asked."""
+    homework, sources = HOMEWORKS[name], SOLUTIONS[name]
+    if tasks:
+        kept = tuple(one for one in homework.tasks if one.id in tasks)
+        homework, sources = homework._replace(tasks=kept), {task: sources[task] for task in tasks}
+    return bench.examined((name, homework, bench.as_submission(sources | more), seed))
+
+
+@pytest.fixture(scope="module")
+def made():
+    """What the library's solutions are asked, each homework made once."""
+    found = {}
+
+    def once(name):
+        if name not in found:
+            found[name] = examined(name)
+        return found[name]
+
+    return once
+
+
+def question(kind, **more):
+    """Return a question of hostile text, of a kind."""
+    versions = [{"source": HOSTILE, "function": HOSTILE, "line": 3, "change": "* → /"}] * 4
+    return {"kind": kind, "task": "twice", "right": 1, "versions": versions, **more}
+
+
+CURVE = inputs.figure(np.arange(0, 250, 10, dtype=np.uint8))
+IMAGE = inputs.figure(np.arange(256, dtype=np.uint8).reshape(16, 16))
+EVERY = [
+    question("promise", texts=["It is twice as much", NASTY, "No sign is lost", ""]),
+    question("line", texts=[f"x = 1  # {NASTY}"] * 3, lines=[1, 2, 3]),
+    question("part", own=IMAGE, marks=[0, 9, 18, 63]),
+    question("picture", own=CURVE, figures=[CURVE, IMAGE, CURVE, IMAGE]),
+    question("value", call=f"twice({NASTY!r})", texts=["1", "2", NASTY, "4"]),
+]
+
+
+def written(questions, student=NASTY):
+    """Return all files of some questions, by name."""
+    words = {"homework": HOMEWORKS["hw2"], "seed": 7, "read": SimpleNamespace(hash="abc")}
+    words |= {"asked": SimpleNamespace(student=student, tier="strict")}
+    found = [{"passed": ["twice"]}, *({"question": one} for one in questions)]
+    return dict(pages.pages(found, **words))
+
+
+class Tags(HTMLParser):
+    """The tags of a page, and what refers to elsewhere."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.tags, self.refers, self.alts = set(), [], []
+        self.feed(text)
+
+    def handle_starttag(self, tag, attributes):
+        self.tags.add(tag)
+        named = dict(attributes)
+        self.refers += [one for name in ("href", "src") if (one := named.get(name))]
+        self.alts += [named.get("alt") or named.get("aria-label")] if tag in ("img", "svg") else []
+        assert not any(name.startswith("on") for name in named)
+
+
+# What is changed
+
+
+@pytest.mark.parametrize("task", ["gsolve", "hat", "recover_steps"])
+def test_a_version_is_python_that_differs_in_one_token(task):
+    source = SOLUTIONS["hw2"][task]
+    found = changed.versions(source)
+    assert len(found) > 8
+    for one in found:
+        old, new = one.change.split(" → ")
+        (was, now) = [
+            (source[a:b], one.source[c:d])
+            for tag, a, b, c, d in difflib.SequenceMatcher(None, source, one.source, False).get_opcodes()
+            if tag != "equal"
+        ][0]
+        assert was in old and now in new
+        assert one.function in one.source
+        assert new in one.function.split("\n")[one.line - 1]
+        compile(one.source, task, "exec")
+
+
+def test_words_comments_and_names_of_ones_own_stay():
+    found = changed.versions(
+        'def f(x):\n    """Take 2 of 3."""\n    y = "1 + 1"  # not 4\n    return y * (x + 5)\n'
+    )
+    assert {one.change for one in found} == {"* → /", "* → +", "+ → -", "+ → *", "5 → 6", "5 → 4"}
+
+
+def test_nothing_is_asked_of_a_function_too_long_to_be_shown():
+    assert changed.versions("def f(x):\n" + "    x = x + 1\n" * 100 + "    return x\n") == []
+    assert changed.versions("def f(x):\n    return 1 + x\n" + "# \n" * changed.LONGEST) == []
+
+
+def test_a_line_whose_value_is_written_out_where_it_was_used_can_be_taken_out():
+    source = "def f(λ, x):\n    y = λ + 1\n    z = 2 * y\n    return y * z - x\n"
+    idle = changed.unused(source)
+    assert sorted(idle) == [2, 3]
+    for line, text in idle.items():
+        answers = []
+        for one in (source, text, changed.without(text, line)):
+            exec(one, scope := {})
+            answers.append(scope["f"](3.0, 4.0))
+        assert answers == [answers[0]] * 3
+        exec(changed.without(source, line), scope := {})
+        with pytest.raises(NameError):
+            scope["f"](3.0, 4.0)
+
+
+def test_an_image_shows_the_photograph_in_the_levels_that_it_had():
+    rng = np.random.default_rng(1)
+    image, photo = rng.random((3, 20, 30)).astype(np.float32), rng.integers(0, 256, (40, 50))
+    (shown, curve), named = inputs.photographed(((image, np.arange(5.0)), {"k": 2}), photo)
+    assert shown.shape == (3, 60, 90) and shown.dtype == np.float32 and np.array_equal(curve, np.arange(5.0))
+    assert named == {"k": 2}
+    for before, after in zip(image, shown, strict=True):
+        assert np.array_equal(np.unique(before), np.unique(after))
+    seen = photo[np.ix_(np.arange(60) * 40 // 60, np.arange(90) * 50 // 90)]
+    assert np.corrcoef(seen.ravel(), shown[0].ravel())[0, 1] > 0.99
+
+
+def test_an_argument_by_hand_is_small_and_written_as_python():
+    given = inputs.small(([np.arange(40, dtype=np.uint8).reshape(5, 8)], 0.123456))
+    assert inputs.count(given) == 5
+    assert np.array_equal(eval(repr(given[0]), vars(np))[0], [[11, 12], [19, 20]])
+    assert inputs.told(given[1]) == "0.12"
+
+
+def test_an_answer_without_a_form_that_can_be_drawn_is_not_drawn():
+    shapes = [np.zeros((9, 0)), np.zeros((0, 9)), np.float64(3), "text", None, [], [[], []], {}, ()]
+    assert [inputs.shown(one) for one in [*shapes, *((one,) for one in shapes)]] == [None] * 18
+
+
+# Pages
+
+
+@pytest.mark.parametrize("name", ["viva.html", "quiz.html", "oral.html", "examiner.html"])
+def test_a_page_runs_nothing_fetches_nothing_and_says_what_it_cannot_show(name):
+    text = written(EVERY)[name]
+    page = Tags(text)
+    assert not page.tags & {"script", "iframe", "object", "form", "base"}
+    assert all(one.startswith(("data:", "#")) for one in page.refers)
+    assert all(page.alts) and len(page.alts) == 6
+    assert "They do not show who wrote it" in text
+    assert "{{ 7 * 7 }}" in text
+    assert not re.search("[\x00-\x08\x0b-\x1f\u202e]", text)
+
+
+def test_the_examiner_alone_is_told_which_is_right():
+    files = written(EVERY)
+    assert "<b>B</b> is right" in files["examiner.html"]
+    for name in ("viva.html", "quiz.html", "oral.html", "viva.ipynb"):
+        assert "</b> is right" not in files[name]
+        moved = written([{**one, "right": 2} for one in EVERY])[name]
+        keys = re.compile(r"[0-9a-f]{64}")
+        assert keys.sub("", moved) == keys.sub("", files[name])
+
+
+def test_the_notebook_checks_itself(capsys):
+    notebook = nbformat.reads(written(EVERY)["viva.ipynb"], 4)
+    nbformat.validate(notebook)
+    code = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
+    exec(code[0], scope := {})
+    for n in range(1, 6):
+        scope["check"](n, "B")
+        scope["check"](n, "C")
+    said = capsys.readouterr().out.splitlines()
+    assert [one == "right" for one in said] == [True, False] * 5
+    for cell in notebook.cells:
+        named = re.findall(r"attachment:([\w.]+)", cell.source)
+        assert sorted(named) == sorted(cell.get("attachments", {}))
+        assert "<script" not in cell.source
+        for one in cell.get("attachments", {}).values():
+            assert Tags(base64.b64decode(one["image/svg+xml"]).decode()).alts
+
+
+def test_fewer_than_five_are_said_in_words():
+    for name, text in written(EVERY[:2]).items():
+        assert "2 of five questions." in (json.loads(text)["cells"][0]["source"] if "ipynb" in name else text)
+        assert "twice" in text
+
+
+# Questions
+
+
+def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_version_and_one_is_drawn(
+    monkeypatch,
+):
+    monkeypatch.setattr(examining.Asked, "holds", lambda *_: True)
+    versions = [changed.Version(HOSTILE, HOSTILE, 3, f"{k}") for k in range(4)]
+    found = examining.Found(
+        versions, [*range(4)], int, np.not_equal, {"texts": ["1.5", "1.4", "1.6", "-900"]}
+    )
+    monkeypatch.setattr(examining.Asked, "value", lambda self: found)
+    run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
+    asked = examining.Asked(run, "twice", [], np.random.default_rng(3))
+    drawn = [asked.question("value") for _ in range(4000)]
+    share = np.bincount([one["right"] for one in drawn], minlength=4) / len(drawn)
+    assert np.all(np.abs(share - 0.25) < 0.03)
+    for most in (True, False):
+        assert abs(np.mean([bench.blind(one, most) for one in drawn]) - 0.25) < 0.03
+
+
+@pytest.mark.parametrize("name", SHEETS)
+def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_they_are_run_again(name, made):
+    _, passed, questions, seconds = made(name)
+    assert len(passed) == len(HOMEWORKS[name].tasks)
+    assert [one["again"] for one in questions] == [[True] * 4] * 5
+    assert len({(one["task"], one["kind"]) for one in questions}) == 5
+    assert len({one["task"] for one in questions}) >= 4
+    assert len({one["kind"] for one in questions}) >= (2 if name == "hw2" else 3)
+    for one in questions:
+        versions = [version["source"] for version in one["versions"]]
+        assert len(set(versions)) == 4
+        if one["kind"] != "line":
+            assert SOLUTIONS[name][one["task"]] not in versions
+
+
+def test_the_same_seed_asks_the_same_and_another_seed_something_else(made):
+    first = made("hw1")[2]
+    assert written(examined("hw1")[2]) == written(first)
+    assert written(examined("hw1", seed=1)[2]) != written(first)
+
+
+def test_of_one_function_questions_of_different_kinds_are_asked():
+    *_, questions, _ = examined("hw4", tasks=["display"])
+    kinds = [one["kind"] for one in questions]
+    assert 2 <= len(kinds) == len(set(kinds))
+
+
+def test_a_function_that_breaks_a_promise_is_not_asked_about():
+    wrong = SOLUTIONS["hw1"]["ev"].replace("log2", "log")
+    _, passed, questions, _ = examined("hw1", tasks=["ev", "equivalent_time"], ev=wrong)
+    assert passed == ["equivalent_time"]
+    assert {one["task"] for one in questions} == {"equivalent_time"}
+
+
+def test_a_change_that_never_ends_costs_its_time_and_no_more():
+    text = "import numpy as np\n\n\ndef ev(N, t, S=100.0):\n    k = 0\n    while k < 3:\n        k += 1\n"
+    text += "    return np.log2(N**2 / t) - np.log2(S / 100)\n"
+    begun = time.monotonic()
+    *_, questions, _ = examined("hw1", tasks=["ev"], ev=text)
+    assert questions
+    assert all(one["again"] == [True] * 4 for one in questions)
+    assert time.monotonic() - begun < 100
+
+
+@pytest.mark.parametrize("name", siege.NAMES)
+def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
+    try:
+        tiers.choose("strict")
+    except tiers.Unavailable as reason:
+        pytest.skip(str(reason))
+    place = siege.furnish(tmp_path)
+    files, processes = siege.listing(place), system.children()
+    begin = "\n\ntry:\n    double(1.0)\nexcept BaseException:\n    pass\n"
+    sources = {task: SOLUTIONS["hw1"][task] for task in ("ev", "equivalent_time")}
+    sources["ev"] = siege.armed(name, place, 9) + begin + sources["ev"]
+    homework = HOMEWORKS["hw1"]
+    homework = homework._replace(tasks=tuple(one for one in homework.tasks if one.id in sources))
+    conditions = Conditions("strict", timeout=5.0, draw=False)
+    more = {"seed": "3", "photographs": pages.photographs([])}
+    more["by"] = "hdrlab.course.viva.examining:Examining"
+    found = [*grading.heard_steps(bench.as_submission(sources), homework, conditions, **more)]
+    asked = [one["question"] for one in found if "question" in one]
+    assert any(one["task"] == "equivalent_time" for one in asked)
+    for text in written(asked).values():
+        assert "<script>alert" not in text
+    assert system.children() == processes, "a process is left"
+    assert siege.listing(place) == files, "a file is left"
+
+
+def test_the_command_writes_all_sheets_and_says_what_was_not_read(tmp_path):
+    work = tmp_path / "hw1.py"
+    work.write_text("# %%\n" + SOLUTIONS["hw1"]["equivalent_time"])
+    words = ["viva", str(work), "--tier", "practice", "--seed", "2", "-o", str(tmp_path / "out")]
+    ended = CliRunner().invoke(main, words, catch_exceptions=False)
+    assert ended.exit_code == 0
+    assert {path.name for path in (tmp_path / "out").iterdir()} == {*written(EVERY)}
+    assert "note: ev was not found" in ended.output
+    assert "of five questions." in (tmp_path / "out" / "viva.html").read_text()
