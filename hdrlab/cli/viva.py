@@ -36,6 +36,9 @@ def viva(asked: Any) -> None:
     secret, note = grading.secret_of(asked.secret_file)
     conditions = plans.Conditions(asked.tier, asked.student, secret, draw=False)
     seed = plans.seed(secret, asked.student, f"viva {homework.name}") if asked.seed is None else asked.seed
+    asked.out.mkdir(
+        parents=True, exist_ok=True
+    )  # what cannot be is better known before the work than after it
     read, homework = grader.read_tasks(asked.submission, homework, conditions)
     more = {"by": EXAMINER, "seed": str(seed), "photographs": pages.photographs(asked.photographs)}
     try:
@@ -45,7 +48,6 @@ def viva(asked: Any) -> None:
     except Unavailable as error:
         raise common.no_tier(str(error)) from None
     common.say("note", read.problems)
-    asked.out.mkdir(parents=True, exist_ok=True)
     for name, text in pages.pages(found, homework=homework, asked=asked, seed=seed, read=read):
         click.echo(write(asked.out / name, text))
     click.echo(note, nl=bool(note), err=True)
