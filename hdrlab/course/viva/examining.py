@@ -23,12 +23,12 @@ from hdrlab.course.viva import changed, inputs
 
 KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
 QUESTIONS, OPTIONS = 5, 4
-VERSIONS, CALLS, DRAWS = 12, 2, 20  # that are tried; for a question of promises half of the versions
+VERSIONS, CALLS, DRAWS = 20, 2, 20  # that are tried; for a question of promises half of the versions
 HALFWAY, COMPARED = 2, 8  # promises told apart by half of these at least, and calls that are compared
 SEEN = 6.0  # levels that two pictures are apart, on average
 CLEARLY = 1.1  # times as much changes in a version's own part as in another's
 APART, SAME = 0.02, 1e-6  # relative: numbers that a person tells apart, and answers that are one
-GIVEN, ANSWERED, TENTH = 16, 6, 0.1  # numbers of a call by hand, and of the seconds of a check, at most
+GIVEN, ANSWERED, SHARE = 16, 6, 0.3  # numbers of a call by hand, and of the seconds of a check, at most
 
 
 class Found(NamedTuple):
@@ -209,7 +209,7 @@ class Asked:
     @cached_property
     def _subject(self) -> subject.Subject:
         job = self.run.job
-        sandbox, seconds = tiers.choose(job["tier"]), TENTH * job["timeout"]
+        sandbox, seconds = tiers.choose(job["tier"]), SHARE * job["timeout"]
         one = subject.Subject(job["sources"], sandbox, seconds, job["modules"])
         self.run.submission = self.run.stack.enter_context(one)
         return one
