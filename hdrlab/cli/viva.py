@@ -36,9 +36,7 @@ def viva(asked: Any) -> None:
     secret, note = grading.secret_of(asked.secret_file)
     conditions = plans.Conditions(asked.tier, asked.student, secret, draw=False)
     seed = plans.seed(secret, asked.student, f"viva {homework.name}") if asked.seed is None else asked.seed
-    asked.out.mkdir(
-        parents=True, exist_ok=True
-    )  # what cannot be is better known before the work than after it
+    asked.out.mkdir(parents=True, exist_ok=True)  # better known before the work, where it cannot be
     read, homework = grader.read_tasks(asked.submission, homework, conditions)
     more = {"by": EXAMINER, "seed": str(seed), "photographs": pages.photographs(asked.photographs)}
     try:
