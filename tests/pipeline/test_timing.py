@@ -6,7 +6,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
-from hdrlab.pipeline import stages
+from hdrlab.pipeline import registration
 from hdrlab.pipeline.timing import complete_times, estimate_relative_times, refine_times, space_by_stops
 
 
@@ -102,9 +102,9 @@ def test_where_photographs_lie_apart_new_times_are_still_told_and_contradictions
     def lie_apart(*given, **named):
         return aligned(*given, **named)._replace(doubts=("a and b do not lie on each other",))
 
-    aligned = stages.aligned
+    aligned = registration.aligned
     said = pipeline.assemble(mistaken, align="none").doubts
-    monkeypatch.setattr(stages, "aligned", lie_apart)
+    monkeypatch.setattr(registration, "aligned", lie_apart)
     apart = pipeline.assemble(mistaken, align="none").doubts
     assert [one[:31] for one in said] == [
         "the estimated times depart from",
