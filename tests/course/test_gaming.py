@@ -134,7 +134,8 @@ def test_a_table_of_public_inputs_is_not_for_credit():
     for student, secret in (("", ""), ("ada", ""), ("", "salt")):
         assert grading._seed_id(homework, Conditions("strict", student, secret)) == ""
     assert grading._seed_id(homework, Conditions("strict", "ada", "salt"))
-    drawn, public = (grading._result([], NOTHING, homework, one, []) for one in (WITH, WITHOUT))
+    heard = [{"specification": ""}]
+    drawn, public = (grading._result(heard, NOTHING, homework, one) for one in (WITH, WITHOUT))
     assert drawn.for_credit and not public.for_credit and "without a secret" in public.why_practice
 
 
