@@ -1,22 +1,28 @@
 """Do the questions of `hdrlab viva` have one right answer, and is it hidden from who does not know the code?
 
 Questions are made of the library's solutions, of the tests' files of equivalents and of the battery of right
-answers, each with one seed after the other, until there are VIVA_QUESTIONS of them (10,000 take hours).
+answers, each with one seed after the other from VIVA_SEED on, until there are VIVA_QUESTIONS of them. They
+are made in this process, since these answers are trusted and a sandbox for each costs twenty times as long,
+and not five of a submission but all that there are: the first five are those of `hdrlab viva`.
 
-again    every version of a question is run once more, in this process instead of the sandbox: it has its own
-         option's answer, and none of the three others
+again    every version of a question is run once more, in the sandbox: it has its own option's answer, and
+         none of the three others
 refused  submissions with five passing tasks or more, and fewer than five questions
 blind    somebody who sees the options alone takes the one that has most in common with the others, or least;
          of pictures the one nearest to the others' mean, or farthest. Ties count by their share
 places   how often the right one stands at A, B, C and D, in %
+seconds  of a processor for `hdrlab viva`, all of it in the sandbox, with each homework's solution
 """
 
+import math
 import os
 import re
 import resource
 import signal
 from collections.abc import Iterator
 from contextlib import contextmanager
+from copy import deepcopy
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
@@ -32,15 +38,17 @@ from hdrlab.course.checks.subject import NoAnswer
 from hdrlab.course.code.closure import Cell, closed
 from hdrlab.course.code.names import imported
 from hdrlab.course.plan import Conditions, Homework
+from hdrlab.course.sandbox.inside import worker
 from hdrlab.course.submission import Submission
 from hdrlab.course.viva import examining, pages
 
 QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
+SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = Conditions(TIER, draw=False)
-# seconds of a call that is run again
-PATIENCE = 10
-SECONDS = "CPU seconds for the questions of a submission: median, largest"
+# questions of a submission, at most; seconds and bytes of a call in this process
+MOST, PATIENCE, MEMORY = 40, 3, 1 << 32
+SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
 ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"
 
@@ -51,24 +59,27 @@ Question = dict[str, Any]
 class InProcess:
     """What a check asks, as `checks.subject.Subject`, of functions to trust that run in this process."""
 
-    said = ""
+    said, left = "", math.inf
 
-    def __init__(self) -> None:
-        self.functions: dict[str, Any] = {}
+    def __init__(self, sources: dict[str, str]) -> None:
+        self.texts, self.functions = dict(sources), dict[str, Any]()
         self.calls: list[Any] = []
 
     def fresh(self, **sources: str) -> None:
-        """Run other texts of some tasks."""
-        for task, text in sources.items():
-            scope: dict[str, Any] = {"__name__": task}
-            with in_time(), np.errstate(all="ignore"):
-                exec(compile(text, task, "exec"), scope)
-            self.functions[task] = scope[task]
+        """Know nothing of what was called before, with other texts of some tasks."""
+        self.texts |= sources
+        self.functions = {}
 
     def __getattr__(self, task: str) -> Any:
         def ask(*given: Any, **named: Any) -> Any:
             with in_time(), np.errstate(all="ignore"):
-                return compare.plain(self.functions[task](*given, **named))
+                if task not in self.functions:
+                    scope: dict[str, Any] = {"__name__": task}
+                    exec(compile(self.texts[task], task, "exec"), scope)
+                    self.functions[task] = scope[task]
+                return compare.plain(
+                    worker.drained(self.functions[task](*deepcopy(given), **deepcopy(named)))
+                )
 
         return ask
 
@@ -91,7 +102,7 @@ def in_time() -> Iterator[None]:
 
 
 class Twice(examining.Asked):
-    """A task that is asked about, all of whose four answers are computed once more, in this process."""
+    """A task that is asked about, all of whose four answers are computed once more, in the sandbox."""
 
     def question(self, kind: str) -> Question | None:
         """Return the question; what is wrong with this very code is written down."""
@@ -102,22 +113,31 @@ class Twice(examining.Asked):
             raise
 
     def holds(self, found: examining.Found, k: int) -> bool:
-        """Return what the sandbox says of version k, and write down what this process says of all four."""
+        """Return what this process says of version k, and write down what the sandbox says of all four."""
         if not super().holds(found, k):
             return False
-        one = InProcess()
-        self.__dict__["_subject"] = self.run.submission = one  # type: ignore[assignment]
+        run: Any = self.run
+        run.submission, run.other = run.other, run.submission
+        if run.submission.left < examining.WORN * run.job["timeout"]:
+            examining.Examining._begin(run)
         found.shown["again"] = [bool(super(Twice, self).holds(found, n)) for n in range(examining.OPTIONS)]
+        run.submission, run.other = run.other, run.submission
         return True
 
 
 class Examining(examining.Examining):
-    """A run of the checks, after which every answer is run again."""
+    """A run of the checks, after which questions are made in this process, and run again in the sandbox."""
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write down questions, and what became of them when they were run again."""
+        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
         examining.Asked = Twice  # type: ignore[misc]
+        examining.QUESTIONS = int(self.job["most"])
         super().pytest_sessionfinish(session)
+
+    def _begin(self) -> None:
+        super()._begin()
+        self.other, self.submission = self.submission, InProcess(self.job["sources"])  # type: ignore[assignment]
 
 
 def works() -> Iterator[tuple[str, Homework, Submission]]:
@@ -144,20 +164,17 @@ def as_submission(sources: dict[str, str] | Any) -> Submission:
 
 
 def examined(
-    item: tuple[str, Homework, Submission, int],
-) -> tuple[str, list[str], list[dict[str, Any]], float]:
-    """Return a name, the tasks that passed, the questions, and the CPU seconds that they took."""
+    item: tuple[str, Homework, Submission, int], by: str = "benchmarks.viva:Examining", most: int = MOST
+) -> tuple[str, list[str], list[dict[str, Any]]]:
+    """Return a name, the tasks that passed, and the questions."""
     name, homework, read, seed = item
-    before = resource.getrusage(resource.RUSAGE_CHILDREN)
     more = {"seed": str(plan.seed("viva", name, str(seed))), "photographs": pages.photographs([])}
-    found = list(grading.heard_steps(read, homework, CONDITIONS, by="benchmarks.viva:Examining", **more))
-    after = resource.getrusage(resource.RUSAGE_CHILDREN)
-    seconds = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
+    found = list(grading.heard_steps(read, homework, CONDITIONS, by=by, most=most, **more))
     passed = next(one["passed"] for one in found if "passed" in one)
     made = [one["question"] for one in found if "question" in one]
     for broken in [one["broken"] for one in made if "broken" in one]:
         print(f"  {name}: {broken}", flush=True)
-    return name, passed, [one for one in made if "broken" not in one], seconds
+    return name, passed, [one for one in made if "broken" not in one]
 
 
 def features(question: dict[str, Any]) -> list[np.ndarray]:
@@ -185,14 +202,12 @@ def questions(_: Path) -> dict[str, Any]:
     every = list(works())
     every = [every[k] for k in np.random.default_rng(1).permutation(len(every))]
     asked: list[Question] = []
-    seconds: list[float] = []
-    refused, whole, seed = 0, 0, 0
+    refused, whole, seed = 0, 0, SEED
     while len(asked) < QUESTIONS:
-        need = -(-(QUESTIONS - len(asked)) // 5)
+        need = -(-(QUESTIONS - len(asked)) // examining.QUESTIONS)
         items = [(*one, seed) for one in every][:need]
-        for name, passed, made, took in along(examined, items, f"seed {seed}"):
+        for name, passed, made in along(examined, items, f"seed {seed}"):
             asked += made
-            seconds += [took]
             whole += len(passed) >= examining.QUESTIONS
             short = len(passed) >= examining.QUESTIONS > len(made)
             refused += short
@@ -209,14 +224,26 @@ def questions(_: Path) -> dict[str, Any]:
         "questions": len(asked),
         AGAIN: 100 * np.mean([one["again"] == [True] * 4 for one in asked]),
         REFUSED: 100 * refused / max(whole, 1),
-        SECONDS: (float(np.median(seconds)), max(seconds)),
         ALIKE: 100 * np.mean([blind(one, True) for one in asked]),
         ODD: 100 * np.mean([blind(one, False) for one in asked]),
         PLACES: tuple(100 * places / places.sum()),
     }
 
 
+def seconds(_: Path) -> dict[str, Any]:
+    """Return what the questions of the library's solutions cost, one homework after the other."""
+    took = []
+    for name, homework, read in islice(works(), 5):
+        before = resource.getrusage(resource.RUSAGE_CHILDREN)
+        made = examined((name, homework, read, 0), "hdrlab.course.viva.examining:Examining")[2]
+        after = resource.getrusage(resource.RUSAGE_CHILDREN)
+        took.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
+        print(f"  {name}: {len(made)} questions, {took[-1]:.1f} s", flush=True)
+    return {SECONDS: (float(np.median(took)), max(took))}
+
+
 ROWS = (
+    Experiment("seconds", "what five questions cost", seconds, (at_most(SECONDS, 20, 20),)),
     Experiment(
         "questions",
         "questions on right answers, each run again",
@@ -224,7 +251,6 @@ ROWS = (
         (
             at_least(AGAIN, 100),
             at_most(REFUSED, 0.5),
-            at_most(SECONDS, 20, 20),
             near(ALIKE, 25, by=3),
             near(ODD, 25, by=3),
             near(PLACES, 25, 25, 25, 25, by=3),

@@ -66,11 +66,16 @@ def move_tune(page, widget):
     """Each slider was put back, so the picture is the one that the cell made: no later cell has a say."""
     before = widget.evaluate(DIGEST)
     move_sliders(page, widget, lambda: until_answered(page, widget))
-    assert widget.evaluate(DIGEST) == before
+    # Python's own picture comes after a stored one of the same place.
+    page.wait_for_function(
+        f"([el, before]) => ({DIGEST})(el) === before",
+        arg=[widget.element_handle(), before],
+        timeout=PATIENCE,
+    )
 
 
 def until_answered(page, widget):
-    """Wait until the last position is what stays, and is Python's own answer, not a stored one."""
+    """Wait until the picture is of the last position."""
     names = [label.inner_text() for label in widget.locator(".hdrlab-slider span:first-child").all()]
     texts = [slider.get_attribute("aria-valuetext") for slider in widget.get_by_role("slider").all()]
     wanted = ", ".join(f"{name} = {text}" for name, text in zip(names, texts, strict=True))

@@ -29,13 +29,16 @@ NASTY = "</pre><script>alert(1)</script>{{ 7 * 7 }}```\x1b[31m\u202e&"
 HOSTILE = f'def twice(x):\n    """{NASTY}"""\n    return 2 * x  # {NASTY}\n'
 
 
-def examined(name, seed=0, tasks=None, **more):
+HERE, THERE = "benchmarks.viva:Examining", "hdrlab.course.viva.examining:Examining"
+
+
+def examined(name, seed=0, tasks=None, by=HERE, **more):
     """Return the questions that the library's solution of a homework is asked."""
     homework, sources = HOMEWORKS[name], SOLUTIONS[name]
     if tasks:
         kept = tuple(one for one in homework.tasks if one.id in tasks)
         homework, sources = homework._replace(tasks=kept), {task: sources[task] for task in tasks}
-    return bench.examined((name, homework, bench.as_submission(sources | more), seed))
+    return bench.examined((name, homework, bench.as_submission(sources | more), seed), by, most=5)
 
 
 @pytest.fixture(scope="module")
@@ -236,7 +239,7 @@ def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_ve
 
 @pytest.mark.parametrize("name", SHEETS)
 def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_they_are_run_again(name, made):
-    _, passed, questions, seconds = made(name)
+    _, passed, questions = made(name)
     assert len(passed) == len(HOMEWORKS[name].tasks)
     assert [one["again"] for one in questions] == [[True] * 4] * 5
     assert len({(one["task"], one["kind"]) for one in questions}) == 5
@@ -249,21 +252,21 @@ def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_t
             assert SOLUTIONS[name][one["task"]] not in versions
 
 
-def test_the_same_seed_asks_the_same_and_another_seed_something_else(made):
+def test_the_same_seed_asks_the_same_also_in_the_sandbox_and_another_seed_something_else(made):
     first = made("hw1")[2]
-    assert written(examined("hw1")[2]) == written(first)
+    assert written(examined("hw1", by=THERE)[2]) == written(first)
     assert written(examined("hw1", seed=1)[2]) != written(first)
 
 
 def test_of_one_function_questions_of_different_kinds_are_asked():
-    *_, questions, _ = examined("hw4", tasks=["display"])
+    *_, questions = examined("hw4", tasks=["display"])
     kinds = [one["kind"] for one in questions]
     assert 2 <= len(kinds) == len(set(kinds))
 
 
 def test_a_function_that_breaks_a_promise_is_not_asked_about():
     wrong = SOLUTIONS["hw1"]["ev"].replace("log2", "log")
-    _, passed, questions, _ = examined("hw1", tasks=["ev", "equivalent_time"], ev=wrong)
+    _, passed, questions = examined("hw1", tasks=["ev", "equivalent_time"], ev=wrong)
     assert passed == ["equivalent_time"]
     assert {one["task"] for one in questions} == {"equivalent_time"}
 
@@ -272,9 +275,8 @@ def test_a_change_that_never_ends_costs_its_time_and_no_more():
     text = "import numpy as np\n\n\ndef ev(N, t, S=100.0):\n    k = 0\n    while k < 3:\n        k += 1\n"
     text += "    return np.log2(N**2 / t) - np.log2(S / 100)\n"
     begun = time.monotonic()
-    *_, questions, _ = examined("hw1", tasks=["ev"], ev=text)
+    *_, questions = examined("hw1", tasks=["ev"], by=THERE, ev=text)
     assert questions
-    assert all(one["again"] == [True] * 4 for one in questions)
     assert time.monotonic() - begun < 100
 
 
@@ -293,7 +295,7 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     homework = homework._replace(tasks=tuple(one for one in homework.tasks if one.id in sources))
     conditions = Conditions("strict", timeout=5.0, draw=False)
     more = {"seed": "3", "photographs": pages.photographs([])}
-    more["by"] = "hdrlab.course.viva.examining:Examining"
+    more["by"] = THERE
     found = [*grading.heard_steps(bench.as_submission(sources), homework, conditions, **more)]
     asked = [one["question"] for one in found if "question" in one]
     assert any(one["task"] == "equivalent_time" for one in asked)

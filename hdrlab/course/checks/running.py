@@ -56,7 +56,7 @@ def _command(job: Path, empty: Path, files: Sequence[Path]) -> list[str]:
         *("-q", "-q", "--noconftest", "--import-mode=importlib"),
         *(f"--rootdir={empty}", f"--confcutdir={empty}"),
         *("-c", os.devnull, "-p", "no:cacheprovider", "-p", "hdrlab.course.checks.plugin", "-W", "ignore"),
-        *("-o", f"pythonpath={SPECIFICATION}", "--tb=short", f"--job={job}"),
+        *("-o", f"pythonpath={SPECIFICATION}", "--tb=native", f"--job={job}"),
     ]
     return [sys.executable, "-P", "-m", "pytest", *options, *map(str, files)]
 

@@ -112,6 +112,11 @@ class Subject:
         self.calls, self.said, self._kept = [], "", 0
         self._left_of_check = CHECK * self._timeout
 
+    @property
+    def left(self) -> float:
+        """The seconds that are left for all calls, of a processor's time or of the clock's."""
+        return min(self._left_of_all, self._running.left if self._running else math.inf)
+
     def _drop(self) -> None:
         """Let go of the check's process; it is ended before the next one begins, and with the sandbox."""
         if self._link is not None:

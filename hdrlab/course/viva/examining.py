@@ -9,8 +9,7 @@ value   of a version: what the options tell apart
 """
 
 from collections.abc import Callable
-from contextlib import ExitStack, suppress
-from functools import cached_property
+from contextlib import suppress
 from operator import ne
 from typing import Any, NamedTuple
 
@@ -24,11 +23,12 @@ from hdrlab.course.viva import changed, inputs
 KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
 QUESTIONS, OPTIONS = 5, 4
 VERSIONS, CALLS, DRAWS = 20, 2, 20  # that are tried; for a question of promises half of the versions
-HALFWAY, COMPARED = 2, 8  # promises told apart by half of these at least, and calls that are compared
+FEW, COMPARED = 2, 8  # versions that break a promise, if promises are to be told apart; calls compared
 SEEN = 6.0  # levels that two pictures are apart, on average
 CLEARLY = 1.1  # times as much changes in a version's own part as in another's
 APART, SAME = 0.02, 1e-6  # relative: numbers that a person tells apart, and answers that are one
-GIVEN, ANSWERED, SHARE = 16, 6, 0.3  # numbers of a call by hand, and of the seconds of a check, at most
+GIVEN, ANSWERED = 16, 6  # numbers of a call by hand, at most
+SHARE, WORN = 0.3, 0.6  # of a check's seconds: what a call gets, and below what a sandbox is used up
 
 
 class Found(NamedTuple):
@@ -49,20 +49,30 @@ class Examining(plugin.Checking):
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write down questions: of different kinds, and of different tasks while there are any."""
         self.asking, rng = True, np.random.default_rng(int(self.job["seed"]))
+        self._begin()
         passed = [task for task in self.job["sources"] if self.calls.get(task) and task not in self.failed]
         self._write(passed=passed)
+        asked = {task: Asked(self, task, session.items, rng) for task in passed}
         left = [(kind, str(task)) for kind in KINDS for task in rng.permutation(passed)]
         kinds, tasks = [""], [""]
         while left and len(tasks) <= QUESTIONS:
             kind, task = min(left, key=lambda pair: (tasks.count(pair[1]), kinds.count(pair[0])))
             left.remove((kind, task))
-            items = [one for one in session.items if plugin.task_of(one) == task]
+            if self.submission.left < WORN * self.job["timeout"]:
+                self._begin()
             question = None
-            with suppress(Exception), ExitStack() as self.stack:  # whatever it answers costs one question
-                question = Asked(self, task, items, rng).question(kind)
+            with suppress(Exception):  # whatever it answers costs one question
+                question = asked[task].question(kind)
             if question:
                 kinds, tasks = [*kinds, kind], [*tasks, task]
                 self._write(question=question)
+
+    def _begin(self) -> None:
+        """Take a new sandbox, in place of one whose time is nearly used up."""
+        self.submission.__exit__()
+        sandbox, seconds = tiers.choose(self.job["tier"]), SHARE * self.job["timeout"]
+        one = subject.Subject(self.job["sources"], sandbox, seconds, self.job["modules"])
+        self.submission = self.open.enter_context(one)
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
         self.fell = self.fell or raised is not None
@@ -73,7 +83,8 @@ class Asked:
     """A task that is asked about, in a sandbox of its own; KINDS are methods."""
 
     def __init__(self, run: Examining, task: str, items: list[pytest.Item], rng: np.random.Generator) -> None:
-        self.run, self.task, self.items, self.rng = run, task, items, rng
+        self.run, self.task, self.rng = run, task, rng
+        self.items = [one for one in items if plugin.task_of(one) == task]
         self.source = run.job["sources"][task]
         self.calls = [run.calls[task][k] for k in rng.permutation(len(run.calls[task]))]
 
@@ -104,7 +115,7 @@ class Asked:
             every = sorted(set().union(*broken), key=lambda one: (sum(one in each for each in broken), one))
             first = [next((one for one in every if one in each), "") for each in broken]
             known = [one for one in [*every, ""] if one in first]
-            if len(known) >= OPTIONS or (len(known) < HALFWAY and len(versions) == VERSIONS // 4):
+            if len(known) >= OPTIONS or len(versions) > FEW * len(known) + 1:
                 break
         if len(known) < OPTIONS:
             return None
@@ -165,7 +176,10 @@ class Asked:
                 came = self._answer(version.source, given)
                 return came if inputs.is_readable(came, ANSWERED) else None
 
-            if found := self._four(view, lambda a, b: misconceptions.difference(a, b) > APART):
+            own = view(changed.Version(self.source, self.source))
+            if own is not None and (
+                found := self._four(view, lambda a, b: misconceptions.difference(a, b) > APART)
+            ):
                 said = ", ".join([*map(repr, args), *(f"{name}={one!r}" for name, one in kwargs.items())])
                 texts = [*map(inputs.told, found.values)]
                 return found._replace(shown={"call": f"{self.task}({said})", "texts": texts})
@@ -206,30 +220,26 @@ class Asked:
         every = changed.versions(self.source)
         return [every[k] for k in self.rng.permutation(len(every))[:VERSIONS]]
 
-    @cached_property
-    def _subject(self) -> subject.Subject:
-        job = self.run.job
-        sandbox, seconds = tiers.choose(job["tier"]), SHARE * job["timeout"]
-        one = subject.Subject(job["sources"], sandbox, seconds, job["modules"])
-        self.run.submission = self.run.stack.enter_context(one)
-        return one
-
     def _answer(self, source: str, call: Any) -> Any:
         """Return what a version answers, None where it does not."""
-        self._subject.fresh(**{self.task: source})
+        self.run.submission.fresh(**{self.task: source})
+        return self._asked(call)
+
+    def _asked(self, call: Any) -> Any:
         try:
-            return getattr(self._subject, self.task)(*call[0], **call[1])
+            return getattr(self.run.submission, self.task)(*call[0], **call[1])
         except subject.NoAnswer:
             return None
 
     def _is_same(self, source: str) -> bool:
         """Return whether a version answers what the student's own function has answered to the checks."""
         calls = sorted(self.calls, key=lambda call: inputs.count(call[:2]))[:COMPARED]
-        return all(misconceptions.difference(self._answer(source, call), call[2]) <= SAME for call in calls)
+        self.run.submission.fresh(**{self.task: source})
+        return all(misconceptions.difference(self._asked(call), call[2]) <= SAME for call in calls)
 
     def _broken(self, version: changed.Version) -> set[str]:
         """Return the promises that a version breaks."""
-        self._subject.fresh(**{self.task: version.source})
+        self.run.submission.fresh(**{self.task: version.source})
         broken = set()
         for item in self.items:
             self.run.fell = False
