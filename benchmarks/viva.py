@@ -40,7 +40,7 @@ from hdrlab.course.code.names import imported
 from hdrlab.course.plan import Conditions, Homework
 from hdrlab.course.sandbox.inside import worker
 from hdrlab.course.submission import Submission
-from hdrlab.course.viva import examining, pages
+from hdrlab.course.viva import examining, inputs, pages
 
 QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
 SEED = int(os.environ.get("VIVA_SEED", "0"))
@@ -77,9 +77,11 @@ class InProcess:
                     scope: dict[str, Any] = {"__name__": task}
                     exec(compile(self.texts[task], task, "exec"), scope)
                     self.functions[task] = scope[task]
-                return compare.plain(
-                    worker.drained(self.functions[task](*deepcopy(given), **deepcopy(named)))
-                )
+                answer = self.functions[task](*deepcopy(given), **deepcopy(named))
+                answer = compare.plain(worker.drained(answer))
+                if any(one.dtype.hasobject for one in inputs.arrays_in(answer)):
+                    raise TypeError("an answer that is no array")  # the sandbox's channel refuses it
+                return answer
 
         return ask
 
