@@ -12,7 +12,6 @@ import pytest
 import threadpoolctl
 from halves import decoded
 from matplotlib.figure import Figure
-from matplotlib.legend import Legend
 
 from hdrlab import scenes
 from hdrlab.io import web
@@ -653,19 +652,6 @@ def test_the_background_is_kept_where_the_axes_stay_and_painted_again_where_they
         reuse.draw_reusing(draw, 1, render, kept)
         ((_, after),) = kept.background.values()
         assert (before is after) == stays
-
-
-def test_a_legend_is_blitted_where_it_and_what_it_covers_stay_and_drawn_where_they_change(monkeypatch):
-    drawn, draw_legend = [], Legend.draw
-    monkeypatch.setattr(
-        Legend, "draw", lambda *given: drawn.append(given[0].get_visible()) or draw_legend(*given)
-    )
-    for draw, count in ((covering, 2), (renamed, 4), (crowned, 4)):
-        kept = reuse.Kept()
-        drawn.clear()
-        for k in (0, 1, 2, 3):
-            reuse.draw_reusing(draw, k, render, kept)
-        assert sum(drawn) == count
 
 
 STILLS = {

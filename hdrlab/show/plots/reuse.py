@@ -4,7 +4,6 @@
 the like return the Axes of the picture before, wiped, where `keep` found nothing on them that wiping would
 leave behind. `paint` keeps the pixels of their background, which is the patch with ticks, numbers and grid:
 where these are the same as in the picture before, they are blitted, and only the artists upon them are drawn.
-So is a legend that says the same over the same pixels: to lay out its words takes longer than most curves.
 """
 
 from collections.abc import Callable, Iterable, Iterator
@@ -13,20 +12,14 @@ from contextvars import ContextVar
 from itertools import chain
 from typing import Any, TypeVar
 
-import numpy as np
 from matplotlib import rcParams
 from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.axis import Axis
 from matplotlib.backends.backend_agg import FigureCanvasAgg
-from matplotlib.font_manager import FontProperties
-from matplotlib.legend import Legend
-from matplotlib.lines import Line2D
-from matplotlib.patches import Patch
 
 State = TypeVar("State")
 Picture = TypeVar("Picture")
-PLAIN = (str, int, float, tuple, FontProperties)  # what tells how an artist looks
 Size = tuple[float, ...]  # of the figure, inches, and where in it its Axes lie if not in the usual place
 
 
@@ -37,7 +30,6 @@ class Kept:
         self.spare: dict[Size, list[Axes]] = {}
         self.out: dict[Size, tuple[list[Axes], list[object]]] = {}
         self.background: dict[Size, tuple[object, Any]] = {}
-        self.legend: tuple[object, Any, Any, Any] = (None, ..., None, None)  # its look, place, ground, pixels
 
 
 _kept: ContextVar[Kept | None] = ContextVar("kept", default=None)
@@ -126,37 +118,8 @@ def paint(canvas: FigureCanvasAgg) -> None:
         with hidden(child for ax in axes for child in ax.get_children() if child not in background):
             canvas.draw()
         kept.background[size] = (marks, canvas.copy_from_bbox(figure.bbox))
-    top = max(axes[0].get_children(), key=lambda child: child.zorder)
-    fixed = isinstance(top, Legend) and vars(top)["_loc_real"] != 0  # which is where there is room
-    last = [top] if isinstance(top, Legend) and fixed and len(axes) == 1 else []
-    with hidden([*background, *last]):
+    with hidden(background):
         figure.draw(canvas.get_renderer())
-    for legend in last:
-        lay(legend, canvas, kept)
-
-
-def lay(legend: Legend, canvas: FigureCanvasAgg, kept: Kept) -> None:
-    """Draw a legend, or blit the one of the picture before where it looks the same and covers the same."""
-    looks, pixels = legend_look(legend), np.asarray(canvas.buffer_rgba())
-    before, box, covered, own = kept.legend
-    if before == looks and np.array_equal(pixels[box], covered):
-        pixels[box] = own
-        return
-    ground = pixels.copy()
-    legend.draw(canvas.get_renderer())
-    ends = legend.get_frame().get_window_extent().padded(3).extents
-    left, low, right, high = np.asarray(ends, int).clip(0)
-    box = np.s_[max(len(pixels) - high, 0) : len(pixels) - low, left:right]
-    kept.legend = (looks, box, ground[box], pixels[box].copy())
-
-
-def legend_look(legend: Legend) -> object:
-    """Return what makes a legend of lines and areas look as it does; of others, what nothing equals."""
-    parts = [legend, legend.get_frame(), *legend.legend_handles, *legend.texts, legend.get_title()]
-    plain = [[str(value) for value in vars(part).values() if isinstance(value, PLAIN)] for part in parts]
-    markers = [getattr(part, "get_marker", str)() for part in parts]
-    known = all(isinstance(part, Line2D | Patch) for part in legend.legend_handles)
-    return (plain, markers, legend.get_bbox_to_anchor().bounds) if known else object()
 
 
 def separable(axes: list[Axes], as_new: list[object]) -> bool:
