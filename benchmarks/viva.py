@@ -47,7 +47,7 @@ SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = Conditions(TIER, draw=False)
 # questions of a submission, at most; seconds and bytes of a call in this process
-MOST, PATIENCE, MEMORY = 40, 3, 1 << 32
+MOST, PATIENCE, MEMORY = 40, 1, 1 << 32
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
 ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"
@@ -98,7 +98,7 @@ def in_time() -> Iterator[None]:
     try:
         yield
     except Exception as error:
-        raise NoAnswer(str(error), "raised") from None
+        raise NoAnswer(str(error), "late" if isinstance(error, TimeoutError) else "raised") from None
     finally:
         signal.alarm(0)
 
@@ -111,18 +111,18 @@ class Twice(examining.Asked):
         try:
             return super().question(kind)
         except Exception as error:
-            self.run._write(question={"broken": f"{kind} of {self.task}: {error!r}"})
+            self.run._write(question={"fault": f"{kind} of {self.task}: {error!r}"})
             raise
 
-    def holds(self, found: examining.Found, k: int) -> bool:
-        """Return what this process says of version k, and write down what the sandbox says of all four."""
-        if not super().holds(found, k):
+    def holds(self, found: examining.Found) -> bool:
+        """Return what this process says of a question, and write down what the sandbox says."""
+        if not super().holds(found):
             return False
         run: Any = self.run
         run.submission, run.other = run.other, run.submission
         if run.submission.left < examining.WORN * run.job["timeout"]:
             examining.Examining._begin(run)
-        found.shown["again"] = [bool(super(Twice, self).holds(found, n)) for n in range(examining.OPTIONS)]
+        found.shown["again"] = super().holds(found)
         run.submission, run.other = run.other, run.submission
         return True
 
@@ -174,9 +174,9 @@ def examined(
     found = list(grading.heard_steps(read, homework, CONDITIONS, by=by, most=most, **more))
     passed = next(one["passed"] for one in found if "passed" in one)
     made = [one["question"] for one in found if "question" in one]
-    for broken in [one["broken"] for one in made if "broken" in one]:
-        print(f"  {name}: {broken}", flush=True)
-    return name, passed, [one for one in made if "broken" not in one]
+    for fault in [one["fault"] for one in made if "fault" in one]:
+        print(f"  {name}: {fault}", flush=True)
+    return name, passed, [one for one in made if "fault" not in one]
 
 
 def features(question: dict[str, Any]) -> list[np.ndarray]:
@@ -214,8 +214,8 @@ def questions(_: Path) -> dict[str, Any]:
             short = len(passed) >= examining.QUESTIONS > len(made)
             refused += short
             for one in made:
-                if one["again"] != [True] * 4:
-                    print(f"  {name}: {one['kind']} of {one['task']}: {one['again']}", flush=True)
+                if not one["again"]:
+                    print(f"  {name}, seed {seed}: {one['kind']} of {one['task']} is not right", flush=True)
             if short:
                 print(f"  {name}: {len(made)} questions of {len(passed)} tasks", flush=True)
         seed += 1
@@ -224,7 +224,7 @@ def questions(_: Path) -> dict[str, Any]:
     places = np.bincount([one["right"] for one in asked], minlength=4)
     return {
         "questions": len(asked),
-        AGAIN: 100 * np.mean([one["again"] == [True] * 4 for one in asked]),
+        AGAIN: 100 * np.mean([one["again"] for one in asked]),
         REFUSED: 100 * refused / max(whole, 1),
         ALIKE: 100 * np.mean([blind(one, True) for one in asked]),
         ODD: 100 * np.mean([blind(one, False) for one in asked]),

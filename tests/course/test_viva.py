@@ -6,6 +6,7 @@ import json
 import re
 import time
 from html.parser import HTMLParser
+from pathlib import Path
 from types import SimpleNamespace
 
 import nbformat
@@ -56,25 +57,31 @@ def made():
 
 def question(kind, **more):
     """Return a question of hostile text, of a kind."""
-    versions = [{"source": HOSTILE, "function": HOSTILE, "line": 3, "change": "* → /"}] * 4
+    one = {"function": HOSTILE, "line": 3, "change": "* → /", "was": f"    return x  # {NASTY}"}
+    versions = [{"source": f"import numpy  # {NASTY}\n{HOSTILE}", **one}] * 4
     return {"kind": kind, "task": "twice", "right": 1, "versions": versions, **more}
 
 
 CURVE = inputs.figure(np.arange(0, 250, 10, dtype=np.uint8))
 IMAGE = inputs.figure(np.arange(256, dtype=np.uint8).reshape(16, 16))
 EVERY = [
-    question("promise", texts=["It is twice as much", NASTY, "No sign is lost", ""]),
+    question(
+        "promise",
+        texts=["It is twice as much", NASTY, "No sign is lost", ""],
+        call=NASTY,
+        broken=[[NASTY]] * 4,
+    ),
     question("line", texts=[f"x = 1  # {NASTY}"] * 3, lines=[1, 2, 3]),
-    question("part", own=IMAGE, marks=[0, 9, 18, 63]),
-    question("picture", own=CURVE, figures=[CURVE, IMAGE, CURVE, IMAGE]),
+    question("part", own=IMAGE, given=IMAGE, marks=[0, 9, 18, 63], call=NASTY, scale=(0.0, 1.0)),
+    question("picture", own=CURVE, figures=[CURVE, IMAGE, CURVE, IMAGE], call=NASTY, scale=(0.0, 1.0)),
     question("value", call=f"twice({NASTY!r})", texts=["1", "2", NASTY, "4"]),
 ]
 
 
 def written(questions, student=NASTY):
     """Return all files of some questions, by name."""
-    words = {"homework": HOMEWORKS["hw2"], "seed": 7, "read": SimpleNamespace(hash="abc")}
-    words |= {"asked": SimpleNamespace(student=student, tier="strict")}
+    asked = SimpleNamespace(student=student, tier="strict", seed=7, submission=Path(NASTY.replace("/", "")))
+    words = {"homework": HOMEWORKS["hw2"], "read": SimpleNamespace(hash="abc"), "asked": asked}
     found = [{"passed": ["twice"]}, *({"question": one} for one in questions)]
     return dict(pages.pages(found, **words))
 
@@ -176,7 +183,7 @@ def test_a_page_runs_nothing_fetches_nothing_and_says_what_it_cannot_show(name):
     page = Tags(text)
     assert not page.tags & {"script", "iframe", "object", "form", "base"}
     assert all(one.startswith(("data:", "#")) for one in page.refers)
-    assert all(page.alts) and len(page.alts) == 6
+    assert all(page.alts) and len(page.alts) == 7
     assert "They do not show who wrote it" in text
     assert "{{ 7 * 7 }}" in text
     assert not re.search("[\x00-\x08\x0b-\x1f\u202e]", text)
@@ -237,11 +244,36 @@ def test_who_sees_the_options_alone_is_at_chance_since_each_is_right_for_some_ve
         assert abs(np.mean([bench.blind(one, most) for one in drawn]) - 0.25) < 0.03
 
 
+@pytest.mark.parametrize(("memory", "right"), [("zeros", True), ("empty", False)])
+def test_what_memory_happens_to_hold_is_no_answer(memory, right, monkeypatch):
+    monkeypatch.setattr(np, "empty", np.empty)  # which the run of a version changes, in a process of its own
+    monkeypatch.setattr(np, "empty_like", np.empty_like)
+    run = SimpleNamespace(job={"sources": {"twice": HOSTILE}}, calls={"twice": []})
+    asked = examining.Asked(run, "twice", [], np.random.default_rng(3))
+    texts = [f"import numpy as np\n\n\ndef twice():\n    return np.{memory}(1)[0] + {k}\n" for k in range(4)]
+
+    def view(version):
+        scope = {}
+        exec(version.source, scope)
+        return scope["twice"]()
+
+    versions = [changed.Version(text, text) for text in texts]
+    assert asked.holds(examining.Found(versions, [*range(4)], view, np.not_equal, {})) == right
+
+
+def test_a_call_is_told_by_its_parameters_and_of_large_arrays_the_size_and_range():
+    source = "def scale(x, by=2, *, offset=0):\n    return by * x + offset\n"
+    run = SimpleNamespace(job={"sources": {"scale": source}}, calls={"scale": []})
+    asked = examining.Asked(run, "scale", [], np.random.default_rng(3))
+    said = asked._told(((np.linspace(0, 1, 100).reshape(10, 10), 3), {"offset": np.array([0.5, 1])}))
+    assert said == "scale(x=‹10 × 10 numbers from 0 to 1›, by=3, offset=[0.5, 1.0])"
+
+
 @pytest.mark.parametrize("name", SHEETS)
 def test_five_questions_are_of_different_tasks_and_have_one_right_answer_where_they_are_run_again(name, made):
     _, passed, questions = made(name)
     assert len(passed) == len(HOMEWORKS[name].tasks)
-    assert [one["again"] for one in questions] == [[True] * 4] * 5
+    assert [one["again"] for one in questions] == [True] * 5
     assert len({(one["task"], one["kind"]) for one in questions}) == 5
     assert len({one["task"] for one in questions}) >= 4
     assert len({one["kind"] for one in questions}) >= (2 if name == "hw2" else 3)
@@ -305,12 +337,15 @@ def test_an_attack_breaks_no_page_and_leaves_nothing(name, tmp_path):
     assert siege.listing(place) == files, "a file is left"
 
 
-def test_the_command_writes_all_sheets_and_says_what_was_not_read(tmp_path):
+def test_the_command_writes_all_sheets_and_says_what_was_not_read(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
     work = tmp_path / "hw1.py"
     work.write_text("# %%\n" + SOLUTIONS["hw1"]["equivalent_time"])
-    words = ["viva", str(work), "--tier", "practice", "--seed", "2", "-o", str(tmp_path / "out")]
+    words = ["viva", str(work), "--tier", "practice", "--seed", "2"]
     ended = CliRunner().invoke(main, words, catch_exceptions=False)
     assert ended.exit_code == 0
-    assert {path.name for path in (tmp_path / "out").iterdir()} == {*written(EVERY)}
+    out = tmp_path / "viva" / "hw1"
+    assert {path.name for path in out.iterdir()} == {*written(EVERY)}
+    assert (out / "examiner.html").stat().st_mode & 0o077 == 0
     assert "note: ev was not found" in ended.output
-    assert "of five questions." in (tmp_path / "out" / "viva.html").read_text()
+    assert "of five questions." in (out / "viva.html").read_text()

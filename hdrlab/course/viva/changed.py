@@ -26,12 +26,13 @@ USES = 3  # of a name whose value is written out instead
 
 
 class Version(NamedTuple):
-    """A changed source; of the function with the change, its text, the line in it and the change in words."""
+    """A changed source; its function with the change, the line of it, the change in words, the old line."""
 
     source: str
     function: str
     line: int = 0
     change: str = ""
+    was: str = ""
 
 
 def versions(source: str) -> list[Version]:
@@ -48,12 +49,13 @@ def versions(source: str) -> list[Version]:
             (row, column), (_, end) = token.start, token.end
             for new in instead(token) if row > 1 else ():
                 lines = text.split("\n")
-                lines[row - 1] = lines[row - 1][:column] + new + lines[row - 1][end:]
+                was = lines[row - 1]
+                lines[row - 1] = was[:column] + new + was[end:]
                 changed = "\n".join(lines)
                 with suppress(*names.BROKEN):
                     compile(changed, "", "exec", dont_inherit=True)
                     whole = source[:start] + changed + source[start + len(text) :]
-                    found.append(Version(whole, changed, row, f"{token.string} → {new}"))
+                    found.append(Version(whole, changed, row, f"{token.string} → {new}", was))
     return found
 
 
@@ -66,6 +68,18 @@ def functions(source: str) -> Iterator[tuple[int, str]]:
         last = node.end_lineno or 0
         if isinstance(node, ast.FunctionDef) and last - node.lineno < SHOWN:
             yield starts[node.lineno - 1], source[starts[node.lineno - 1] : starts[last]].rstrip("\n")
+
+
+def parameters(source: str, task: str) -> list[str]:
+    r"""Return the names of a task's parameters that a call gives by their place.
+
+    Examples
+    --------
+    >>> parameters("def scale(x, by=2, *, offset=0):\n    return by * x + offset\n", "scale")
+    ['x', 'by']
+    """
+    functions = {one.name: one.args for one in ast.parse(source).body if isinstance(one, ast.FunctionDef)}
+    return [one.arg for one in functions[task].posonlyargs + functions[task].args]
 
 
 def instead(token: tokenize.TokenInfo) -> list[str]:

@@ -2,7 +2,7 @@
 
 A question has four options, and each of them is the right one for some change of the student's function.
 First four such changes are found, then one of the four is drawn and asked for: so the options alone do not
-show which one is right. All answers come of runs in the sandbox, and that to the one that is asked of two.
+show which one is right. All answers come of two runs in the sandbox.
 
 call    (arguments, named arguments, answer) of the student's own function, as a check has called it
 value   of a version: what the options tell apart
@@ -24,11 +24,18 @@ KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
 QUESTIONS, OPTIONS = 5, 4
 VERSIONS, CALLS, DRAWS = 20, 2, 20  # that are tried; for a question of promises half of the versions
 FEW, COMPARED = 2, 8  # versions that break a promise, if promises are to be told apart; calls compared
-SEEN = 6.0  # levels that two pictures are apart, on average
-CLEARLY = 1.1  # times as much changes in a version's own part as in another's
+SEEN = 4.5  # levels that two pictures are apart, on average; in one part a third of it
+CLEARLY = 1.25  # times as much changes in a version's own part as in another's
 APART, SAME = 0.02, 1e-6  # relative: numbers that a person tells apart, and answers that are one
 GIVEN, ANSWERED = 16, 6  # numbers of a call by hand, at most
 SHARE, WORN = 0.3, 0.6  # of a check's seconds: what a call gets, and below what a sandbox is used up
+
+
+FILLED = """
+import numpy
+numpy.empty = lambda shape, dtype=float, *_, **__: numpy.full(shape, 113, dtype)
+numpy.empty_like = lambda array, dtype=None, *_, **__: numpy.full_like(array, 113, dtype)
+"""
 
 
 class Found(NamedTuple):
@@ -44,7 +51,7 @@ class Found(NamedTuple):
 class Examining(plugin.Checking):
     """A run of the checks, and then of versions of what has passed them."""
 
-    asking = fell = False
+    asking = False
 
     def pytest_sessionfinish(self, session: pytest.Session) -> None:
         """Write down questions: of different kinds, and of different tasks while there are any."""
@@ -75,7 +82,7 @@ class Examining(plugin.Checking):
         self.submission = self.open.enter_context(one)
 
     def _ended(self, item: pytest.Item, raised: BaseException | None) -> None:
-        self.fell = self.fell or raised is not None
+        self.raised = raised
         return None if self.asking else super()._ended(item, raised)
 
 
@@ -92,23 +99,26 @@ class Asked:
         """Return a question as a page shows it, or None where the task has none of this kind."""
         found: Found | None = getattr(self, kind)()
         right = int(self.rng.integers(OPTIONS))
-        if found is None or not self.holds(found, right):
+        if found is None or not self.holds(found):
             return None
         versions = [one._asdict() for one in found.versions]
         return {"kind": kind, "task": self.task, "right": right, "versions": versions, **found.shown}
 
-    def holds(self, found: Found, k: int) -> bool:
-        """Return whether a version, in another process, has its value again, and none of the three others."""
-        again = found.view(found.versions[k])
-        same = [again is not None and not found.differ(again, value) for value in found.values]
-        return same == [one == k for one in range(OPTIONS)]
+    def holds(self, found: Found) -> bool:
+        """Return whether each version has its value again, and none of the others, in a process of its own.
+
+        What `numpy.empty` gives holds other numbers there: a version that shows them has no answer.
+        """
+        again = [found.view(one._replace(source=one.source + FILLED)) for one in found.versions]
+        same = [[a is not None and not found.differ(a, b) for b in found.values] for a in again]
+        return bool(np.array_equal(same, np.eye(OPTIONS)))
 
     def promise(self) -> Found | None:
         """Ask which of these promises, in this order, a version breaks first."""
         versions, broken, known = [], [], []
         for version in self._versions()[: VERSIONS // 2]:
             failed = self._broken(version)
-            if not failed and self._is_same(version.source):
+            if failed is None or (not failed and self._is_same(version.source)):
                 continue
             versions.append(version)
             broken.append(failed)
@@ -121,11 +131,17 @@ class Asked:
             return None
         chosen = [known[k] for k in sorted(self.rng.choice(len(known), OPTIONS, replace=False))]
 
-        def view(version: changed.Version) -> str:
+        def view(version: changed.Version) -> str | None:
             failed = self._broken(version)
-            return next((one for one in chosen if one in failed), "")
+            return None if failed is None else next((one for one in chosen if one in failed), "")
 
-        return Found([versions[first.index(one)] for one in chosen], chosen, view, ne, {"texts": chosen})
+        at = [first.index(one) for one in chosen]
+        shown = {
+            "texts": chosen,
+            "broken": [sorted(broken[k]) for k in at],
+            "call": self._told(self.calls[0]),
+        }
+        return Found([versions[k] for k in at], chosen, view, ne, shown)
 
     def line(self) -> Found | None:
         """Ask which of three lines could be taken out without changing any answer."""
@@ -150,12 +166,14 @@ class Asked:
     def part(self) -> Found | None:
         """Ask in which part of a photograph, or of a curve, an answer changes most."""
 
+        def see(came: np.ndarray, own: np.ndarray) -> np.ndarray | None:
+            gap = np.abs(inputs.levels(came, own).astype(float) - inputs.levels(own, own))
+            parts = inputs.parts(gap)
+            return parts if parts.max() > SEEN / 3 else None
+
         def differ(a: np.ndarray, b: np.ndarray) -> Any:
             i, j = a.argmax(), b.argmax()
             return i != j and a[i] > CLEARLY * a[j] and b[j] > CLEARLY * b[i]
-
-        def see(came: np.ndarray, own: np.ndarray) -> np.ndarray | None:
-            return parts if (parts := inputs.parts(np.abs(came - own))).any() else None
 
         found = self._drawn(see, differ)
         return found and found._replace(
@@ -177,12 +195,9 @@ class Asked:
                 return came if inputs.is_readable(came, ANSWERED) else None
 
             own = view(changed.Version(self.source, self.source))
-            if own is not None and (
-                found := self._four(view, lambda a, b: misconceptions.difference(a, b) > APART)
-            ):
-                said = ", ".join([*map(repr, args), *(f"{name}={one!r}" for name, one in kwargs.items())])
+            if own is not None and (found := self._four(view, _apart)):
                 texts = [*map(inputs.told, found.values)]
-                return found._replace(shown={"call": f"{self.task}({said})", "texts": texts})
+                return found._replace(shown={"call": self._told((args, kwargs)), "texts": texts})
         return None
 
     def _drawn(self, see: Callable[[Any, Any], Any], differ: Any) -> Found | None:
@@ -199,7 +214,10 @@ class Asked:
                 return None if came is None or came.shape != own.shape else see(came, own)
 
             if found := self._four(view, differ):
-                return found._replace(shown={"own": inputs.figure(inputs.levels(own, own))})
+                image = inputs.shown(given[0])
+                figures = {"own": own} if image is None or image.ndim == 1 else {"given": image, "own": own}
+                shown = {name: inputs.figure(inputs.levels(one, one)) for name, one in figures.items()}
+                return found._replace(shown=shown | {"call": self._told(given), "scale": inputs.scale(own)})
         return None
 
     def _four(self, view: Any, differ: Any) -> Found | None:
@@ -215,6 +233,12 @@ class Asked:
             if len(found.values) == OPTIONS:
                 return found
         return None
+
+    def _told(self, call: Any) -> str:
+        """Return a call as it is written: small arrays in numbers, and of large ones the size and range."""
+        given = [*zip(changed.parameters(self.source, self.task), call[0], strict=False), *call[1].items()]
+        said = [f"{name}={inputs.told_briefly(one, GIVEN)}" for name, one in given]
+        return f"{self.task}({', '.join(said)})"
 
     def _versions(self) -> list[changed.Version]:
         every = changed.versions(self.source)
@@ -237,12 +261,18 @@ class Asked:
         self.run.submission.fresh(**{self.task: source})
         return all(misconceptions.difference(self._asked(call), call[2]) <= SAME for call in calls)
 
-    def _broken(self, version: changed.Version) -> set[str]:
-        """Return the promises that a version breaks."""
+    def _broken(self, version: changed.Version) -> set[str] | None:
+        """Return the promises that a version breaks, None where the time that it takes has a say."""
         self.run.submission.fresh(**{self.task: version.source})
         broken = set()
         for item in self.items:
-            self.run.fell = False
             item.config.hook.pytest_runtest_protocol(item=item, nextitem=None)
-            broken |= {plugin.promise_of(item)} if self.run.fell else set()
+            raised = self.run.raised
+            if isinstance(raised, subject.NoAnswer) and raised.kind not in ("raised", "refused"):
+                return None
+            broken |= {plugin.promise_of(item)} if raised else set()
         return broken
+
+
+def _apart(a: Any, b: Any) -> bool:
+    return max(misconceptions.difference(a, b), misconceptions.difference(b, a)) > APART

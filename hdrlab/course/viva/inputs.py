@@ -63,6 +63,20 @@ def told(value: Any) -> str:
     return repr(arrays(lambda one: digits(one, 3).tolist(), value))
 
 
+def told_briefly(value: Any, most: int) -> str:
+    """Return a value as `told` does, and of one with more numbers than `most` the size and range.
+
+    Examples
+    --------
+    >>> told_briefly(np.linspace(0, 1, 128).reshape(8, 16), 16)
+    '‹8 × 16 numbers from 0 to 1›'
+    """
+    if count(value) <= most:
+        return told(value)
+    large = [(" × ".join(map(str, one.shape)), one.min(), one.max()) for one in arrays_in(value)]
+    return ", ".join(f"‹{size} numbers from {low:.3g} to {high:.3g}›" for size, low, high in large)
+
+
 def small(value: Any, side: int = 2) -> Any:
     """Return a value small enough to be gone through by hand: the middle of arrays, in two digits.
 
@@ -112,11 +126,16 @@ def shown(answer: Any) -> np.ndarray | None:
     return found.astype(np.float64) if large else None
 
 
-def levels(values: np.ndarray, own: np.ndarray) -> np.ndarray:
-    """Return what is drawn of an answer where black and white are those of the student's own."""
+def scale(own: np.ndarray) -> tuple[float, float]:
+    """Return which numbers are black and white, or at the foot and the top of a curve's frame."""
     low, high = np.nanmin(own), np.nanmax(own)
     room = ROOM * (high - low) * (own.ndim == 1)
-    return drawn(values, np.append(own.ravel(), [low - room, high + room] if room else []))
+    return float(low - room), float(high + room)
+
+
+def levels(values: np.ndarray, own: np.ndarray) -> np.ndarray:
+    """Return what is drawn of an answer on the scale of the student's own."""
+    return drawn(values, np.append(own.ravel(), scale(own)))
 
 
 def parts(values: np.ndarray) -> np.ndarray:
