@@ -24,6 +24,13 @@ LONGEST = 20_000  # characters of a source that is asked about
 SHOWN = 80  # lines of a function that is shown
 USES = 3  # of a name whose value is written out instead
 
+# behind a source: fresh memory then holds other numbers, so what an answer has of it shows
+FILLED = """
+import numpy
+numpy.empty = lambda shape, dtype=float, *_, **__: numpy.full(shape, 113, dtype)
+numpy.empty_like = lambda array, dtype=None, *_, **__: numpy.full_like(array, 113, dtype)
+"""
+
 
 class Version(NamedTuple):
     """A changed source; its function with the change, the line of it, the change in words, the old line."""

@@ -24,18 +24,9 @@ KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
 QUESTIONS, OPTIONS = 5, 4
 VERSIONS, CALLS, DRAWS = 20, 2, 20  # that are tried; for a question of promises half of the versions
 FEW, COMPARED = 2, 8  # versions that break a promise, if promises are to be told apart; calls compared
-SEEN = 4.5  # levels that two pictures are apart, on average; in one part a third of it
-CLEARLY = 1.25  # times as much changes in a version's own part as in another's
-APART, SAME = 0.02, 1e-6  # relative: numbers that a person tells apart, and answers that are one
+SAME = 1e-6  # relative: answers that are one
 GIVEN, ANSWERED = 16, 6  # numbers of a call by hand, at most
 SHARE, WORN = 0.3, 0.6  # of a check's seconds: what a call gets, and below what a sandbox is used up
-
-
-FILLED = """
-import numpy
-numpy.empty = lambda shape, dtype=float, *_, **__: numpy.full(shape, 113, dtype)
-numpy.empty_like = lambda array, dtype=None, *_, **__: numpy.full_like(array, 113, dtype)
-"""
 
 
 class Found(NamedTuple):
@@ -109,7 +100,7 @@ class Asked:
 
         What `numpy.empty` gives holds other numbers there: a version that shows them has no answer.
         """
-        again = [found.view(one._replace(source=one.source + FILLED)) for one in found.versions]
+        again = [found.view(one._replace(source=one.source + changed.FILLED)) for one in found.versions]
         same = [[a is not None and not found.differ(a, b) for b in found.values] for a in again]
         return bool(np.array_equal(same, np.eye(OPTIONS)))
 
@@ -136,12 +127,8 @@ class Asked:
             return None if failed is None else next((one for one in chosen if one in failed), "")
 
         at = [first.index(one) for one in chosen]
-        shown = {
-            "texts": chosen,
-            "broken": [sorted(broken[k]) for k in at],
-            "call": self._told(self.calls[0]),
-        }
-        return Found([versions[k] for k in at], chosen, view, ne, shown)
+        more = {"broken": [sorted(broken[k]) for k in at], "call": self._told(self.calls[0])}
+        return Found([versions[k] for k in at], chosen, view, ne, {"texts": chosen} | more)
 
     def line(self) -> Found | None:
         """Ask which of three lines could be taken out without changing any answer."""
@@ -165,24 +152,14 @@ class Asked:
 
     def part(self) -> Found | None:
         """Ask in which part of a photograph, or of a curve, an answer changes most."""
-
-        def see(came: np.ndarray, own: np.ndarray) -> np.ndarray | None:
-            gap = np.abs(inputs.levels(came, own).astype(float) - inputs.levels(own, own))
-            parts = inputs.parts(gap)
-            return parts if parts.max() > SEEN / 3 else None
-
-        def differ(a: np.ndarray, b: np.ndarray) -> Any:
-            i, j = a.argmax(), b.argmax()
-            return i != j and a[i] > CLEARLY * a[j] and b[j] > CLEARLY * b[i]
-
-        found = self._drawn(see, differ)
+        found = self._drawn(inputs.gaps, inputs.elsewhere)
         return found and found._replace(
             shown=found.shown | {"marks": [int(one.argmax()) for one in found.values]}
         )
 
     def picture(self) -> Found | None:
         """Ask which of four pictures or curves a version draws."""
-        found = self._drawn(inputs.levels, lambda a, b: np.abs(a.astype(float) - b).mean() > SEEN)
+        found = self._drawn(inputs.levels, lambda a, b: np.abs(a.astype(float) - b).mean() > inputs.SEEN)
         return found and found._replace(shown=found.shown | {"figures": [*map(inputs.figure, found.values)]})
 
     def value(self) -> Found | None:
@@ -195,7 +172,7 @@ class Asked:
                 return came if inputs.is_readable(came, ANSWERED) else None
 
             own = view(changed.Version(self.source, self.source))
-            if own is not None and (found := self._four(view, _apart)):
+            if own is not None and (found := self._four(view, inputs.apart)):
                 texts = [*map(inputs.told, found.values)]
                 return found._replace(shown={"call": self._told((args, kwargs)), "texts": texts})
         return None
@@ -235,10 +212,7 @@ class Asked:
         return None
 
     def _told(self, call: Any) -> str:
-        """Return a call as it is written: small arrays in numbers, and of large ones the size and range."""
-        given = [*zip(changed.parameters(self.source, self.task), call[0], strict=False), *call[1].items()]
-        said = [f"{name}={inputs.told_briefly(one, GIVEN)}" for name, one in given]
-        return f"{self.task}({', '.join(said)})"
+        return inputs.called(self.task, changed.parameters(self.source, self.task), call[0], call[1], GIVEN)
 
     def _versions(self) -> list[changed.Version]:
         every = changed.versions(self.source)
@@ -272,7 +246,3 @@ class Asked:
                 return None
             broken |= {plugin.promise_of(item)} if raised else set()
         return broken
-
-
-def _apart(a: Any, b: Any) -> bool:
-    return max(misconceptions.difference(a, b), misconceptions.difference(b, a)) > APART

@@ -10,11 +10,15 @@ from typing import Any
 import numpy as np
 
 from hdrlab.course.checks.compare import as_listed
+from hdrlab.course.checks.misconceptions import difference
 from hdrlab.io import web
 from hdrlab.show.plots.differences import drawn
 
 LARGE = 96  # pixels: the longer side of a photograph as functions get it, about
 LEAST = SPLIT = 8  # entries of a curve and pixels of an image's side, at least; parts of both
+SEEN = 4.5  # levels that two pictures are apart, on average; in one part a third of it
+CLEARLY = 1.25  # times as much changes in a version's own part as in another's
+APART = 0.02  # relative: numbers that a person tells apart
 FINITE = 0.9  # of what is drawn is a number, at least
 ROOM = 0.25  # of a curve's range, above it and below
 
@@ -75,6 +79,17 @@ def told_briefly(value: Any, most: int) -> str:
         return told(value)
     large = [(" × ".join(map(str, one.shape)), one.min(), one.max()) for one in arrays_in(value)]
     return ", ".join(f"‹{size} numbers from {low:.3g} to {high:.3g}›" for size, low, high in large)
+
+
+def called(task: str, names: list[str], args: Any, kwargs: dict[str, Any], most: int) -> str:
+    """Return a call as it is written, with the names of what is given by its place."""
+    given = [*zip(names, args, strict=False), *kwargs.items()]
+    return f"{task}({', '.join(f'{name}={told_briefly(one, most)}' for name, one in given)})"
+
+
+def apart(a: Any, b: Any) -> bool:
+    """Return whether a person tells two answers in numbers apart, whichever comes first."""
+    return max(difference(a, b), difference(b, a)) > APART
 
 
 def small(value: Any, side: int = 2) -> Any:
@@ -143,6 +158,18 @@ def parts(values: np.ndarray) -> np.ndarray:
     rows = np.array_split(np.nan_to_num(values.astype(np.float64), posinf=0, neginf=0), SPLIT)
     split = [np.array_split(row, SPLIT, axis=1) if row.ndim > 1 else [row] for row in rows]
     return np.array([part.mean() for row in split for part in row])
+
+
+def gaps(came: np.ndarray, own: np.ndarray) -> np.ndarray | None:
+    """Return how far an answer is from the student's own, in levels, by parts; None where nobody sees it."""
+    found = parts(np.abs(levels(came, own).astype(float) - levels(own, own)))
+    return found if found.max() > SEEN / 3 else None
+
+
+def elsewhere(a: np.ndarray, b: np.ndarray) -> Any:
+    """Return whether each of two answers changes most in another part, and clearly so."""
+    i, j = a.argmax(), b.argmax()
+    return i != j and a[i] > CLEARLY * a[j] and b[j] > CLEARLY * b[i]
 
 
 def figure(drawn_levels: np.ndarray) -> dict[str, Any]:
