@@ -199,6 +199,14 @@ def test_the_examiner_alone_is_told_which_is_right():
         assert keys.sub("", moved) == keys.sub("", files[name])
 
 
+def test_code_in_the_notebook_has_its_lines_where_no_style_is():
+    notebook = nbformat.reads(written(EVERY)["viva.ipynb"], 4)
+    cell = next(one["source"] for one in notebook["cells"] if "promises from the top" in one["source"])
+    code = re.sub("<[^>]+>", "", re.search(r"<pre>(.*?)</pre>", cell, re.DOTALL)[1]).split("\n")
+    assert code[0] == "  1  def twice(x):"
+    assert [line[:3] for line in code if line] == ["  1", "  2", "   ", "  3"]
+
+
 def test_the_notebook_checks_itself(capsys):
     notebook = nbformat.reads(written(EVERY)["viva.ipynb"], 4)
     nbformat.validate(notebook)
