@@ -129,11 +129,14 @@ def weights(B: ArrayLike, mode: str, *, at: At = (0.5, 0.5)) -> F64:
     B = as_luminance(B)
     if mode not in MODES:
         raise ValueError(f"expected a mode among {', '.join(MODES)}, got {mode!r}")
-    if mode == "matrix":
-        return matrix(B, at=at)
-    if mode == "average":
-        return average(B.shape)
-    return {"spot": spot, "partial": partial, "centre": centre}[mode](B.shape, at=at)
+    return matrix(B, at=at) if mode == "matrix" else _blind(mode, B.shape, tuple(at)).copy()
+
+
+@lru_cache(16)
+def _blind(mode: str, shape: tuple[int, int], at: At) -> F64:
+    """Return the weights of a mode that does not look at the picture: kept, as no shot changes them."""
+    modes = {"spot": spot, "partial": partial, "centre": centre}
+    return average(shape) if mode == "average" else modes[mode](shape, at=at)
 
 
 def reading(B: ArrayLike, w: ArrayLike) -> float:
