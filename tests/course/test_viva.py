@@ -30,7 +30,7 @@ NASTY = "</pre><script>alert(1)</script>{{ 7 * 7 }}```\x1b[31m\u202e&"
 HOSTILE = f'def twice(x):\n    """{NASTY}"""\n    return 2 * x  # {NASTY}\n'
 
 
-HERE, THERE = "benchmarks.viva:Examining", "hdrlab.course.viva.examining:Examining"
+HERE, THERE = "benchmarks.viva.twice:Examining", "hdrlab.course.viva.examining:Examining"
 
 
 def examined(name, seed=0, tasks=None, by=HERE, **more):
@@ -39,7 +39,9 @@ def examined(name, seed=0, tasks=None, by=HERE, **more):
     if tasks:
         kept = tuple(one for one in homework.tasks if one.id in tasks)
         homework, sources = homework._replace(tasks=kept), {task: sources[task] for task in tasks}
-    return bench.examined((name, homework, bench.as_submission(sources | more), seed), by, most=5)
+    submission = bench.as_submission(sources | more)
+    ((passed, questions),) = bench.examined((name, homework, submission, [seed]), by, most=5)[1]
+    return name, passed, questions
 
 
 @pytest.fixture(scope="module")

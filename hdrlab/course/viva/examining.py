@@ -10,6 +10,7 @@ value   of a version: what the options tell apart
 
 from collections.abc import Callable
 from contextlib import suppress
+from functools import cached_property
 from operator import ne
 from typing import Any, NamedTuple
 
@@ -22,7 +23,7 @@ from hdrlab.course.viva import changed, inputs
 
 KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
 QUESTIONS, OPTIONS = 5, 4
-VERSIONS, CALLS, DRAWS = 20, 2, 20  # that are tried; for a question of promises half of the versions
+VERSIONS, CALLS, DRAWS = (20, 80), 2, 20  # that are tried at first, and again where questions are few
 FEW, COMPARED = 2, 8  # versions that break a promise, if promises are to be told apart; calls compared
 SAME = 1e-6  # relative: answers that are one
 GIVEN, ANSWERED = 16, 6  # numbers of a call by hand, at most
@@ -51,17 +52,20 @@ class Examining(plugin.Checking):
         passed = [task for task in self.job["sources"] if self.calls.get(task) and task not in self.failed]
         self._write(passed=passed)
         asked = {task: Asked(self, task, session.items, rng) for task in passed}
-        left = [(kind, str(task)) for kind in KINDS for task in rng.permutation(passed)]
+        pairs = [(kind, str(task)) for kind in KINDS for task in rng.permutation(passed)]
+        left = [(most, *pair) for most in VERSIONS for pair in pairs]
         kinds, tasks = [""], [""]
         while left and len(tasks) <= QUESTIONS:
-            kind, task = min(left, key=lambda pair: (tasks.count(pair[1]), kinds.count(pair[0])))
-            left.remove((kind, task))
+            most, kind, task = min(left, key=lambda one: (one[0], tasks.count(one[2]), kinds.count(one[1])))
+            left.remove((most, kind, task))
+            asked[task].most = most
             if self.submission.left < WORN * self.job["timeout"]:
                 self._begin()
             question = None
             with suppress(Exception):  # whatever it answers costs one question
                 question = asked[task].question(kind)
             if question:
+                left = [one for one in left if one[1:] != (kind, task)]
                 kinds, tasks = [*kinds, kind], [*tasks, task]
                 self._write(question=question)
 
@@ -81,7 +85,7 @@ class Asked:
     """A task that is asked about, in a sandbox of its own; KINDS are methods."""
 
     def __init__(self, run: Examining, task: str, items: list[pytest.Item], rng: np.random.Generator) -> None:
-        self.run, self.task, self.rng = run, task, rng
+        self.run, self.task, self.rng, self.most = run, task, rng, VERSIONS[0]  # versions to try
         self.items = [one for one in items if plugin.task_of(one) == task]
         self.source = run.job["sources"][task]
         self.calls = [run.calls[task][k] for k in rng.permutation(len(run.calls[task]))]
@@ -107,7 +111,7 @@ class Asked:
     def promise(self) -> Found | None:
         """Ask which of these promises, in this order, a version breaks first."""
         versions, broken, known = [], [], []
-        for version in self._versions()[: VERSIONS // 2]:
+        for version in self._versions()[: self.most // 2]:
             failed = self._broken(version)
             if failed is None or (not failed and self._is_same(version.source)):
                 continue
@@ -152,15 +156,11 @@ class Asked:
 
     def part(self) -> Found | None:
         """Ask in which part of a photograph, or of a curve, an answer changes most."""
-        found = self._drawn(inputs.gaps, inputs.elsewhere)
-        return found and found._replace(
-            shown=found.shown | {"marks": [int(one.argmax()) for one in found.values]}
-        )
+        return self._drawn("marks", inputs.gaps, inputs.elsewhere, lambda gaps: int(gaps.argmax()))
 
     def picture(self) -> Found | None:
         """Ask which of four pictures or curves a version draws."""
-        found = self._drawn(inputs.levels, lambda a, b: np.abs(a.astype(float) - b).mean() > inputs.SEEN)
-        return found and found._replace(shown=found.shown | {"figures": [*map(inputs.figure, found.values)]})
+        return self._drawn("figures", inputs.levels, inputs.visible, inputs.figure)
 
     def value(self) -> Found | None:
         """Ask what a call returns."""
@@ -177,7 +177,7 @@ class Asked:
                 return found._replace(shown={"call": self._told((args, kwargs)), "texts": texts})
         return None
 
-    def _drawn(self, see: Callable[[Any, Any], Any], differ: Any) -> Found | None:
+    def _drawn(self, name: str, see: Callable[[Any, Any], Any], differ: Any, tell: Any) -> Found | None:
         """Return four versions whose drawn answers differ; a photograph takes the place of images."""
         photos = self.run.job["photographs"]
         for call in [one for one in self.calls if inputs.shown(one[2]) is not None][:CALLS]:
@@ -194,7 +194,8 @@ class Asked:
                 image = inputs.shown(given[0])
                 figures = {"own": own} if image is None or image.ndim == 1 else {"given": image, "own": own}
                 shown = {name: inputs.figure(inputs.levels(one, one)) for name, one in figures.items()}
-                return found._replace(shown=shown | {"call": self._told(given), "scale": inputs.scale(own)})
+                more = {"call": self._told(given), "scale": inputs.scale(own)}
+                return found._replace(shown=shown | more | {name: [*map(tell, found.values)]})
         return None
 
     def _four(self, view: Any, differ: Any) -> Found | None:
@@ -215,8 +216,12 @@ class Asked:
         return inputs.called(self.task, changed.parameters(self.source, self.task), call[0], call[1], GIVEN)
 
     def _versions(self) -> list[changed.Version]:
-        every = changed.versions(self.source)
-        return [every[k] for k in self.rng.permutation(len(every))[:VERSIONS]]
+        return [self.every[k] for k in self.rng.permutation(len(self.every))[: self.most]]
+
+    @cached_property
+    def every(self) -> list[changed.Version]:
+        """Every version of the task."""
+        return changed.versions(self.source)
 
     def _answer(self, source: str, call: Any) -> Any:
         """Return what a version answers, None where it does not."""
@@ -231,7 +236,7 @@ class Asked:
 
     def _is_same(self, source: str) -> bool:
         """Return whether a version answers what the student's own function has answered to the checks."""
-        calls = sorted(self.calls, key=lambda call: inputs.count(call[:2]))[:COMPARED]
+        calls = sorted(self.run.calls[self.task], key=lambda call: inputs.count(call[:2]))[:COMPARED]
         self.run.submission.fresh(**{self.task: source})
         return all(misconceptions.difference(self._asked(call), call[2]) <= SAME for call in calls)
 

@@ -153,6 +153,11 @@ def levels(values: np.ndarray, own: np.ndarray) -> np.ndarray:
     return drawn(values, np.append(own.ravel(), scale(own)))
 
 
+def visible(a: np.ndarray, b: np.ndarray) -> bool:
+    """Return whether a person sees that two pictures differ."""
+    return bool(np.abs(a.astype(float) - b).mean() > SEEN)
+
+
 def parts(values: np.ndarray) -> np.ndarray:
     """Return the mean of each part, SPLIT of a curve or SPLIT x SPLIT of an image, where no number is 0."""
     rows = np.array_split(np.nan_to_num(values.astype(np.float64), posinf=0, neginf=0), SPLIT)

@@ -2,8 +2,8 @@
 
 Questions are made of the library's solutions, of the tests' files of equivalents and of the battery of right
 answers, each with one seed after the other from VIVA_SEED on, until there are VIVA_QUESTIONS of them. They
-are made in this process, since these answers are trusted and a sandbox for each costs twenty times as long,
-and not five of a submission but all that there are: the first five are those of `hdrlab viva`.
+are made as `twice` says, and not five of a submission but all that there are: the first five are those of
+`hdrlab viva`.
 
 again    every version of a question is run once more, in the sandbox: it has its own option's answer, and
          none of the three others
@@ -14,132 +14,39 @@ places   how often the right one stands at A, B, C and D, in %
 seconds  of a processor for `hdrlab viva`, all of it in the sandbox, with each homework's solution
 """
 
-import math
 import os
 import re
 import resource
-import signal
 from collections.abc import Iterator
-from contextlib import contextmanager
-from copy import deepcopy
 from itertools import islice
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
-import pytest
 
 from benchmarks.experiments import Experiment, along, at_least, at_most, near
 from benchmarks.fairness import submissions, texts
 from benchmarks.measure import ROOT
 from hdrlab.course import grading, plan
-from hdrlab.course.checks import compare, misconceptions
-from hdrlab.course.checks.subject import NoAnswer
+from hdrlab.course.checks import misconceptions
 from hdrlab.course.code.closure import Cell, closed
 from hdrlab.course.code.names import imported
 from hdrlab.course.plan import Conditions, Homework
-from hdrlab.course.sandbox.inside import worker
 from hdrlab.course.submission import Submission
-from hdrlab.course.viva import examining, inputs, pages
+from hdrlab.course.viva import examining, pages
 
 QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
 SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = Conditions(TIER, draw=False)
-# questions of a submission, at most; seconds and bytes of a call in this process
-MOST, PATIENCE, MEMORY = 40, 1, 1 << 32
+# questions of a sitting, as they are and about; seconds of all sittings of a submission
+FIVE, USUAL, LONGEST = examining.QUESTIONS, 8, 36_000.0
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
 ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"
 
-
 Question = dict[str, Any]
-
-
-class InProcess:
-    """What a check asks, as `checks.subject.Subject`, of functions to trust that run in this process."""
-
-    said, left = "", math.inf
-
-    def __init__(self, sources: dict[str, str]) -> None:
-        self.texts, self.functions = dict(sources), dict[str, Any]()
-        self.calls: list[Any] = []
-
-    def fresh(self, **sources: str) -> None:
-        """Know nothing of what was called before, with other texts of some tasks."""
-        self.texts |= sources
-        self.functions = {}
-
-    def __getattr__(self, task: str) -> Any:
-        def ask(*given: Any, **named: Any) -> Any:
-            with in_time(), np.errstate(all="ignore"):
-                if task not in self.functions:
-                    scope: dict[str, Any] = {"__name__": task}
-                    exec(compile(self.texts[task], task, "exec"), scope)
-                    self.functions[task] = scope[task]
-                answer = self.functions[task](*deepcopy(given), **deepcopy(named))
-                answer = compare.plain(worker.drained(answer))
-                if any(one.dtype.hasobject for one in inputs.arrays_in(answer)):
-                    raise TypeError("an answer that is no array")  # the sandbox's channel refuses it
-                return answer
-
-        return ask
-
-
-@contextmanager
-def in_time() -> Iterator[None]:
-    """Raise NoAnswer for whatever goes wrong, or lasts too long."""
-
-    def late(*_: object) -> None:
-        raise TimeoutError
-
-    signal.signal(signal.SIGALRM, late)
-    signal.alarm(PATIENCE)
-    try:
-        yield
-    except Exception as error:
-        raise NoAnswer(str(error), "late" if isinstance(error, TimeoutError) else "raised") from None
-    finally:
-        signal.alarm(0)
-
-
-class Twice(examining.Asked):
-    """A task that is asked about, all of whose four answers are computed once more, in the sandbox."""
-
-    def question(self, kind: str) -> Question | None:
-        """Return the question; what is wrong with this very code is written down."""
-        try:
-            return super().question(kind)
-        except Exception as error:
-            self.run._write(question={"fault": f"{kind} of {self.task}: {error!r}"})
-            raise
-
-    def holds(self, found: examining.Found) -> bool:
-        """Return what this process says of a question, and write down what the sandbox says."""
-        if not super().holds(found):
-            return False
-        run: Any = self.run
-        run.submission, run.other = run.other, run.submission
-        if run.submission.left < examining.WORN * run.job["timeout"]:
-            examining.Examining._begin(run)
-        found.shown["again"] = super().holds(found)
-        run.submission, run.other = run.other, run.submission
-        return True
-
-
-class Examining(examining.Examining):
-    """A run of the checks, after which questions are made in this process, and run again in the sandbox."""
-
-    def pytest_sessionfinish(self, session: pytest.Session) -> None:
-        """Write down questions, and what became of them when they were run again."""
-        resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
-        examining.Asked = Twice  # type: ignore[misc]
-        examining.QUESTIONS = int(self.job["most"])
-        super().pytest_sessionfinish(session)
-
-    def _begin(self) -> None:
-        super()._begin()
-        self.other, self.submission = self.submission, InProcess(self.job["sources"])  # type: ignore[assignment]
 
 
 def works() -> Iterator[tuple[str, Homework, Submission]]:
@@ -166,17 +73,25 @@ def as_submission(sources: dict[str, str] | Any) -> Submission:
 
 
 def examined(
-    item: tuple[str, Homework, Submission, int], by: str = "benchmarks.viva:Examining", most: int = MOST
-) -> tuple[str, list[str], list[dict[str, Any]]]:
-    """Return a name, the tasks that passed, and the questions."""
-    name, homework, read, seed = item
-    more = {"seed": str(plan.seed("viva", name, str(seed))), "photographs": pages.photographs([])}
-    found = list(grading.heard_steps(read, homework, CONDITIONS, by=by, most=most, **more))
-    passed = next(one["passed"] for one in found if "passed" in one)
-    made = [one["question"] for one in found if "question" in one]
-    for fault in [one["fault"] for one in made if "fault" in one]:
-        print(f"  {name}: {fault}", flush=True)
-    return name, passed, [one for one in made if "fault" not in one]
+    item: tuple[str, Homework, Submission, list[int]],
+    by: str = "benchmarks.viva.twice:Examining",
+    most: int = 40,
+) -> tuple[str, list[tuple[list[str], list[Question]]]]:
+    """Return a name, and of each seed's sitting the tasks that passed and the questions, `most` of them."""
+    name, homework, read, seeds = item
+    sittings = [str(plan.seed("viva", name, str(seed))) for seed in seeds]
+    more = {"seed": sittings[0], "sittings": sittings, "most": most, "photographs": pages.photographs([])}
+    made: list[tuple[list[str], list[Question]]] = []
+    with patch.object(grading, "WHOLE", LONGEST):
+        found = list(grading.heard_steps(read, homework, CONDITIONS, by=by, **more))
+    for one in found:
+        if "passed" in one:
+            made.append((one["passed"], []))
+        if "fault" in (question := one.get("question", {})):
+            print(f"  {name}: {question['fault']}", flush=True)
+        elif question:
+            made[-1][1].append(question)
+    return name, made
 
 
 def features(question: dict[str, Any]) -> list[np.ndarray]:
@@ -199,26 +114,26 @@ def blind(question: dict[str, Any], most: bool) -> float:
     return float(best[question["right"]] / best.sum())
 
 
-def questions(_: Path) -> dict[str, Any]:
+def questions(_folder: Path) -> dict[str, Any]:
     """Return what is found of QUESTIONS questions."""
     every = list(works())
     every = [every[k] for k in np.random.default_rng(1).permutation(len(every))]
     asked: list[Question] = []
     refused, whole, seed = 0, 0, SEED
-    while len(asked) < QUESTIONS:
-        need = -(-(QUESTIONS - len(asked)) // examining.QUESTIONS)
-        items = [(*one, seed) for one in every][:need]
-        for name, passed, made in along(examined, items, f"seed {seed}"):
-            asked += made
-            whole += len(passed) >= examining.QUESTIONS
-            short = len(passed) >= examining.QUESTIONS > len(made)
-            refused += short
-            for one in made:
-                if not one["again"]:
+    while (need := QUESTIONS - len(asked)) > 0:
+        count = -(-need // (USUAL * len(every)))
+        seeds = list(range(seed, seed + count))
+        items = [(*one, seeds) for one in every][: -(-need // (USUAL * count))]
+        for name, sittings in along(examined, items, f"seeds {seeds[0]} to {seeds[-1]}"):
+            for seed, (passed, made) in zip(seeds, sittings, strict=True):
+                asked += made
+                whole += len(passed) >= FIVE
+                if len(passed) >= FIVE > len(made):
+                    refused += 1
+                    print(f"  {name}, seed {seed}: {len(made)} questions of {len(passed)} tasks", flush=True)
+                for one in [one for one in made if not one["again"]]:
                     print(f"  {name}, seed {seed}: {one['kind']} of {one['task']} is not right", flush=True)
-            if short:
-                print(f"  {name}: {len(made)} questions of {len(passed)} tasks", flush=True)
-        seed += 1
+        seed = seeds[-1] + 1
     kinds = {kind: sum(one["kind"] == kind for one in asked) for kind in examining.KINDS}
     print("  " + ", ".join(f"{count} {kind}" for kind, count in kinds.items()), flush=True)
     places = np.bincount([one["right"] for one in asked], minlength=4)
@@ -232,12 +147,12 @@ def questions(_: Path) -> dict[str, Any]:
     }
 
 
-def seconds(_: Path) -> dict[str, Any]:
+def seconds(_folder: Path) -> dict[str, Any]:
     """Return what the questions of the library's solutions cost, one homework after the other."""
     took = []
     for name, homework, read in islice(works(), 5):
         before = resource.getrusage(resource.RUSAGE_CHILDREN)
-        made = examined((name, homework, read, 0), "hdrlab.course.viva.examining:Examining")[2]
+        ((_, made),) = examined((name, homework, read, [0]), "hdrlab.course.viva.examining:Examining")[1]
         after = resource.getrusage(resource.RUSAGE_CHILDREN)
         took.append(after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime)
         print(f"  {name}: {len(made)} questions, {took[-1]:.1f} s", flush=True)
