@@ -41,7 +41,7 @@ SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = Conditions(TIER, draw=False)
 # questions of a sitting, as they are and about; seconds of all sittings of a submission
-FIVE, USUAL, LONGEST = examining.QUESTIONS, 8, 36_000.0
+FIVE, USUAL, LONGEST = examining.QUESTIONS, 10, 36_000.0
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
 ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"
@@ -91,6 +91,9 @@ def examined(
             print(f"  {name}: {question['fault']}", flush=True)
         elif question:
             made[-1][1].append(question)
+            if not question.get("again", True):
+                told = f"{question['kind']} of {question['task']}"
+                print(f"  {name}, seed {seeds[len(made) - 1]}: {told} is not right", flush=True)
     return name, made
 
 
@@ -131,8 +134,6 @@ def questions(_folder: Path) -> dict[str, Any]:
                 if len(passed) >= FIVE > len(made):
                     refused += 1
                     print(f"  {name}, seed {seed}: {len(made)} questions of {len(passed)} tasks", flush=True)
-                for one in [one for one in made if not one["again"]]:
-                    print(f"  {name}, seed {seed}: {one['kind']} of {one['task']} is not right", flush=True)
         seed = seeds[-1] + 1
     kinds = {kind: sum(one["kind"] == kind for one in asked) for kind in examining.KINDS}
     print("  " + ", ".join(f"{count} {kind}" for kind, count in kinds.items()), flush=True)
