@@ -177,7 +177,7 @@ class Asked:
                 return found._replace(shown={"call": self._told((args, kwargs)), "texts": texts})
         return None
 
-    def _drawn(self, name: str, see: Callable[[Any, Any], Any], differ: Any, tell: Any) -> Found | None:
+    def _drawn(self, named: str, see: Callable[[Any, Any], Any], differ: Any, tell: Any) -> Found | None:
         """Return four versions whose drawn answers differ; a photograph takes the place of images."""
         photos = self.run.job["photographs"]
         for call in [one for one in self.calls if inputs.shown(one[2]) is not None][:CALLS]:
@@ -195,7 +195,7 @@ class Asked:
                 figures = {"own": own} if image is None or image.ndim == 1 else {"given": image, "own": own}
                 shown = {name: inputs.figure(inputs.levels(one, one)) for name, one in figures.items()}
                 more = {"call": self._told(given), "scale": inputs.scale(own)}
-                return found._replace(shown=shown | more | {name: [*map(tell, found.values)]})
+                return found._replace(shown=shown | more | {named: [*map(tell, found.values)]})
         return None
 
     def _four(self, view: Any, differ: Any) -> Found | None:
