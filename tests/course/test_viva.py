@@ -209,7 +209,7 @@ def test_code_in_the_notebook_has_its_lines_where_no_style_is():
     assert [line[:3] for line in code if line] == ["  1", "  2", "   ", "  3"]
 
 
-def test_the_notebook_checks_itself(capsys):
+def test_the_notebook_checks_itself_and_then_says_what_each_option_comes_from(capsys):
     notebook = nbformat.reads(written(EVERY)["viva.ipynb"], 4)
     nbformat.validate(notebook)
     code = [cell.source for cell in notebook.cells if cell.cell_type == "code"]
@@ -217,8 +217,11 @@ def test_the_notebook_checks_itself(capsys):
     for n in range(1, 6):
         scope["check"](n, "B")
         scope["check"](n, "C")
-    said = capsys.readouterr().out.splitlines()
-    assert [one == "right" for one in said] == [True, False] * 5
+    said = capsys.readouterr().out
+    assert re.findall("^(right|not this one)", said, re.MULTILINE) == ["right", "not this one"] * 5
+    assert said.count("C comes from line 3, * → /: return 2 * x  #") == 4
+    assert said.count("D comes from your code as it is") == 1
+    assert "\x1b" not in said
     for cell in notebook.cells:
         named = re.findall(r"attachment:([\w.]+)", cell.source)
         assert sorted(named) == sorted(cell.get("attachments", {}))
