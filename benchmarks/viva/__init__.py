@@ -1,9 +1,9 @@
 """Do the questions of `hdrlab viva` have one right answer, and is it hidden from who does not know the code?
 
 Questions are made of the library's solutions, of the tests' files of equivalents and of the battery of right
-answers, each with one seed after the other from VIVA_SEED on, until there are VIVA_QUESTIONS of them. They
-are made as `twice` says, and not five of a submission but all that there are: the first five are those of
-`hdrlab viva`.
+answers, each with one seed after the other from VIVA_SEED on, of many tasks with more of them, until there
+are VIVA_QUESTIONS. They are made as `twice` says, and not five of a submission but all that there are: the
+first five are those of `hdrlab viva`.
 
 again    every version of a question is run once more, in the sandbox: it has its own option's answer, and
          none of the three others
@@ -40,8 +40,8 @@ QUESTIONS = int(os.environ.get("VIVA_QUESTIONS", "500"))
 SEED = int(os.environ.get("VIVA_SEED", "0"))
 TIER = os.environ.get("VIVA_TIER", "practice")
 CONDITIONS = Conditions(TIER, draw=False)
-# questions of a sitting, as they are and about; seconds of all sittings of a submission
-FIVE, USUAL, LONGEST = examining.QUESTIONS, 10, 36_000.0
+# questions of a sitting, as they are and about; tasks of a homework; seconds of all sittings of a submission
+FIVE, USUAL, MOST, LONGEST = examining.QUESTIONS, 8, 16, 36_000.0
 SECONDS = "CPU seconds for the questions of a homework: median, largest"
 AGAIN, REFUSED = "right again, % of questions", "refused, % of submissions with five tasks"
 ALIKE, ODD, PLACES = "blind, most alike, %", "blind, least alike, %", "places of right answers, %"
@@ -126,9 +126,10 @@ def questions(_folder: Path) -> dict[str, Any]:
     while (need := QUESTIONS - len(asked)) > 0:
         count = -(-need // (USUAL * len(every)))
         seeds = list(range(seed, seed + count))
-        items = [(*one, seeds) for one in every][: -(-need // (USUAL * count))]
+        items = [(*one, seeds[: -(-count * len(one[2].sources) // MOST)]) for one in every]
+        items = items[: -(-need // (USUAL * count))]
         for name, sittings in along(examined, items, f"seeds {seeds[0]} to {seeds[-1]}"):
-            for seed, (passed, made) in zip(seeds, sittings, strict=True):
+            for seed, (passed, made) in zip(seeds, sittings, strict=False):
                 asked += made
                 whole += len(passed) >= FIVE
                 if len(passed) >= FIVE > len(made):
