@@ -309,8 +309,9 @@ def test_of_one_function_questions_of_different_kinds_are_asked():
     assert 2 <= len(kinds) == len(set(kinds))
 
 
-def test_where_questions_are_few_more_versions_are_tried(monkeypatch):
-    tried, written, few = [], [], examining.VERSIONS[0]
+@pytest.mark.parametrize(("tasks", "more"), [("abcd", 0), ("abcde", 3)])
+def test_where_five_tasks_have_few_questions_more_versions_are_tried(tasks, more, monkeypatch):
+    tried, written, few, known = [], [], examining.VERSIONS[0], {("value", "a"), ("part", "b")}
 
     class Asked:
         def __init__(self, run, task, items, rng):
@@ -318,17 +319,20 @@ def test_where_questions_are_few_more_versions_are_tried(monkeypatch):
 
         def question(self, kind):
             tried.append((self.most, kind, self.task))
-            return {"kind": kind, "task": self.task} if kind == "value" or self.most > few else None
+            return (
+                {"kind": kind, "task": self.task} if (kind, self.task) in known or self.most > few else None
+            )
 
     monkeypatch.setattr(examining, "Asked", Asked)
     run = examining.Examining.__new__(examining.Examining)
-    run.job, run.failed = {"seed": "1", "sources": {"a": "", "b": ""}, "timeout": 1}, set()
-    run.calls, run.submission = {"a": [None], "b": [None]}, SimpleNamespace(left=1)
+    run.job, run.failed = {"seed": "1", "sources": dict.fromkeys(tasks, ""), "timeout": 1}, set()
+    run.calls, run.submission = {task: [None] for task in tasks}, SimpleNamespace(left=1)
     run._begin, run._write = lambda: None, lambda **one: written.append(one)
     run.pytest_sessionfinish(SimpleNamespace(items=[]))
     asked = [one["question"] for one in written if "question" in one]
-    assert len({(one["kind"], one["task"]) for one in asked}) == len(asked) == examining.QUESTIONS
-    assert [most for most, *_ in tried] == [few] * 10 + [examining.VERSIONS[1]] * 3
+    assert len({(one["kind"], one["task"]) for one in asked}) == len(asked) == 2 + more
+    pairs = len(tasks) * len(examining.KINDS)
+    assert [most for most, *_ in tried] == [few] * pairs + [examining.VERSIONS[1]] * more
 
 
 def test_a_function_that_breaks_a_promise_is_not_asked_about():

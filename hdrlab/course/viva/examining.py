@@ -22,7 +22,7 @@ from hdrlab.course.sandbox import tiers
 from hdrlab.course.viva import changed, inputs
 
 KINDS = ("promise", "line", "part", "value", "picture")  # the rarest first
-QUESTIONS, OPTIONS = 5, 4
+QUESTIONS, OPTIONS, TASKS = 5, 4, 5  # from so many tasks on, five are found if they can be
 VERSIONS, CALLS, DRAWS = (20, 80), 2, 20  # that are tried at first, and again where questions are few
 FEW, COMPARED = 2, 8  # versions that break a promise, if promises are to be told apart; calls compared
 SAME = 1e-6  # relative: answers that are one
@@ -53,7 +53,7 @@ class Examining(plugin.Checking):
         self._write(passed=passed)
         asked = {task: Asked(self, task, session.items, rng) for task in passed}
         pairs = [(kind, str(task)) for kind in KINDS for task in rng.permutation(passed)]
-        left = [(most, *pair) for most in VERSIONS for pair in pairs]
+        left = [(most, *pair) for most in VERSIONS[: 1 + (len(passed) >= TASKS)] for pair in pairs]
         kinds, tasks = [""], [""]
         while left and len(tasks) <= QUESTIONS:
             most, kind, task = min(left, key=lambda one: (one[0], tasks.count(one[2]), kinds.count(one[1])))
