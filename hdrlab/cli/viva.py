@@ -16,7 +16,7 @@ EXAMINER = "hdrlab.course.viva.examining:Examining"
 @grading.HOMEWORK
 @common.choice("--tier", ["strict", "container", "practice"], help="How its code is kept apart; see doctor.")
 @click.option("-o", "--out", type=common.OUT, help="Folder for the sheets.  [default: viva/NAME]")
-@click.option("--photographs", type=grading.FILE, multiple=True, help="To be asked about. Repeatable.")
+@click.option("--photographs", type=grading.FILE, multiple=True, help="Photograph to ask about. Repeatable.")
 @click.option("--student", default="", help="Draws this student's own questions, with --secret-file.")
 @click.option("--seed", type=click.IntRange(0), help="Draws other questions, for a second try.")
 @grading.SECRET
