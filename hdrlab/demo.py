@@ -25,8 +25,7 @@ CAMERA = camera.Camera(response="film", full_well=60_000.0, read_noise=6.0, hot=
 
 def demo_steps(out: Path, *, seed: int = 1) -> Iterator[str]:
     """Write the demo's files into `out`, and yield a line about each step when it is done."""
-    rng = np.random.default_rng(seed)
-    scene = scenes.chapel()
+    rng, scene = np.random.default_rng(seed), scenes.chapel()
     yield f"scene      a chapel with stained glass, {scenes.decades(scene):.1f} decades"
     times = camera.times_around(scene)
     shaken = camera.shake(len(times), rng=rng)

@@ -82,8 +82,7 @@ def shoot(
     if not (full_well > 0 and 0 <= read_noise < np.inf):
         raise ValueError(f"expected a positive well, noise of at least 0, got {full_well} and {read_noise}")
     light = E if c is None else sample(E, c)
-    X = np.minimum(e * light, 4.0)
-    rng = np.random.default_rng(rng)
+    X, rng = np.minimum(e * light, 4.0), np.random.default_rng(rng)
     if full_well < np.inf:
         N = np.minimum(rng.poisson(full_well * X), full_well) + rng.normal(0, read_noise, X.shape)
         X = N / full_well

@@ -204,8 +204,7 @@ def merge(
 def as_frame(Z: ArrayLike, t: float, g: ArrayLike, w: ArrayLike | None) -> Frame:
     """Return one photograph as a Frame, checked."""
     stack = np.asarray(Z)[None]
-    values = ldr_values.as_values(stack, [t], g)
-    n = levels(stack)
+    values, n = ldr_values.as_values(stack, [t], g), levels(stack)
     table = as_table(weights.cut(weights.snr(as_table(g, n))) if w is None else w, n)
     f_W = table.astype(np.float32)[stack.reshape(values.v.shape)][0]
     R = ldr_values.radiance(values.v[0], t, values.full)

@@ -56,8 +56,7 @@ def bracket(
     names = tuple(names) if names is not None else tuple(f"frame {j + 1}" for j in range(len(images)))
     if len(names) != len(images):
         raise ValueError(f"expected {len(images)} names, one per image, got {len(names)}")
-    mask = as_mask(valid, images)
-    order = short_to_long(images, times)
+    mask, order = as_mask(valid, images), short_to_long(images, times)
     if np.any(order != np.arange(len(order))):
         images, times, names = images[order], times[order], tuple(names[j] for j in order)
         mask = mask[order] if mask is not None else None

@@ -177,8 +177,7 @@ def measure_biases(H: F64, B: F64, found: Fit, *, sizes: bool = False) -> F64:
     """Return by how many stops each step misses, (P - 1, C): weighted medians over patches, or of sizes."""
     V = trust_pairs(H)
     r = step_residuals(V, found, B) / np.log(2)
-    r = np.abs(r) if sizes else r
-    out = np.full(V.shape, np.nan)
+    r, out = np.abs(r) if sizes else r, np.full(V.shape, np.nan)
     for j, c in np.ndindex(*out.shape):
         used = (V.j == j) & (V.c == c) & (V.V > 0)
         if used.any():

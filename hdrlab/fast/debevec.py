@@ -24,8 +24,7 @@ def gsolve(Z: ArrayLike, B: ArrayLike, smoothness: float, w: ArrayLike) -> debev
         If the arrays do not fit together, or no sample is seen well in two different exposures.
     """
     Z, B, w = _validate(Z, B, smoothness, w)
-    n = len(w)
-    W = w[Z] ** 2
+    n, W = len(w), w[Z] ** 2
     require_two_exposures(Z, B, w)
     D = W.sum(axis=1)  # what multiplies lE_i in its own normal equation
     has_weight = D > 0

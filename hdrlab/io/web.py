@@ -48,8 +48,7 @@ def encode_runs(image: Image) -> bytes:
     h, w = image.shape[:2]
     pixels = np.zeros((h * w, 4), np.uint8)
     pixels[:, :3] = as_rgb(image).reshape(-1, 3)
-    colours = pixels.view("<u4")[:, 0]
-    new = np.ones(h * w, bool)
+    colours, new = pixels.view("<u4")[:, 0], np.ones(h * w, bool)
     new[1:] = colours[1:] != colours[:-1]
     new[::255] = True
     (starts,) = np.nonzero(new)

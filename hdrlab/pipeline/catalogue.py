@@ -15,8 +15,7 @@ VERBS = {"align": "align", "response": "recover", "tonemap": "tonemap"}
 
 def names(chapter: str) -> list[str]:
     """Return the names of a chapter's methods, sorted; the modules are read as text, not imported."""
-    folder = Path(__file__).parents[1] / chapter
-    verb = f"\ndef {VERBS[chapter]}("
+    folder, verb = Path(__file__).parents[1] / chapter, f"\ndef {VERBS[chapter]}("
     return sorted(file.stem for file in folder.glob("*.py") if verb in file.read_text(encoding="utf8"))
 
 

@@ -156,8 +156,7 @@ def encode_change(image: web.Image, first: web.Image | None = None) -> bytes:
     >>> len(encode_change(page, page)) < 100
     True
     """
-    over = web.as_rgb(image)
-    lossless = _is_drawing(image)
+    over, lossless = web.as_rgb(image), _is_drawing(image)
     if first is not None and first.shape == image.shape:
         changed = (over != web.as_rgb(first)).any(axis=-1)
         over, lossless = np.dstack([over, np.uint8(255) * changed]), lossless or changed.mean() < FEW_CHANGED

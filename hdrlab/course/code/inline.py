@@ -115,8 +115,7 @@ def _in_order(key: Key, seen: set[Key] | None = None) -> list[Key]:
 
 def _names(wanted: dict[Key, str], needed: Sequence[Key]) -> dict[Key, str]:
     """Return the name that each definition gets: its own, or with its module's where that one is taken."""
-    names = dict(wanted)
-    taken = {name: _text(key, {}) for key, name in wanted.items()}
+    names, taken = dict(wanted), {name: _text(key, {}) for key, name in wanted.items()}
     local: dict[Key, set[str]] = {}  # names that would hide a definition where it is used
     for key in needed:
         for target, node in targets(key):

@@ -101,7 +101,6 @@ def gradebook(db: sqlite3.Connection) -> Iterator[tuple[str | int, ...]]:
     hung, cast = store.artifacts(db), every(db)
     rows = {hung[row.artifact].team: row for row in standings(hung, cast.values())}
     for id, name, team in store.voters(db):
-        voted = "yes" if cast.get(id) else "no"
-        row = rows.get(team)
+        voted, row = "yes" if cast.get(id) else "no", rows.get(team)
         fared = (hung[row.artifact].title, row.votes, row.place, row.shared) if row else ("", "", "", "")
         yield (id, name, team, voted, *fared)

@@ -140,8 +140,7 @@ def shares(n: int, own: Mapping[str, Mapping[int, CodeFingerprint]]) -> np.ndarr
     """
     together, signs, best = np.zeros((n, n)), np.zeros((n, n)), np.full((n, n), -1.0)
     for prints in filter(None, own.values()):
-        at = np.ix_(list(prints), list(prints))
-        each = covered(list(prints.values()))
+        at, each = np.ix_(list(prints), list(prints)), covered(list(prints.values()))
         size = np.array([one.token_coverage for one in prints.values()])[:, None]
         together[at] += each
         signs[at] += size
@@ -173,8 +172,7 @@ def covered(prints: Sequence[CodeFingerprint]) -> np.ndarray:
 def _pairs(teams: Sequence[str], best: np.ndarray) -> tuple[list[Pair], np.ndarray]:
     """Return the pairs from the threshold on, the most alike first, and how many have which share."""
     one, other = np.triu_indices(len(teams), 1)
-    names = np.array(teams)
-    largest = np.maximum(best, best.T)[one, other]
+    names, largest = np.array(teams), np.maximum(best, best.T)[one, other]
     counted = (names[one] != names[other]) & (largest >= 0)
     kept = np.flatnonzero(counted & (largest >= THRESHOLD))
     kept = kept[np.argsort(-largest[kept], kind="stable")]

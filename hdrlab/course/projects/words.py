@@ -107,8 +107,7 @@ def sections(text: str, folder: Path, pictures: Pictures | None = None) -> Words
     top = min((level for level in levels[bool(title) :]), default=9)
     starts = [k for k, level in zip(heads, levels, strict=True) if level == top]
     first = heads[0] + 3 if title else 0
-    found = []
-    ends = [*starts[1:], len(tokens)]
+    found, ends = [], [*starts[1:], len(tokens)]
     if before := tokens[first : starts[0] if starts else len(tokens)]:
         found.append(Section("", "", _html(parser, before, top)))
     for start, end in zip(starts, ends[: len(starts)], strict=True):

@@ -60,8 +60,7 @@ def run_steps(notebooks: Sequence[Path], cache: Path, *, jobs: int = 2) -> Itera
     NotebookError
         For the first cell that fails, or kernel that dies. What has been run is kept nevertheless.
     """
-    key = library_key()
-    waiting = []
+    key, waiting = library_key(), []
     for source in notebooks:
         kept = place(source, cache, key)
         if kept.exists():

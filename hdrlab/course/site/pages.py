@@ -183,8 +183,7 @@ def _sphinx(source: Path, html: Path, address: str) -> list[str]:
 
     from hdrlab.course.site.sphinx import SETTINGS
 
-    complaints = io.StringIO()
-    notes = html.parent / "doctrees"
+    complaints, notes = io.StringIO(), html.parent / "doctrees"
     settings = SETTINGS | {"html_baseurl": address and address.rstrip("/") + "/"}
     Sphinx(source, None, html, notes, "html", settings, status=None, warning=complaints).build()
     return [line for line in COLOUR_CODES.sub("", complaints.getvalue()).splitlines() if line.strip()]

@@ -48,8 +48,7 @@ def pages(titles: dict[str, str], uses: dict[str, set[str]]) -> Iterator[tuple[s
     titles : name of a notebook -> its title
     uses : name of a notebook -> the modules that it imports
     """
-    known = modules()
-    env = templates(RST)
+    known, env = modules(), templates(RST)
     env.filters |= {"short": short, "summary": summary, "escaped": escaped}
     index, page, lecture_map = map(env.get_template, ("chapters.rst", "module.rst", "map.rst"))
     yield "reference/index.rst", index.render(chapters=[name for name in known if name.count(".") == 1])

@@ -74,8 +74,7 @@ def _resolve(app: Any, env: Any, node: Any, content: Any) -> Any:
     """Find what stands in backticks, such as `merge.merge`: in its module, its chapter, or the package."""
     if node.get("reftype") != "obj" or node.get("refdomain") != "py":
         return None
-    module = node.get("py:module") or "hdrlab"
-    python = env.get_domain("py")
+    module, python = node.get("py:module") or "hdrlab", env.get_domain("py")
     for around in dict.fromkeys((module, module.rpartition(".")[0], "hdrlab")):
         found = python.find_obj(env, None, None, f"{around}.{node['reftarget']}", "obj")
         if found:

@@ -177,8 +177,7 @@ def _pixels(path: str | Path, data: bytes, scanlines: int, length: int) -> NDArr
     """
     count = scanlines * length
     words = np.frombuffer(data, "<u4", min(len(data) // 4, count))
-    marks = (words & 0xFFFFFF) == 0x010101
-    place = np.arange(len(words))
+    marks, place = (words & 0xFFFFFF) == 0x010101, np.arange(len(words))
     pixel = np.maximum.accumulate(np.where(marks, -1, place))  # the last that is not a mark
     digit = np.clip(place - pixel - 1, 0, 4)
     counts = np.where(marks, (words >> 24).astype(np.int64) << 8 * digit, 1)

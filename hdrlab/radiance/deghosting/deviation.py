@@ -99,8 +99,7 @@ def find_clipped_elsewhere(taken: Calibrated, E: F32) -> Mask:
     So it is where somebody dark stood before a bright place in the only frame that measures it, and v is 0.
     An edge that is off by a pixel does not count, and neither does the light around a lamp: see FAR.
     """
-    brightest = maximum_filter(E, (3, 3, 1))
-    out = np.zeros(E.shape[:2], bool)
+    brightest, out = maximum_filter(E, (3, 3, 1)), np.zeros(E.shape[:2], bool)
     for j, Z in enumerate(taken.images):
         bound = np.exp(taken.x[j, :, taken.top] - FAR).astype(np.float32)
         darker = ((Z >= taken.top) & (brightest < bound)).all(axis=-1)

@@ -69,8 +69,7 @@ def find_consistent(known: Estimate, other: Estimate, *, tau: float) -> Mask:
     D = np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
     # a running mean rounds below 0, too
     sigma = np.sqrt(np.maximum(_box_mean(np.where(both, known.V + other.V, 0)), 0) / INDEPENDENT) / share
-    filled = np.where(both, E, mean)
-    size = (BOX, BOX, 1)
+    filled, size = np.where(both, E, mean), (BOX, BOX, 1)
     reach = (maximum_filter(filled, size) - minimum_filter(filled, size)) * np.float32(SHIFT / BOX)
     differ = np.any(D > SIGMAS * sigma + tau * mean + reach, axis=-1)
     violated = np.any(_violates(known, other, tau) | _violates(other, known, tau), axis=-1)

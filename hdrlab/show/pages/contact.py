@@ -57,8 +57,7 @@ def entry_steps(
     for name, tonemap in _methods(operators).items():  # imported by now: that is no part of the time
         begun = perf_counter()
         settings, saturation = pipeline.settle(tonemap, E)
-        Ld = tonemap(L, **settings)
-        seconds = perf_counter() - begun
+        Ld, seconds = tonemap(L, **settings), perf_counter() - begun
         picture = colour.render(E, L, Ld, saturation=saturation, way=way)
         yield Entry(name, picture, seconds, quality.tmqi(L, picture), statistics(picture))
 

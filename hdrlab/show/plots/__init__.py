@@ -164,8 +164,7 @@ def thumbnails(bracket: Bracket, *, offsets: ArrayLike | None = None, columns: i
     for j, (image, time) in enumerate(zip(bracket.images, bracket.times, strict=True)):
         row, column = divmod(j, columns)
         place = (column / columns, 1 - (row + 1) / rows, 0.97 / columns, (1 - title / height) / rows)
-        ax = figure.add_axes(place)
-        step = max(1, w // 350)
+        ax, step = figure.add_axes(place), max(1, w // 350)
         ax.imshow(to_256(image[::step, ::step]), cmap="gray", vmin=0, vmax=255)
         moved = "" if offsets is None else "\ndy {:+d}, dx {:+d} px".format(*np.asarray(offsets)[j])
         ax.set_title(seconds(time) + moved, fontsize=11, pad=3)

@@ -82,8 +82,7 @@ def known(picture: Image, quality: NDArray[np.uint8]) -> Image:
 def regions(picture: Image, labels: NDArray[np.int32]) -> Image:
     """Return the picture in pale gray, regions (labels > 0) in orange, each with a dark outline."""
     gray = picture if picture.ndim == 2 else picture.mean(axis=-1)
-    shown = np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1)
-    inside = labels > 0
+    shown, inside = np.repeat((120 + gray * 0.4)[..., None], 3, axis=-1), labels > 0
     shown[inside] = 0.5 * shown[inside] + 0.5 * np.array(ORANGE)
     shown[maximum_filter(labels, size=dot(labels.shape)) != labels] = OUTLINE
     return shown.astype(np.uint8)

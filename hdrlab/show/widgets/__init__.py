@@ -212,8 +212,7 @@ def tune(
         with THREADS.limit(limits=1):  # its systems are small: threads would only wait for each other
             return reuse.draw_reusing(draw, f(**positions.values(grids, at)), finish, kept)
 
-    at = positions.start(f, grids)
-    most = int(os.environ.get("HDRLAB_STORED", stored))
+    at, most = positions.start(f, grids), int(os.environ.get("HDRLAB_STORED", stored))
     first, areas = picture(at, lambda drawn: (render(drawn), pictured(drawn)))
     stored_at, frames = [at], [encode_change(first)]
     for position in positions.beforehand(grids, at, min(most, HEAVIEST // len(frames[0])))[1:]:

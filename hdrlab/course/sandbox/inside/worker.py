@@ -68,8 +68,7 @@ def refuse(event: str, arguments: tuple[Any, ...]) -> None:
 
 def run(source: str, name: str) -> dict[str, Any]:
     """Run a submission's source as a module of this name, and return what it defines."""
-    module = types.ModuleType(name)
-    file = f"<{name}>"
+    module, file = types.ModuleType(name), f"<{name}>"
     sys.modules[name] = module  # a dataclass looks its module up
     linecache.cache[file] = (len(source), None, source.splitlines(keepends=True), file)
     exec(compile(source, file, "exec"), module.__dict__)

@@ -107,8 +107,7 @@ def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Dri
     fits ever better, so u alone drifts.
     """
     M = self_calibration.average(one.Z)
-    M = M[np.all((M > 0.05) & (M < 0.98), axis=1)]
-    z = np.linspace(0, 1, 256)
+    M, z = M[np.all((M > 0.05) & (M < 0.98), axis=1)], np.linspace(0, 1, 256)
     truth, rows = value(z, one.c), []
     for c, R, error in islice(literal_steps(M, start, order=len(one.c) + 1), iterations):
         f_inv = np.polynomial.polynomial.polyval(z, c)

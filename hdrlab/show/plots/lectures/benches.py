@@ -54,8 +54,7 @@ def meter_scene(
     fills = float(exposure.saturating_luminance(1.0, F=F))
     time, s = F**2 / 2.0**EV, 1 / fills
     lens = camera.Camera(response="srgb", sensitivity=s, sensor=sensor)
-    taken = camera.shoot(scene.E, [time], lens, rng=rng)
-    L = luminance(scene.E)
+    taken, L = camera.shoot(scene.E, [time], lens, rng=rng), luminance(scene.E)
     noise = ranges.expose_levels(L, time, sensor, sensitivity=s).noise
     off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
     asked = metering.weights(photograph(coarse, EV), mode, at=at)
@@ -100,8 +99,7 @@ class Calibrated(NamedTuple):
 
 def calibrate_shaken(E: ArrayLike, *, radius: int = 6, count: int = 5, stops: float = 2.0) -> Calibrated:
     """Return a calibration of `count` gray photographs, `stops` apart, shaken by up to `radius` pixels."""
-    L = luminance(E)
-    offsets = camera.shake(count, radius=radius)
+    L, offsets = luminance(E), camera.shake(count, radius=radius)
     times = camera.times_around(L, count, stops=stops)
     taken = camera.shoot(L, times, NOISY, offsets=offsets)
     found = pipeline.aligned(taken, "mtb")

@@ -61,8 +61,7 @@ def validated(state: mtb.State, validation: Validation) -> Axes:
 def nine(state: mtb.State) -> Figure:
     """Return the nine offsets that a level compares, the centre in a gray frame and the best in an orange."""
     (height, width), gap = state.fixed.shape[1:], 0.06
-    centre = next(iter(state.errors))
-    side = (WIDTH - 4 * gap) / 3
+    centre, side = next(iter(state.errors)), (WIDTH - 4 * gap) / 3
     tall = side * height / width
     figure = Figure(figsize=(WIDTH, 3 * (tall + 0.25) + 0.45), dpi=100)
     total = figure.get_size_inches()[1]

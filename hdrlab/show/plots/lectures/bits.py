@@ -99,8 +99,7 @@ def scanline(planes: ArrayLike, done: int, *, title: str = "") -> Figure:
     given = np.asarray(planes)
     if given.ndim != 2 or len(given) != 4 or not 0 <= done <= given.size:
         raise ValueError(f"expected planes (4, W) and 0 to 4 W bytes, got {describe(given)} and {done}")
-    width = given.shape[1]
-    figure = Figure(figsize=(WIDTH, 2.6), dpi=100)
+    width, figure = given.shape[1], Figure(figsize=(WIDTH, 2.6), dpi=100)
     for k, (name, plane) in enumerate(zip((*CHANNELS, "exponent"), given, strict=True)):
         ax = figure.add_axes((0.15, 0.72 - 0.18 * k, 0.83, 0.15))
         known = min(max(done - k * width, 0), width)

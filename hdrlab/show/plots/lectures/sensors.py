@@ -42,8 +42,7 @@ def window(L: ArrayLike, held: ranges.ExposedLevels, *, limits: Ends = None) -> 
     if L.shape != np.shape(held.full) or not np.all(L > 0):
         raise ValueError(f"expected positive luminances {np.shape(held.full)}, got {describe(L)}")
     low, high = limits or (float(L.min()), float(L.max()) * 1.0001)
-    edges = np.geomspace(low, high, BINS + 1)
-    below = np.zeros(BINS + 1)
+    edges, below = np.geomspace(low, high, BINS + 1), np.zeros(BINS + 1)
     lost = (held.noise & ~held.full, ~held.noise & ~held.full, held.full)
     for (label, colour, hatch), mask in zip(KINDS, lost, strict=True):
         above = below + 100 * np.append(np.histogram(L[mask], edges)[0], 0) / L.size

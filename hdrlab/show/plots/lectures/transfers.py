@@ -36,8 +36,7 @@ def comparagram(
     if J.ndim != 2 or J.shape[0] != J.shape[1] or len(J) < 3 or not np.any(J > 0):
         raise ValueError(f"expected a comparagram (n, n) with counts in it, got {describe(J)}")
     most = J[1:-1, 1:-1].max() or J.max()
-    scale = LogNorm(max(most / 1000, J[J > 0].min()), most)
-    ax = axes(5.4, 4.3)
+    scale, ax = LogNorm(max(most / 1000, J[J > 0].min()), most), axes(5.4, 4.3)
     ax.set_facecolor("#E6E6E6")  # no pixel has these two levels
     counted = np.where(J > 0, J, np.nan).T
     shown = ax.imshow(counted, norm=scale, origin="lower", interpolation="nearest", zorder=1)  # upon the grid
