@@ -2,7 +2,6 @@
 
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 import numpy as np
 
@@ -21,8 +20,7 @@ def case(folder: Path, one: bool) -> Case:
     bracket, truth, g = data.photographs(folder), data.scene(folder), data.response()
 
     def ours() -> Array:
-        with patch.object(merge, "THREADS", 1 if one else merge.THREADS):
-            return merge.merge_with_quality(bracket.images, bracket.times, g).E
+        return merge.merge_with_quality(bracket.images, bracket.times, g).E
 
     theirs, missing = peers.present(
         {

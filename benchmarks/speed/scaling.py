@@ -4,7 +4,6 @@ from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
-from unittest.mock import patch
 
 from benchmarks import data
 from benchmarks.rows import Case, Row, Run, grows, within
@@ -31,8 +30,7 @@ def merging(folder: Path, size: data.Size, one: bool) -> Work:
     bracket, g = data.photographs(folder, size), data.response()
 
     def work() -> Any:
-        with patch.object(merge, "THREADS", 1 if one else merge.THREADS):
-            return merge.merge_with_quality(bracket.images, bracket.times, g)
+        return merge.merge_with_quality(bracket.images, bracket.times, g)
 
     return work, bracket.images.nbytes
 

@@ -80,8 +80,7 @@ def meter(photo: Path, mode: str, at: str) -> None:
     from hdrlab.core.colour import decode_srgb, luminance
     from hdrlab.io import decode, photos
 
-    place = _place(at)
-    image = photos.read_photo(photo)
+    place, image = _place(at), photos.read_photo(photo)
     B = np.minimum(luminance(decode_srgb(image / np.float32(np.iinfo(image.dtype).max))), 1)
     w = metering.weights(B, mode, at=place)
     read, stops = metering.reading(B, w), metering.correction(B, w)

@@ -37,8 +37,7 @@ def video(asked: Any) -> None:
     turn = seconds(asked.times)
     require = sequence.require_writable if asked.out.suffix else sequence.require_new
     require(asked.out)  # better known before the work
-    count = sequence.count(asked.frames)
-    film = sequence.read(asked.frames)
+    count, film = sequence.count(asked.frames), sequence.read(asked.frames)
     begun = list(islice(film, len(turn)))
     g = recovered(asked.response, begun, turn)
     steps = merging.merge_steps(chain(begun, film), turn, g)

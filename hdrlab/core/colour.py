@@ -24,6 +24,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance, as_radiance, describe
+from hdrlab.core.threads import each
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
 DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray
@@ -113,9 +114,13 @@ def render(
         raise ValueError(f"expected a way of colour out of {', '.join(WAYS)}, got {way!r}")
     E, L, Ld = _as_fitting(E, L, Ld, saturation)
     picture = np.empty(E.shape, np.uint8)
-    for top in range(0, len(E), ROWS):
+
+    def fill(top: int) -> None:
         band = slice(top, top + ROWS)
         picture[band] = _codes(Ld[band] if E.ndim == 2 else WAYS[way](E[band], L[band], Ld[band], saturation))
+
+    for _ in each(fill, range(0, len(E), ROWS), pixels=L.size):
+        pass
     return picture
 
 
@@ -149,10 +154,15 @@ def _hue(E: F32, L: F32, Ld: F32, saturation: float) -> F32:
 
 def _pale(C: F32, M: F32, Ld: F32) -> F32:
     """Return colours (N, 3) whose largest channel M, (N, 1) like Ld, no longer exceeds 1."""
-    fit = np.maximum(M, 1) ** np.float32(-0.85)
+    fit = _power(np.maximum(M, 1), -0.85)
     C, M, Ld = C * fit, M * fit, Ld * fit
     full = np.minimum((M - Ld) / np.maximum(1 - Ld, DARK), 1000)  # of the room between the luminance and 1
-    return np.asarray(Ld + (C - Ld) * (1 + full**8) ** np.float32(-1 / 8), np.float32)
+    return np.asarray(Ld + (C - Ld) * _power(1 + np.square(np.square(np.square(full))), -1 / 8), np.float32)
+
+
+def _power(x: F32, exponent: float) -> F32:
+    """Return x^exponent, x above 0: NumPy's own power takes five times as long."""
+    return np.exp(np.float32(exponent) * np.log(x))
 
 
 WAYS: dict[str, Callable[[F32, F32, F32, float], F32]] = {"ratio": _ratio, "hue": _hue}

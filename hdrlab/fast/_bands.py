@@ -9,6 +9,7 @@ from collections.abc import Callable
 import numpy as np
 
 from hdrlab.core.arrays import Array
+from hdrlab.core.threads import each
 
 BAND = 32  # rows
 
@@ -34,11 +35,16 @@ def banded(equation: Callable[..., Array], *pictures: Array, margin: int = 0) ->
     """
     n = pictures[0].shape[-2]
     whole: Array | None = None
-    for top in range(0, n, BAND):
+
+    def compute(top: int) -> Array:
         start, stop = max(top - margin, 0), min(top + BAND + margin, n)
         slab = equation(*(picture[..., start:stop, :] for picture in pictures))
+        return slab[top - start : top - start + BAND]
+
+    tops = range(0, n, BAND)
+    for top, slab in zip(tops, each(compute, tops, pixels=pictures[0].size), strict=True):
         whole = np.empty((n, slab.shape[1]), slab.dtype) if whole is None else whole
-        whole[top : top + BAND] = slab[top - start : top - start + BAND]
+        whole[top : top + BAND] = slab
     if whole is None:
         raise ValueError("expected pictures of at least one row")
     return whole

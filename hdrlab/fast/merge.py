@@ -13,10 +13,7 @@ together.
 
 import ctypes
 import mmap
-import os
 from collections.abc import Callable
-from concurrent.futures import ThreadPoolExecutor
-from contextlib import nullcontext
 from itertools import product
 from typing import Any, NamedTuple
 
@@ -24,6 +21,7 @@ import numpy as np
 
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Flags, Mask, as_mask
 from hdrlab.core.bracket import short_to_long
+from hdrlab.core.threads import each
 from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
 from hdrlab.radiance.stuck import repair_stuck
 
@@ -31,7 +29,6 @@ from hdrlab.radiance.stuck import repair_stuck
 ROWS = 16
 # rows whose memory is given back at once, and bytes of a large page
 BAND, PAGE = 256, 1 << 21
-THREADS = os.cpu_count() or 1
 # the terms a, b of one frame of t seconds, from w and g over the levels
 TERMS: dict[str, Callable[[F64, F64, float], tuple[F64, F64]]] = {
     "log": lambda w, g, t: (w * (g - np.log(t)), w),
@@ -85,12 +82,10 @@ def merge_with_quality(
         _merge_block([pixels[j, rows] for j in order], shown, plan, E[rows], quality[rows])
 
     starts = range(0, len(quality), ROWS)
-    # a thread of its own would have a memory pool of its own, which is slower
-    with nullcontext() if THREADS == 1 else ThreadPoolExecutor(THREADS) as pool:
-        for start, _ in zip(starts, (pool.map if pool else map)(merge_rows, starts), strict=True):
-            if isinstance(images, Expendable) and start % BAND == 0:
-                for j in order[1:-1]:  # the shortest and the longest tell what is stuck
-                    _release(stack[j, :start])
+    for start, _ in zip(starts, each(merge_rows, starts), strict=True):
+        if isinstance(images, Expendable) and start % BAND == 0:
+            for j in order[1:-1]:  # the shortest and the longest tell what is stuck
+                _release(stack[j, :start])
     if repair:
         quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)

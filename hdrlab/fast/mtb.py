@@ -17,6 +17,7 @@ import numpy as np
 
 from hdrlab.align import mtb as lesson
 from hdrlab.core.arrays import Array, ArrayLike, Mask, NDArray, as_stack
+from hdrlab.core.threads import each
 
 Words = NDArray[np.uint64]
 Offset = tuple[int, int]
@@ -67,8 +68,7 @@ class Photograph:
         (dy, dx), H, every = offset, len(self.Y[level]), _every(self.Y[level])
         top = -(-max(dy, 0) // every)
         rows = len(range(top * every, min(H, H + dy), every))
-        start = (top * every - dy) // every
-        A = fixed.bits(q, level)[:, top : top + rows]
+        start, A = (top * every - dy) // every, fixed.bits(q, level)[:, top : top + rows]
         B = self.bits(q, level, dx, -dy % every)[:, start : start + rows]
         kept = A[1] & B[1]
         return (A[0] ^ B[0]) & kept, kept, max(-(-(H // 2) // every) - top, 0)
@@ -103,8 +103,8 @@ def align(images: ArrayLike, *, bits: int = 6, luma: bool = False) -> NDArray[np
     if bits < 1:
         raise ValueError(f"expected at least 1 bit for the largest offset, got bits={bits}")
     order = lesson.by_brightness(images)
-    taken = (Photograph(images[image], bits=bits, luma=luma) for image in order)
-    found = [moving.offset_onto(fixed) for moving, fixed in pairwise(taken)]  # two at a time in memory
+    taken = each(lambda image: Photograph(images[image], bits=bits, luma=luma), order, pixels=images[0].size)
+    found = [moving.offset_onto(fixed) for moving, fixed in pairwise(taken)]  # a few at a time in memory
     return lesson.chain_offsets(order, found)
 
 
@@ -158,7 +158,6 @@ def _slide(words: Words, dx: int) -> Words:
     n, (whole, part) = words.shape[-1], divmod(dx, 64)
     moved = np.zeros_like(words)
     for by, bits in ((whole, part), (whole + 1, part - 64)) if part else ((whole, 0),):
-        end = max(n + min(by, 0), 0)
-        source = words[..., max(-by, 0) : max(n - by, 0)]
+        end, source = max(n + min(by, 0), 0), words[..., max(-by, 0) : max(n - by, 0)]
         moved[..., max(by, 0) : end] |= source >> np.uint64(bits) if bits >= 0 else source << np.uint64(-bits)
     return moved

@@ -4,10 +4,8 @@ A bracket's headers are read first: they say whether the frames go together and 
 decoded once, straight into its place, several at a time.
 """
 
-import os
 import warnings
 from collections.abc import Callable, Iterable, Sequence
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +15,7 @@ from PIL import Image
 from hdrlab.core.arrays import Array, ArrayLike, as_picture
 from hdrlab.core.bracket import Bracket, bracket
 from hdrlab.core.optional import imagecodecs
+from hdrlab.core.threads import each
 from hdrlab.io import album, files, raw
 from hdrlab.io.decode import Header, decode, look
 from hdrlab.io.times import Times, are_inverse, bracket_times
@@ -116,13 +115,9 @@ def read_bracket(
         if valid is not None:
             valid[j] = (images[j] != np.asarray(mask)).any(axis=-1)
 
-    pool = ThreadPoolExecutor(min(os.cpu_count() or 1, 4))
-    try:
-        waiting = [pool.submit(fill, j) for j in range(len(headers))]
-        for j, _ in enumerate(progress([header.path for header in headers])):
-            waiting[j].result()
-    finally:
-        pool.shutdown(cancel_futures=True)
+    filled = each(fill, range(len(headers)))
+    for _ in progress([header.path for header in headers]):
+        next(filled)
     names = [header.path.name for header in headers]
     if inverse and are_inverse(sorted(seconds), [image[::8, ::8].mean() for image in images]):
         seconds = inverse

@@ -15,6 +15,7 @@ from hdrlab.align import cerman, homography, light, mtb
 from hdrlab.core import colour, steps, transfer
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, as_stack, as_table, as_times, levels
 from hdrlab.core.filters import warp
+from hdrlab.core.threads import each
 from hdrlab.diagnostics import registration as judgement
 from hdrlab.fast.mtb import Photograph
 from hdrlab.pipeline import catalogue
@@ -98,7 +99,7 @@ def register(
 
 def photograph_pairs(images: Array, bits: int = BITS) -> Iterator[tuple[int, Photograph, int, Photograph]]:
     """Yield the numbers and Photographs of neighbours from dark to bright, two at a time in memory."""
-    taken = ((image, Photograph(images[image], bits=bits)) for image in mtb.by_brightness(images))
+    taken = each(lambda image: (image, Photograph(images[image], bits=bits)), mtb.by_brightness(images))
     yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
 
 
@@ -164,8 +165,7 @@ def light_scale(images: Array, times: ArrayLike | None, g: Curve) -> AsLight:
     by the curve of sRGB, and each pixel is divided by the mean around it: what is wrong with that is wrong in
     both alike, and cancels.
     """
-    n = levels(images)
-    seconds = None if times is None else as_times(times, len(images))
+    n, seconds = levels(images), None if times is None else as_times(times, len(images))
     given = g if g is None or callable(g) else as_table(g, n)
 
     def as_light(moving: int, fixed: int, dark: Array, bright: Array) -> list[F32]:

@@ -8,7 +8,7 @@ from hypothesis import given, strategies as st
 from hypothesis.extra.numpy import arrays
 
 from hdrlab.capture import camera, responses
-from hdrlab.core import weights
+from hdrlab.core import threads, weights
 from hdrlab.fast import merge as quick
 from hdrlab.radiance import merge as lesson
 from hdrlab.radiance.merge import METHODS, Quality
@@ -142,8 +142,8 @@ def test_the_scale_of_the_weights_does_not_matter():
 def test_the_number_of_threads_changes_nothing(monkeypatch):
     images = np.random.default_rng(8).integers(0, 256, (3, 70, 30, 3), np.uint8)
     one, three = (
-        monkeypatch.setattr(quick, "THREADS", threads) or quick.merge_with_quality(images, [1, 2, 8], FILM)
-        for threads in (1, 3)
+        monkeypatch.setattr(threads, "THREADS", count) or quick.merge_with_quality(images, [1, 2, 8], FILM)
+        for count in (1, 3)
     )
     assert np.array_equal(one.E, three.E) and np.array_equal(one.quality, three.quality)
 

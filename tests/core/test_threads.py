@@ -1,0 +1,63 @@
+"""Work in threads: the answers of one thread, in their order, and its errors."""
+
+import threading
+
+import numpy as np
+import pytest
+
+from hdrlab.core import colour, threads
+from hdrlab.fast import _bands
+
+
+@pytest.fixture(params=[1, 3], ids=["one processor", "three"], autouse=True)
+def count(request, monkeypatch):
+    monkeypatch.setattr(threads, "THREADS", request.param)
+    return request.param
+
+
+def test_answers_come_in_the_order_of_the_items():
+    assert list(threads.each(lambda n: n * n, iter(range(50)))) == [n * n for n in range(50)]
+    assert list(threads.each(abs, [])) == []
+
+
+def test_an_error_comes_in_its_place_and_what_waits_is_not_begun():
+    begun = []
+
+    def work(n):
+        begun.append(n)
+        return 1 // (n - 2)
+
+    answers = threads.each(work, range(50))
+    assert [next(answers), next(answers)] == [-1, -1]
+    with pytest.raises(ZeroDivisionError):
+        next(answers)
+    assert len(begun) < 10
+
+
+def test_no_more_is_begun_than_is_asked_for(count):
+    taken = []
+    answers = threads.each(abs, (taken.append(n) or n for n in range(50)))
+    next(answers)
+    assert len(taken) <= count + 1
+    answers.close()
+
+
+def test_a_small_picture_has_no_threads_and_what_numpy_is_told_of_errors_holds_in_them(count):
+    own = threading.get_ident()
+    for pixels, alone in ((100, True), (threads.PIXELS, count == 1)):
+        with np.errstate(divide="raise"), pytest.raises(FloatingPointError):
+            list(threads.each(lambda n: np.float32(1) / n, [np.float32(0)], pixels=pixels))
+        used = set(threads.each(lambda _: threading.get_ident(), range(9), pixels=pixels))
+        assert (used == {own}) == alone
+
+
+def test_a_large_picture_is_the_same_in_bands():
+    E = np.random.default_rng(1).uniform(0.01, 9, (820, 650, 3)).astype(np.float32)
+    L = colour.luminance(E)
+    Ld = _bands.banded(lambda L: L / (1 + L), L)
+    assert np.array_equal(Ld, L / (1 + L))
+    for way in colour.WAYS:
+        halves = [
+            colour.render(*(one[part] for one in (E, L, Ld)), way=way) for part in (np.s_[:400], np.s_[400:])
+        ]
+        assert np.array_equal(colour.render(E, L, Ld, way=way), np.concatenate(halves))
