@@ -18,6 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from hdrlab.core.arrays import F64, Array, ArrayLike, Flags, Mask, as_mask, as_stack, to_256
+from hdrlab.core.threads import each
 from hdrlab.diagnostics import plausibility
 
 # of a patch, pixels
@@ -52,17 +53,19 @@ def find_flat_patches(images: ArrayLike, *, valid: ArrayLike | None = None) -> F
     """Return the patches of aligned photographs: their mean levels, and which are static, and flat."""
     stack = as_stack(images)
     mask = as_mask(valid, stack)
-    apart = SIDE * max(1, int(np.sqrt(stack.shape[1] * stack.shape[2] / PATCHES) / SIDE))
-    Z, flat, n = [], [], int(np.minimum(SIDE, stack.shape[1:3]).prod())
-    for j, frame in enumerate(stack):
-        low, high = (to_256(_reduce_patches(frame, apart, one)) for one in (np.minimum, np.maximum))
-        mean = to_256(((_reduce_patches(frame, apart, np.add) + n // 2) // n).astype(frame.dtype))
+    apart = SIDE * max(1, round(np.sqrt(stack.shape[1] * stack.shape[2] / PATCHES) / SIDE))
+    n = int(np.minimum(SIDE, stack.shape[1:3]).prod())
+
+    def find(j: int) -> tuple[Flags, Mask]:
+        low, high = (to_256(_reduce_patches(stack[j], apart, one)) for one in (np.minimum, np.maximum))
+        mean = to_256(((_reduce_patches(stack[j], apart, np.add) + n // 2) // n).astype(stack.dtype))
         whole = ((low >= BLACK) & (high <= TOP)).all(axis=0)
         if mask is not None:
             whole &= _reduce_patches(mask[j], apart, np.minimum)[0]
-        Z.append(np.where(whole, mean, 0))
-        flat.append((high - low <= RANGE).all(axis=0))
-    return FlatPatches(np.stack(Z).astype(np.uint8), np.stack(flat))
+        return np.where(whole, mean, 0).astype(np.uint8), np.all(high - low <= RANGE, axis=0)
+
+    Z, flat = zip(*each(find, range(len(stack)), pixels=stack[0].size), strict=True)
+    return FlatPatches(np.stack(Z), np.stack(flat))
 
 
 def rank_levels(images: ArrayLike, *, valid: ArrayLike | None = None) -> Flags:

@@ -19,7 +19,7 @@ above the ground, where a response is a little wrong, makes no bands, for a cubi
 import numpy as np
 from numpy.lib.stride_tricks import sliding_window_view
 
-from hdrlab.core.arrays import F32, Array, ArrayLike, Mask, as_mask
+from hdrlab.core.arrays import F32, Array, ArrayLike, as_mask
 from hdrlab.radiance.merge import TOP, as_tables
 
 # of a frame, on an even grid, that stand for the whole
@@ -78,11 +78,15 @@ def measure_motion(
     mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
     few = np.s_[:, ::every, ::every]
     Z = stack[few].reshape(*stack[few].shape[:3], -1)
-    trust = weigh_levels(Z, w, top, None if mask is None else mask[few])
-    place = Z + np.arange(Z.shape[-1], dtype=np.uint32) * len(curves)  # in all curves, one after the other
-    r = curves.T.astype(np.float32).take(place) - np.log(t).astype(np.float32)[:, None, None, None]
-    r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
-    R, W = sum_blocks(trust * r), sum_blocks(trust)
+    seen = (Z < top).all(axis=-1) if mask is None else (Z < top).all(axis=-1) & mask[few]
+    weight = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
+    R, W = np.zeros((2, len(Z), *(n // BLOCK for n in Z.shape[1:3])), np.float32)  # sums of w r, and of w
+    for c in range(Z.shape[-1]):
+        trust = weight.take(Z[..., c]) * seen
+        r = curves[:, c].astype(np.float32).take(Z[..., c]) - np.log(t).astype(np.float32)[:, None, None]
+        r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
+        R += sum_blocks(trust * r)
+        W += sum_blocks(trust)
     rows, columns = (measure_bands(R.sum(axis=k), W.sum(axis=k), Z.shape[-1] * R.shape[k]) for k in (2, 1))
     W[W < FAINT * BLOCK**2 * Z.shape[-1]] = 0
     R /= np.maximum(W, 1e-9)
@@ -106,15 +110,8 @@ def measure_bands(R: F32, W: F32, count: int) -> float:
     return float(np.sqrt((W * b**2).sum() / max(W.sum(), 1e-9)) / np.log(2))
 
 
-def weigh_levels(Z: Array, w: Array, top: int, valid: Mask | None) -> F32:
-    """Return the weights (P, H, W, C), the highest 1; 0 for black levels and for pixels that clip."""
-    table = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
-    seen = (Z < top).all(axis=-1, keepdims=True)
-    return table.take(Z) * (seen if valid is None else seen & valid[..., None])
-
-
 def sum_blocks(values: Array) -> F32:
-    """Return the sums over channels and blocks of BLOCK x BLOCK pixels, (P, H / BLOCK, W / BLOCK)."""
+    """Return the sums over blocks of BLOCK x BLOCK pixels, (P, H / BLOCK, W / BLOCK)."""
     h, w = values.shape[1] // BLOCK, values.shape[2] // BLOCK
     whole = values[:, : h * BLOCK, : w * BLOCK]
-    return np.asarray(whole.reshape(len(whole), h, BLOCK, w, BLOCK, -1).sum(axis=(2, 4, 5)), np.float32)
+    return np.asarray(whole.reshape(len(whole), h, BLOCK, w, BLOCK).sum(axis=(2, 4)), np.float32)

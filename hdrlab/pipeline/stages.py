@@ -13,6 +13,7 @@ import numpy as np
 from hdrlab.core import steps, weights
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
+from hdrlab.core.threads import each
 from hdrlab.diagnostics import consistency, contradictions, motion, outlying_frames
 from hdrlab.diagnostics.doubts import say
 from hdrlab.fast.merge import Expendable, merge_with_quality
@@ -135,9 +136,12 @@ def assemble_steps(
     few = np.s_[:, *consistency.choose_grid(images.shape[1:3])]  # judged while there are photographs
     shown = None if valid is None else valid[few]
     E = merge(images[few], seconds, g, w(g), valid=shown, repair=False).E
-    medians = consistency.measure_level_exposures(images[few], seconds, E, valid=shown)
-    contrary = contradictions.find_contradictions(images, seconds, valid=valid)
-    moved, bands = motion.measure_motion(images, seconds, g, w(g), valid=valid)
+    judges: list[Callable[..., Any]] = [
+        lambda: contradictions.find_contradictions(images, seconds, valid=valid),
+        lambda: motion.measure_motion(images, seconds, g, w(g), valid=valid),
+        lambda: consistency.measure_level_exposures(images[few], seconds, E, valid=shown),
+    ]
+    contrary, (moved, bands), medians = each(lambda judge: judge(), judges, pixels=images[0].size)
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
     if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
         state = state._replace(bracket=state.bracket._replace(images=images[:0].copy()))
