@@ -5,10 +5,12 @@ Bad input ends in one line on standard error and exit code 2, Ctrl-C in 130; fil
 at all.
 """
 
+import ctypes
 import os
 import signal
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from io import TextIOWrapper
 from pkgutil import iter_modules
@@ -28,6 +30,10 @@ def run(arguments: Sequence[str] | None = None) -> None:
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     # the products here are small: threads only wait on them
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    with suppress(
+        AttributeError, OSError, TypeError
+    ):  # glibc's M_ARENA_MAX: one pool of memory for all threads
+        ctypes.CDLL(None).mallopt(-8, 1)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a pipe of Windows has no sign such as ✗
             stream.reconfigure(errors="replace")

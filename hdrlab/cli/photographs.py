@@ -1,5 +1,6 @@
 """Commands that begin with photographs."""
 
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,6 +13,7 @@ from hdrlab.pipeline import catalogue
 if TYPE_CHECKING:
     from hdrlab.core.bracket import Bracket
     from hdrlab.pipeline.assembly import Assembly
+    from hdrlab.pipeline.pictures import Developed
 
 WORDS = ("exif", "stated", "estimate")
 FUSION = "the picture is an exposure fusion of the photographs"
@@ -51,8 +53,6 @@ def assemble(asked: Any) -> None:
     The map is written even where it is doubtful: then warnings say why and what to do, the report and the
     header of .hdr and .exr repeat them, and --strict makes them an exit code.
     """
-    import numpy as np
-
     from hdrlab import pipeline
     from hdrlab.io import photos as files, radiance
     from hdrlab.io.files import require_suffix
@@ -73,34 +73,46 @@ def assemble(asked: Any) -> None:
         assembly = pipeline.measure_deviation(assembly)
     if metered:
         assembly = pipeline.calibrate(assembly, *metered)
+    if assembly.fallback and (asked.picture or asked.report):
+        assembly = assembly._replace(notes=(*assembly.notes, f"{FUSION}, for {assembly.fallback}"))
     common.say("note", assembly.notes)
     common.say("warning", _shorten(assembly.doubts))
     comments = ["unit: cd/m^2"] * bool(metered) + [f"doubt: {doubt}" for doubt in assembly.doubts]
-    radiance.write_radiance(asked.out, assembly.E, comments=comments)
-    if asked.uncertainty and assembly.s is not None:
-        both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
-        layers.write_layers(asked.uncertainty, both, comments=comments)
-        click.echo(f"{asked.uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
-    if asked.picture or asked.report:
-        rendered, settings = pipeline.develop_and_describe(assembly.E, asked.tonemap)
-        if assembly.fallback:
-            from hdrlab.fast import mertens
-
-            click.echo(f"note: {FUSION}, for {assembly.fallback}", err=True)
-            assembly = assembly._replace(notes=(*assembly.notes, f"{FUSION}, for {assembly.fallback}"))
-            rendered = np.rint(255 * mertens.fuse(assembly.bracket.images).clip(0, 1)).astype(np.uint8)
-            settings = FUSION
-        if asked.picture:
-            files.write_picture(asked.picture, rendered)
-            click.echo(f"{asked.picture}: {settings}")
-        if asked.report:
+    with ThreadPoolExecutor(1) as beside:
+        try:
+            shown = _develop(assembly, asked.tonemap) if asked.picture or asked.report else None
+        finally:  # beside the picture, and without one that fails
+            writing = beside.submit(radiance.write_radiance, asked.out, assembly.E, comments=comments)
+        if asked.uncertainty and assembly.s is not None:
+            both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
+            layers.write_layers(asked.uncertainty, both, comments=comments)
+            click.echo(f"{asked.uncertainty}: {wording.certainty(assembly.E, assembly.s)}")
+        if shown and asked.picture:
+            files.write_picture(asked.picture, shown.picture)
+            click.echo(f"{asked.picture}: {shown.settings}")
+        if shown and asked.report:
             from hdrlab.show.pages.report import write_report
 
-            recipe = {"response": asked.response} | methods | {"tonemap": settings}
-            write_report(asked.report, assembly, rendered, recipe=recipe)
+            recipe = {"response": asked.response} | methods | {"tonemap": shown.settings}
+            write_report(asked.report, assembly, shown.picture, recipe=recipe)
+        writing.result()
     click.echo(f"{asked.out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
     if asked.strict and assembly.doubts:
         click.get_current_context().exit(3)
+
+
+def _develop(assembly: "Assembly", tonemap: str) -> "Developed":
+    """Return the picture of a map, or where it is worth none of the photographs, fused."""
+    import numpy as np
+
+    from hdrlab.pipeline import pictures
+
+    if not assembly.fallback:
+        return pictures.develop_and_describe(assembly.E, tonemap)
+    from hdrlab.fast import mertens
+
+    fused = np.rint(255 * mertens.fuse(assembly.bracket.images).clip(0, 1)).astype(np.uint8)
+    return pictures.Developed(fused, FUSION)
 
 
 def read_bracket(photos: tuple[Path, ...], times: str, mask: str | None, stops: float | None) -> "Bracket":
