@@ -5,6 +5,7 @@ the goal.
 """
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from math import log
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -116,21 +117,30 @@ def verdicts(outcomes: Sequence[Outcome]) -> list[tuple[Named, Judged, str]]:
     ]
 
 
-def best_peer(results: Results) -> str | None:
+def best_peer(results: Results, column: str = "seconds") -> str | None:
     """Return the fastest peer, or None where there is none."""
     peers = [who for who in results if who != OURS]
-    return min(peers, key=lambda who: results[who].seconds, default=None)
+    return min(peers, key=lambda who: getattr(results[who], column), default=None)
 
 
-def ratio(results: Results) -> float | None:
-    """Return how many times faster hdrlab is than the best peer, in one thread."""
-    peer = best_peer(results)
-    return None if peer is None or OURS not in results else results[peer].seconds / results[OURS].seconds
+def ratio(results: Results, column: str = "seconds") -> float | None:
+    """Return how many times faster hdrlab is than the best peer, in one thread, or by `default`."""
+    peer = best_peer(results, column)
+    if peer is None or OURS not in results:
+        return None
+    theirs, ours = (float(getattr(results[who], column)) for who in (peer, OURS))
+    return theirs / ours
 
 
 def faster(limit: float, goal: float | None = None) -> Hold:
     """Hold at least this ratio to the best peer."""
     return Hold("times as fast as the best peer", ratio, limit, goal, least=True)
+
+
+def faster_by_default(limit: float, goal: float | None = None) -> Hold:
+    """Hold at least this ratio where everyone takes all processors that it can, as a user's command does."""
+    figure = partial(ratio, column="default")
+    return Hold("times as fast as the best peer, by default", figure, limit, goal, least=True)
 
 
 def smaller(share: float) -> Hold:

@@ -18,7 +18,6 @@ from collections.abc import Callable, Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numpy.lib.stride_tricks import sliding_window_view
 
 from hdrlab.align import homography, light, mtb
 from hdrlab.core.arrays import F32, F64, Array, ArrayLike, Mask
@@ -237,7 +236,8 @@ def rivals(middle: F32) -> list[Array]:
     total, share = (down @ one @ across for one in (np.where(kept, middle, 0), kept))  # `light.local_mean`
     x = np.where(kept, middle - total / np.maximum(share, 1e-6), 0)
     c = np.fft.fftshift(np.fft.irfft2(np.abs(np.fft.rfft2(x, (2 * h, 2 * w))) ** 2)[:, :w], axes=0)
-    near = sliding_window_view(np.pad(c, 2, "edge"), (5, 5)).max(axis=(2, 3))
+    near = np.max([np.pad(c, 2, "edge")[j : j + 2 * h] for j in range(5)], axis=0)  # of 5 x 5: of rows, then
+    near = np.max([near[:, j : j + w] for j in range(5)], axis=0)
     y, x = np.nonzero((c == near) & (c > 0))
     found = np.stack([y - h, x], axis=-1)[np.argsort(-c[y, x], kind="stable")[: RIVALS + 1]]
     return [shift for shift in found if np.abs(shift).max() > NEAR]

@@ -51,11 +51,11 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
 
 @pytest.fixture(scope="session")
 def axe() -> Callable[..., list[str]]:
-    """Return a function that lists what axe-core finds wrong in a part of a page, such as "#at"."""
+    """Return a function that lists what axe-core finds wrong in a part of a page, "#at", or a context."""
     carrier = pytest.importorskip("axe_playwright_python", reason="axe-core is not installed")
     script = (files(carrier) / "axe.min.js").read_text(encoding="utf8")
 
-    def violations(page: Any, part: str) -> list[str]:
+    def violations(page: Any, part: str | dict[str, list[str]]) -> list[str]:
         page.evaluate(script)
         found = page.evaluate(RUN, part)
         return [f"{each['id']}: {node['html'][:200]}" for each in found for node in each["nodes"]]
