@@ -31,7 +31,9 @@ def develop(folder: Path, one: bool) -> Case:
             float(np.abs(picture - plain).max()) if who == OURS else None
         )  # the others' formulas are not this one
 
-    return Case({OURS: lambda: pipeline.develop(E, "reinhard")} | theirs, missing, error, E.nbytes)
+    return Case(
+        {OURS: lambda: pipeline.develop(E, "reinhard", way="ratio")} | theirs, missing, error, E.nbytes
+    )
 
 
 def plain_picture(E: Array) -> Array:

@@ -51,7 +51,8 @@ def test_a_small_picture_has_no_threads_and_what_numpy_is_told_of_errors_holds_i
         assert (used == {own}) == alone
 
 
-def test_a_large_picture_is_the_same_in_bands():
+def test_a_large_picture_is_the_same_in_bands(monkeypatch):
+    monkeypatch.setattr(threads, "PIXELS", 1 << 19)
     E = np.random.default_rng(1).uniform(0.01, 9, (820, 650, 3)).astype(np.float32)
     L = colour.luminance(E)
     Ld = _bands.banded(lambda L: L / (1 + L), L)
