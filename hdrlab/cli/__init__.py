@@ -30,9 +30,8 @@ def run(arguments: Sequence[str] | None = None) -> None:
         signal.signal(signal.SIGTERM, signal.default_int_handler)
     # the products here are small: threads only wait on them
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    with suppress(
-        AttributeError, OSError, TypeError
-    ):  # glibc's M_ARENA_MAX: one pool of memory for all threads
+    # glibc's M_ARENA_MAX: one pool of memory for all threads
+    with suppress(AttributeError, OSError, TypeError):
         ctypes.CDLL(None).mallopt(-8, 1)
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):  # a pipe of Windows has no sign such as ✗

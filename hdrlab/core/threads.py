@@ -1,4 +1,4 @@
-"""Work in threads, one for each processor at hand: NumPy lets others compute while it does."""
+"""Work in threads, one for each processor at hand, at most four: NumPy lets others compute while it does."""
 
 import os
 from collections import deque
@@ -11,7 +11,9 @@ Answer = TypeVar("Answer")
 
 # of a picture: with fewer, threads cost what they gain
 PIXELS = 1 << 22
-THREADS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+PROCESSORS = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+# each may hold a photograph in memory
+THREADS = min(PROCESSORS, 4)
 
 
 def each(work: Callable[[Any], Answer], items: Iterable[Any], *, pixels: int = PIXELS) -> Generator[Answer]:

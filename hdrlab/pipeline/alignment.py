@@ -98,7 +98,7 @@ def register(
 
 
 def photograph_pairs(images: Array, bits: int = BITS) -> Iterator[tuple[int, Photograph, int, Photograph]]:
-    """Yield the numbers and Photographs of neighbours from dark to bright, two at a time in memory."""
+    """Yield the numbers and Photographs of neighbours from dark to bright, a few at a time in memory."""
     taken = each(lambda image: (image, Photograph(images[image], bits=bits)), mtb.by_brightness(images))
     yield from ((moving, B, fixed, A) for (moving, B), (fixed, A) in pairwise(taken))
 

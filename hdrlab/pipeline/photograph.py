@@ -53,8 +53,9 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     >>> {name: round(value, 2) for name, value in choose_settings(E).items()}
     {'share': 0.67, 'key': 0.24, 'white': 4.37, 'black': 0.01, 'saturation': 1.0}
     """
-    every = max(1, min(np.shape(E)[:2], default=1) // ENOUGH)
-    E = as_radiance(np.asanyarray(E)[::every, ::every] if every > 1 else E)
+    E = as_radiance(E)
+    every = max(1, min(E.shape[:2]) // ENOUGH)
+    E = E[::every, ::every]
     L, share = colour.luminance(E), 1.0
     lL = find_logarithm(L)(L)
     a, b, down = light = filter_light(lL)

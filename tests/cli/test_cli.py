@@ -16,6 +16,7 @@ from hdrlab.core.colour import luminance
 from hdrlab.io import radiance
 from hdrlab.io.maps.layers import read_layers
 from hdrlab.io.photos import read_photo, write_picture
+from hdrlab.pipeline import pictures
 
 
 def hdrlab(*arguments, capsys=None):
@@ -113,6 +114,30 @@ def test_a_folder_becomes_a_radiance_map_a_picture_and_a_report(photographs, tmp
     E = radiance.read_radiance(out)
     assert read_photo(picture).shape == E.shape
     assert "<html" in (report / "report.html").read_text(encoding="utf8")
+
+
+@pytest.mark.parametrize(("error", "code"), [(ValueError("no"), 2), (KeyboardInterrupt(), 130)])
+def test_the_map_is_written_whole_where_its_picture_fails_or_is_interrupted(
+    error, code, photographs, tmp_path, monkeypatch
+):
+    def fail(*_):
+        raise error
+
+    folder, times = photographs
+    plain, out, picture = (tmp_path / name for name in ("plain.hdr", "room.hdr", "room.png"))
+    assert hdrlab("assemble", folder, "-o", plain, "--times", times) == 0
+    monkeypatch.setattr(pictures, "develop_and_describe", fail)
+    assert hdrlab("assemble", folder, "-o", out, "--times", times, "--picture", picture) == code
+    assert out.read_bytes() == plain.read_bytes() and not picture.exists()
+
+
+def test_a_map_that_cannot_be_written_beside_its_picture_is_an_error(photographs, tmp_path, capsys):
+    folder, times = photographs
+    out, picture = tmp_path / "gone" / "room.hdr", tmp_path / "room.png"
+    code, _, said = hdrlab(
+        "assemble", folder, "-o", out, "--times", times, "--picture", picture, capsys=capsys
+    )
+    assert code == 2 and "there is no folder" in said and read_photo(picture).ndim == 3
 
 
 def test_the_files_may_be_named_one_by_one_and_in_any_order(photographs, tmp_path):
