@@ -26,7 +26,7 @@ from hdrlab.radiance.merge import FAINT, TOP, Merged, Quality, as_tables, bound
 from hdrlab.radiance.stuck import repair_stuck
 
 # of a block: its planes and sums stay in the processor's cache
-ROWS = 16
+ROWS = 24
 # rows whose memory is given back at once, and bytes of a large page
 BAND, PAGE = 256, 1 << 21
 # the terms a, b of one frame of t seconds, from w and g over the levels
@@ -86,6 +86,7 @@ def merge_with_quality(
         if isinstance(images, Expendable) and start % BAND == 0:
             for j in order[1:-1]:  # the shortest and the longest tell what is stuck
                 _release(stack[j, :start])
+    plan.pairs.clear()  # memory
     if repair:
         quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)
@@ -126,14 +127,13 @@ def _planes(frames: list[Array]) -> Array:
     Two 8-bit frames make one plane, z1 + 256 z2: half as many elements to copy, and the index into the pair's
     table.
     """
-    if frames[0].dtype == np.uint8:
-        pairs = zip(frames[::2], frames[1::2], strict=False)
-        both = [np.multiply(second, 256, dtype=np.uint16) + first for first, second in pairs]
-        frames = both + frames[2 * len(both) :]
+    paired = frames[0].dtype == np.uint8
     rows, width, channels = frames[0].shape
-    planes = np.empty((len(frames), channels, rows, width), np.uint16)
-    for (k, frame), c in product(enumerate(frames), range(channels)):
-        planes[k, c] = frame[..., c]
+    planes = np.empty((-(-len(frames) // 2) if paired else len(frames), channels, rows, width), np.uint16)
+    for k, plane in enumerate(planes):
+        first, *second = frames[2 * k : 2 * k + 2] if paired else frames[k : k + 1]
+        both = np.multiply(second[0], 256, dtype=np.uint16) + first if second else first
+        plane[:] = both.transpose(2, 0, 1)
     return planes
 
 
@@ -141,7 +141,7 @@ def _drop_clipped(planes: Array, n: int, top: int) -> Array:
     """Return the planes with level 0, which weighs nothing, in all channels where a frame clips one."""
     Z = planes.view(np.uint8 if n == 256 else np.uint16)  # each element a level: of pairs, (K, C, rows, 2 W)
     whole = Z.max(axis=1, keepdims=True) < top
-    return np.multiply(Z, whole, out=Z).view(np.uint16)
+    return np.multiply(Z, whole.view(np.uint8), out=Z).view(np.uint16)
 
 
 def _sums(planes: Array, tables: list[Array]) -> Array:

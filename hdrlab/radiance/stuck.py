@@ -12,7 +12,7 @@ from hdrlab.core.arrays import F32, F64, Array, Mask
 from hdrlab.core.bracket import short_to_long
 
 # rows of a band, which stays in the processor's cache
-ROWS = 32
+ROWS = 128
 NEIGHBOURS = [(dy, dx) for dy, dx in product((-1, 0, 1), repeat=2) if (dy, dx) != (0, 0)]
 
 
