@@ -59,8 +59,7 @@ def submit(project: Path, out: Path, keep_metadata: bool, force: bool) -> None:
     if missing and not (force and found.artifact):
         raise ValueError(f"{missing} to mend; nothing was written (--force makes the archive as it is)")
     files = list(common.progress(handing.pack(found, keep=keep_metadata), "packing", len(found.files)))
-    digest = handing.write(found, out, files)
-    removed = [one.removed for one in files if one.removed]
+    digest, removed = handing.write(found, out, files), [one.removed for one in files if one.removed]
     if removed:
         click.echo(f"left out of {len(removed)} pictures: {', '.join(sorted(set().union(*removed)))}")
     common.say("warning", [f"{one.name}: {one.remains}" for one in files if one.remains])

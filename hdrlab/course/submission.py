@@ -173,8 +173,7 @@ def _cell(n: int, read: dict[str, Any]) -> closure.Cell:
     """Return a cell out of JSON, of which nothing is believed."""
     source = read.get("source", read.get("input", ""))  # the latter in version 3
     lines = source if isinstance(source, list) else [source]
-    text = "".join(one for one in lines if isinstance(one, str))
-    metadata = read.get("metadata")
+    text, metadata = "".join(one for one in lines if isinstance(one, str)), read.get("metadata")
     marked = metadata.get("hdrlab") if isinstance(metadata, dict) else None
     marked = marked if isinstance(marked, dict) else {}
     task = marked.get("task")

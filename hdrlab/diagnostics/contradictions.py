@@ -159,8 +159,7 @@ def measure_disagreement(found: flat_patches.FlatPatches, B: F64, best: response
     y, x = np.indices((h, w)) // TILE
     tile = y * (w // TILE + 1) + x
     r2 = (2 * np.arange(h) / h - 1)[:, None] ** 2 + (2 * np.arange(w) / w - 1) ** 2
-    channel = np.arange(found.Z.shape[1])[:, None, None]
-    out = np.full((3, len(B) - 1), np.nan)
+    channel, out = np.arange(found.Z.shape[1])[:, None, None], np.full((3, len(B) - 1), np.nan)
     for j, step in enumerate(np.diff(B + best.x)):
         a, b = found.Z[j], found.Z[j + 1]
         trusted = (response_steps.PAIR[a, b] > 0).all(axis=0)

@@ -53,12 +53,10 @@ def neighbour_errors(Z: Indices, t: F64, g: F64) -> tuple[F64, F64]:
 
     NaN where two frames hold too few ranks between the levels 10 and 250, or have the same time.
     """
-    channel = np.arange(Z.shape[-1])
-    inside = (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
+    channel, inside = np.arange(Z.shape[-1]), (Z >= metrics.LOW_LEVEL) & (Z <= metrics.HIGH_LEVEL)
     both = inside[:, 1:] & inside[:, :-1] & (np.diff(t) > 0)[:, None]
     apart = np.abs(np.diff(g[Z, channel], axis=1) - np.diff(np.log(t))[:, None]) / np.log(2)
-    darker = np.diff(Z, axis=1) < -RANK_NOISE
-    measured = both.sum(axis=(0, 2)) >= FEWEST_RANKS
+    darker, measured = np.diff(Z, axis=1) < -RANK_NOISE, both.sum(axis=(0, 2)) >= FEWEST_RANKS
     error, darker_share = np.full(len(measured), np.nan), np.full(len(measured), np.nan)
     for j in np.flatnonzero(measured):
         error[j], darker_share[j] = np.median(apart[:, j][both[:, j]]), np.mean(darker[:, j][both[:, j]])

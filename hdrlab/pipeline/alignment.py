@@ -122,8 +122,7 @@ def improve(
     d = pair.differences(best.step)
     for method, search in SEARCHES.items():
         found = judgement.validate(pair, homography.enlarge(steps.last(search(pyramid)).H, scale))
-        left = pair.differences(found.H)
-        overlaps = max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
+        left, overlaps = pair.differences(found.H), max(map(abs, found.offset)) < min(B.Y[0].shape) / 2
         if found.known and overlaps and found.confidence >= judgement.LOST and pair.lower(left, d)[-1]:
             best, name, d = found, method, left
         if not best.apart:

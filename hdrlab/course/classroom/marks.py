@@ -62,8 +62,7 @@ def marks(
         handed.append(Handed(homework.name, days, one.students, points.get(team, 0.0)))
     bills = list(accounts(handed, grace=late.free_days, per_day=late.points_a_day))
     left = {bill.student: bill.left for bill in bills}
-    mine = {bill.student: bill for bill in bills if bill.project == homework.name}
-    rows = []
+    mine, rows = {bill.student: bill for bill in bills if bill.project == homework.name}, []
     for id, name, team, _ in course.roster.students:
         bill = mine.get(id, Account(id, homework.name, 0, 0, 0.0, 0.0, left.get(id, late.free_days)))
         received, work, notes = "", 0.0, ["not handed in"]

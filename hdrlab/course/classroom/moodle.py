@@ -42,8 +42,7 @@ def write(out: Path, worksheet: Path, rows: Sequence[Mark], roster: Roster, home
     ValueError
         For another table, and where the assignment gives another number of points than the homework.
     """
-    listed = sheets.read_csv(worksheet, most=1 << 27)
-    both = zip(rows, roster.students, strict=True)
+    listed, both = sheets.read_csv(worksheet, most=1 << 27), zip(rows, roster.students, strict=True)
     known = {fold(word): row for row, one in both for word in (one.id, one.email) if word}
     lines: list[list[sheets.Cell]] = []
     files, lost = {}, []

@@ -125,8 +125,7 @@ def _names(wanted: dict[Key, str], needed: Sequence[Key]) -> dict[Key, str]:
     for key in needed:
         if key in names:
             continue
-        source = _text(key, {})
-        home = re.split(r"[./\\]", key.module.removesuffix(".py"))[-1]
+        source, home = _text(key, {}), re.split(r"[./\\]", key.module.removesuffix(".py"))[-1]
         for name in (key.name, f"{key.name}_{home}", f"{key.name}_{key.module.replace('.', '_')}"):
             if name not in local.get(key, ()) and taken.setdefault(name, source) == source:
                 names[key] = name
@@ -155,8 +154,7 @@ def _text(key: Key, names: dict[Key, str]) -> str:
         while first > 1 and lines[first - 2].startswith("#"):
             first -= 1
         places = range(first, (statement.end_lineno or 0) + 1)
-        written = [_edited(lines[n - 1], edits.get(n, [])) for n in places]
-        at = statement.lineno - first
+        written, at = [_edited(lines[n - 1], edits.get(n, [])) for n in places], statement.lineno - first
         if renamed != key.name and isinstance(statement, ast.FunctionDef | ast.ClassDef):
             written[at] = written[at].replace(f" {key.name}", f" {renamed}", 1)
         texts.append("\n".join(_shortened(statement, written, first)))

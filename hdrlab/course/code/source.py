@@ -61,8 +61,7 @@ def module(dotted: str) -> Module:
         raise ValueError(f"expected a module of the library, got {dotted!r}")
     typed = Path(origin).read_text(encoding="utf8")
     functions = [one for one in ast.parse(typed).body if isinstance(one, ast.FunctionDef)]
-    returns = {one.name: one.returns for one in functions if one.returns}
-    text = on_the_board(typed)
+    returns, text = {one.name: one.returns for one in functions if one.returns}, on_the_board(typed)
     definitions: dict[str, list[ast.stmt]] = {}
     imported: dict[str, tuple[str, str, str]] = {}
     for node in ast.parse(text).body:

@@ -75,8 +75,7 @@ def solved(task: Task) -> str:
     >>> solved(Task("count", "capture.planning.count", 10)).splitlines()[2:4]
     ['    ### BEGIN SOLUTION', '    import math']
     """
-    head = stubs.stub(task).rpartition("\n")[0]
-    block = inline.inlined({task.id: task.function})[task.id]
+    head, block = stubs.stub(task).rpartition("\n")[0], inline.inlined({task.id: task.function})[task.id]
     around = "\n\n".join(filter(None, ("\n".join(block.imports), block.needs)))
     inside = "\n".join(filter(None, (textwrap.indent(around, "    "), _body(block.source))))
     return f"{head}\n    ### BEGIN SOLUTION\n{inside}\n    ### END SOLUTION"

@@ -220,8 +220,7 @@ def _solved(made: Sequence[Handout], assignments: Path, solutions: Path, jobs: i
         scratch = Path(folder)
         sources = [write_text(scratch / f"{name}.ipynb", text) for name, text in texts.items()]
         for done in execute.run_steps(sources, scratch / "run", jobs=jobs):
-            ran = json.loads(done.executed.read_text(encoding="utf8"))
-            name = done.source.stem
+            ran, name = json.loads(done.executed.read_text(encoding="utf8")), done.source.stem
             yield write_text(solutions / done.source.name, to_text(_tidy(ran)).replace(far[name], near[name]))
 
 

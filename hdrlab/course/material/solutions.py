@@ -35,8 +35,7 @@ def texts(homework: Homework, mistakes: Iterable[str] = ()) -> dict[str, str]:
     >>> "smoothness * w[z]" in cells["gsolve"], "hdrlab" in "".join(cells.values())
     (False, False)
     """
-    variant = {task.id: task.variant for task in homework.tasks}
-    cells = dict(solutions(homework.tasks))
+    variant, cells = {task.id: task.variant for task in homework.tasks}, dict(solutions(homework.tasks))
     return reduce(lambda cells, name: put_in(cells, name, variant[task_of(name)]), mistakes, cells)
 
 

@@ -94,8 +94,7 @@ def cleaned(block: bytes) -> bytes:
     spill = sum(len(one.value) + len(one.value) % 2 for one in kept if len(one.value) > 4)
     if settings:
         kept.append(Entry(POINTER, 4, 1, struct.pack(f"{sign}L", start + spill), 0))
-    head = bytes(block[:4]) + struct.pack(f"{sign}L", 8)
-    body = _written(sorted(kept), 8, sign)
+    head, body = bytes(block[:4]) + struct.pack(f"{sign}L", 8), _written(sorted(kept), 8, sign)
     return head + body + (_written(sorted(settings), 8 + len(body), sign) if settings else b"")
 
 

@@ -76,8 +76,7 @@ def _tried(tier: str) -> tuple[list[str], float]:
 def _trial(tier: str) -> tuple[list[str], float]:
     """Return what could be done from inside that should not be, and the seconds until the first answer."""
     secret, target = bytes(Path(__file__).resolve()), b"/tmp/hdrlab-doctor"
-    began = time.perf_counter()
-    sources = {"ready": "def ready(): return True", "tried": BREAK_OUT}
+    began, sources = time.perf_counter(), {"ready": "def ready(): return True", "tried": BREAK_OUT}
     with Subject(sources, tiers.choose(tier)) as subject:
         subject.ready()
         start = time.perf_counter() - began

@@ -73,7 +73,6 @@ def write_report(
     words |= {"shown": figures.photograph(picture, 1600, seen), "sections": sections, "wording": wording}
     words |= {"recipe": {"how": recipe} if recipe and isinstance(recipe, str) else recipe}
     words |= {"modules": {one.__name__: one for one in (hdrlab, np, scipy, platform)}, "Quality": Quality}
-    text = templates.render_page(Path(__file__).parent, PAGE, **words)
-    page = Path(folder) / PAGE
+    text, page = templates.render_page(Path(__file__).parent, PAGE, **words), Path(folder) / PAGE
     page.parent.mkdir(parents=True, exist_ok=True)
     return write(page, text)

@@ -124,6 +124,5 @@ def _range(values: Array) -> str:
     known = values[np.isfinite(values)]
     if known.size == 0:
         return "no numbers"
-    missing = values.size - known.size
-    said = f"from {known.min():.4g} to {known.max():.4g}"
+    missing, said = values.size - known.size, f"from {known.min():.4g} to {known.max():.4g}"
     return f"{said}, {missing} not finite" if missing else said

@@ -144,7 +144,6 @@ def _row(arrays: list[F64], *, titled: bool) -> list[Axes]:
     width = 5.4 if count == 1 else 3.4 * count
     across = (width - 0.1 * (count + 1)) / count
     tall, above = across * h / w, ABOVE if titled else 0.08
-    height = above + tall + BELOW
-    lefts = (0.1 + k * (across + 0.1) for k in range(count))
+    height, lefts = above + tall + BELOW, (0.1 + k * (across + 0.1) for k in range(count))
     places = [(left / width, BELOW / height, across / width, tall / height) for left in lefts]
     return scaled_axes(width, height, places, (0.08, 0.47 / height, 0.84, 0.14 / height))

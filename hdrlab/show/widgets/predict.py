@@ -140,8 +140,7 @@ def curve(
     x, y = np.asarray(x, np.float64), np.asarray(y, np.float64)
     if x.shape != y.shape or x.ndim != 1 or len(x) < 2 or np.any(np.diff(x) <= 0) or not np.isfinite(y).all():
         raise ValueError(f"expected x (n,) that rises and a finite y (n,), got {describe(x)}, {describe(y)}")
-    few = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int))
-    room = 0.1 * (np.ptp(y) or 1.0)
+    few, room = np.unique(np.linspace(0, len(x) - 1, 257).round().astype(int)), 0.1 * (np.ptp(y) or 1.0)
     step = 2 * 10.0 ** np.floor(np.log10(room))
     low, high = step * np.floor((y.min() - room) / step), step * np.ceil((y.max() + room) / step)
     scale = [float(x[0]), float(x[-1]), float(low), float(high)]

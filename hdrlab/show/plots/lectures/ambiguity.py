@@ -63,8 +63,7 @@ def draw_trial(
     """
     c = draw_curve(rng)
     R = rng.uniform(0.45, 0.55, 3) if ratios is None else np.asarray(ratios, dtype=np.float64)
-    exposures = np.append(np.cumprod(R[::-1])[::-1], 1)
-    E = 10 ** rng.uniform(-2, 0, pixels)
+    exposures, E = np.append(np.cumprod(R[::-1])[::-1], 1), 10 ** rng.uniform(-2, 0, pixels)
     M = polynomial.brightness(E[:, None] * exposures, c)
     M = M + sigma * rng.standard_normal(M.shape)
     return Trial(c, R, np.rint(255 * np.clip(M, 0, 1)).astype(np.intp))
@@ -88,8 +87,7 @@ def literal_steps(M: F64, start: ArrayLike, *, order: int = 5) -> Iterator[tuple
     As it stands in [Mitsunaga99 sec. 4], for samples M (N, P) that are all good; eq. 10 gets the 1 / N
     that it lacks in print.
     """
-    R = np.asarray(start, dtype=np.float64)
-    powers = M[..., None] ** np.arange(order + 1)
+    R, powers = np.asarray(start, dtype=np.float64), M[..., None] ** np.arange(order + 1)
     while True:
         rows = np.concatenate([powers[:, q] - R[q] * powers[:, q + 1] for q in range(len(R))])
         A, last = rows[:, :-1] - rows[:, -1:], rows[:, -1]  # c_N = 1 - sum of the others [eq. 8]

@@ -57,8 +57,7 @@ def meter_scene(
     taken, L = camera.shoot(scene.E, [time], lens, rng=rng), luminance(scene.E)
     noise = ranges.expose_levels(L, time, sensor, sensitivity=s).noise
     off = float(exposure.stops(float(L[scene.mask].mean()) * time * s, scene.rho))
-    asked = metering.weights(photograph(coarse, EV), mode, at=at)
-    picture = taken.images[0]
+    asked, picture = metering.weights(photograph(coarse, EV), mode, at=at), taken.images[0]
     return Shot(picture, np.any(picture == 255, axis=-1), noise, _enlarged(asked, L.shape), EV, off)
 
 

@@ -63,8 +63,7 @@ def level(state: State) -> Figure:
     bare(above)
     size = f"{d.shape[1]} × {d.shape[0]} pixels"
     above.set_title(f"level {state.level}, {size}: error e = {found:.4f}", fontsize=11)
-    ax = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total))
-    e = 1000 * state.errors
+    ax, e = figure.add_axes((0.14, 0.5 / total, 0.83, 1.25 / total)), 1000 * state.errors
     ax.plot(e, color=LINE, linewidth=1.8)
     ax.plot(len(e) - 1, e[-1], "o", color=POINT)
     ax.set(xlabel="step of the simplex", ylabel="1000 e", ylim=(0, 1.1 * e.max() + 1e-6))

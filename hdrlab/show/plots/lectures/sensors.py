@@ -111,8 +111,7 @@ def bars(counts: ArrayLike, *, across: str, up: str, limit: float | None = None)
 def draw_titled(picture: ArrayLike, text: str, *, ring: ArrayLike | None = None, width: float = 5.4) -> Axes:
     """Draw a picture (H, W[, 3]) uint8 under lines of text, with the edge of a region if one is given."""
     shown = as_picture(picture)
-    high = width * shown.shape[0] / shown.shape[1]
-    lines = 0.25 * (text.count("\n") + 1) + 0.12
+    high, lines = width * shown.shape[0] / shown.shape[1], 0.25 * (text.count("\n") + 1) + 0.12
     ax = picture_axes(width, high + lines, (0, 0, 1, high / (high + lines)))
     nearest.show(ax, shown, colours="gray", norm=Normalize(0, 255))
     if ring is not None and 0 < np.asarray(ring, float).mean() < 1:
