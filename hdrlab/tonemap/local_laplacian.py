@@ -20,6 +20,7 @@ import numpy as np
 from hdrlab.core.arrays import F32, ArrayLike, as_luminance
 from hdrlab.core.extremes import robust_maximum, robust_minimum
 from hdrlab.core.filters import pyramid
+from hdrlab.core.steps import last
 
 LAWS = ("exposure",)
 # of the display, nats, and the fraction of pixels beyond it at either end: those of Paris's program
@@ -59,6 +60,12 @@ def filter_steps(lL: F32, *, sigma: float, alpha: float, beta: float, samples: i
         yield Sample(g, r, levels.copy())
 
 
+def filtered(lL: F32, *, sigma: float, alpha: float, beta: float, samples: int) -> F32:
+    """Return the answer, (H, W) in nats: its levels O_k, collapsed."""
+    steps = filter_steps(lL, sigma=sigma, alpha=alpha, beta=beta, samples=samples)
+    return pyramid.collapse(last(steps).levels)
+
+
 def tonemap(
     L: ArrayLike, *, sigma: float = 0.92, alpha: float = 1.0, beta: float = 0.0, samples: int = 24
 ) -> F32:
@@ -91,8 +98,6 @@ def tonemap(
         raise ValueError(f"expected knobs in range, got {sigma=}, {alpha=}, {beta=}, {samples=}")
     if L.max() == 0:
         return np.zeros_like(L)
-    for sample in filter_steps(log_luminance(L), sigma=sigma, alpha=alpha, beta=beta, samples=samples):
-        levels = sample.levels
-    lLd = pyramid.collapse(levels)
+    lLd = filtered(log_luminance(L), sigma=sigma, alpha=alpha, beta=beta, samples=samples)
     low, high = np.quantile(lLd.ravel()[:: 1 + lLd.size // 2**18], [CUT, 1 - CUT]).tolist()
     return np.minimum(np.exp(min(1.0, CONTRAST / max(high - low, 1e-6)) * (lLd - high)), 1)
