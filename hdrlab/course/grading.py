@@ -109,8 +109,7 @@ def files_of(homework: Homework, hidden: Path | None) -> list[Path]:
 
 def _reworded(files: Sequence[Path], homework: Homework, folder: Path) -> list[Path]:
     """Return the files with the checks; those of variants are written into a folder."""
-    named = {f"test_{task.id}.py": task for task in homework.tasks if task.variant}
-    asked = []
+    named, asked = {f"test_{task.id}.py": task for task in homework.tasks if task.variant}, []
     for file in files:
         task = named.get(file.name) if file.parent == SPECIFICATION else None
         asked.append(folder / file.name if task else file)

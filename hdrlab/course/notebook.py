@@ -65,8 +65,7 @@ def check(name: str, *, worth: float | None = None) -> Feedback:
     of_tasks = tuple(task for task in homework.tasks if task.id in tasks)
     if worth is not None:
         of_tasks = tuple(task._replace(points=worth) for task in of_tasks)
-    steps = grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE)
-    shown = DisplayHandle()
+    steps, shown = grading.check_steps(read, homework._replace(tasks=of_tasks), PRACTICE), DisplayHandle()
     shown.display(HTML(feedback.bar(0, 1, f"{name}, checking", "of its promises")))
     for done, result in enumerate(steps, 1):  # the last one always comes
         asked = len(result.checks)

@@ -116,8 +116,7 @@ def improve(
     best: judgement.Validation, name: str, B: Photograph, A: Photograph, as_light: AsLight
 ) -> tuple[judgement.Validation, str]:
     """Return the Validation of a pair by the simplest method that serves, and its name."""
-    scale = 2**A.overview
-    pyramid = as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
+    scale, pyramid = 2**A.overview, as_light(best.moving, best.fixed, B.Y[A.overview], A.Y[A.overview])
     pair = judgement.compare_light(best.moving, best.fixed, pyramid[0], scale)
     d = pair.differences(best.step)
     for method, search in SEARCHES.items():

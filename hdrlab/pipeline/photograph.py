@@ -66,8 +66,7 @@ def choose_settings(E: ArrayLike) -> dict[str, float]:
     key = MIDDLE * 2 ** ((2 * mean - low - high) / max(high - low, 1e-6))
     Lm = scale(x, mean, key)
     white = max(1.0, float(np.quantile(Lm, 1 - WHITE)))
-    black = min(DEEPEST, float(np.quantile(display(Lm, Lm, white), BLACK)))
-    saturation = 1.0
+    black, saturation = min(DEEPEST, float(np.quantile(display(Lm, Lm, white), BLACK))), 1.0
     if E.ndim == 3 and L.any():
         colours = E[L > 0]
         saturation = 1.25 - 0.3 * float(np.median(1 - colours.min(axis=-1) / colours.max(axis=-1)))

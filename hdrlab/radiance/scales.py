@@ -87,8 +87,7 @@ def fit_unit(E: ArrayLike, x: int, y: int, reading: float) -> float:
     240.0
     """
     L = luminance(as_radiance(E))
-    reach = max(1, L.shape[1] // 200)
-    inside = 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
+    reach, inside = max(1, L.shape[1] // 200), 0 <= y < L.shape[0] and 0 <= x < L.shape[1]
     seen = L[max(y - reach, 0) : y + reach + 1, max(x - reach, 0) : x + reach + 1] if inside else L[:0]
     if not (seen.any() and 0 < reading < np.inf):
         size = f"{L.shape[1]} x {L.shape[0]}"

@@ -105,8 +105,7 @@ def _build(
     uses = {name: reference.imported(_code(notebook), modules) for name, notebook in notebooks.items()}
     texts = dict(reference.pages(titles, uses))
     handouts = {name: nbformat.reads(text, as_version=4) for name, text in sheets.items()}
-    headings = {name: _title(notebook) for name, notebook in handouts.items()}
-    widgets = 0
+    headings, widgets = {name: _title(notebook) for name, notebook in handouts.items()}, 0
     shutil.rmtree(html / WIDGETS, ignore_errors=True)  # of notebooks that may be gone
     for folder, group in {"notebooks": notebooks, "assignments": handouts}.items():
         for name, notebook in group.items():

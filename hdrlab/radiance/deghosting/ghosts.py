@@ -181,8 +181,7 @@ def remove_ghosts(
     merged = merged or merge(stack, times, g, w, valid=mask)
     E, quality = merged.E.copy(), merged.quality.copy()
     taken = calibrate_frames(stack, times, g, E, valid=mask)
-    plain = merged.E.reshape(taken.images.shape[1:])
-    found = deviation.measure_deviation(taken, w)
+    plain, found = merged.E.reshape(taken.images.shape[1:]), deviation.measure_deviation(taken, w)
     found.v[deviation.find_clipped_elsewhere(taken, plain)] = np.inf  # no edge and no noise explains that
     score, moved = detect_motion(found, tau=TAU, edge=EDGE, margin=margin)
 
@@ -196,8 +195,7 @@ def remove_ghosts(
     alpha = regions.feather(labels, margin // 2)
     for r, box in enumerate(ndimage.find_objects(labels)):
         y, x = wide = regions.pad_box(box, 2 * reference.BOX, labels.shape)
-        here = labels[wide] == r + 1
-        frames = select_frames(taken, wide, int(chosen[r]), alone=alone)
+        here, frames = labels[wide] == r + 1, select_frames(taken, wide, int(chosen[r]), alone=alone)
         still = merge(stack[:, y, x], times, g, w, valid=frames)
         E[wide][here] = regions.blend(E[wide], still.E, alpha[wide])[here]
         quality[wide][here] = still.quality[here]

@@ -63,10 +63,8 @@ def read_frame(taken: Calibrated, j: int, box: Box) -> Estimate:
 def find_consistent(known: Estimate, other: Estimate, *, tau: float) -> Mask:
     """Return where two estimates are consistent, with all of the neighbourhood, (H, W)."""
     both = known.measured & other.measured
-    share = np.maximum(_box_mean(both), np.float32(1e-6))
-    E = np.where(both, known.E, 0)
-    mean = _box_mean(E) / share
-    D = np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
+    share, E = np.maximum(_box_mean(both), np.float32(1e-6)), np.where(both, known.E, 0)
+    mean, D = _box_mean(E) / share, np.abs(_box_mean(np.where(both, other.E - known.E, 0))) / share
     # a running mean rounds below 0, too
     sigma = np.sqrt(np.maximum(_box_mean(np.where(both, known.V + other.V, 0)), 0) / INDEPENDENT) / share
     filled, size = np.where(both, E, mean), (BOX, BOX, 1)

@@ -108,8 +108,7 @@ def measure_drift(one: Trial, start: ArrayLike, *, iterations: int = 300) -> Dri
     M, z = M[np.all((M > 0.05) & (M < 0.98), axis=1)], np.linspace(0, 1, 256)
     truth, rows = value(z, one.c), []
     for c, R, error in islice(literal_steps(M, start, order=len(one.c) + 1), iterations):
-        f_inv = np.polynomial.polynomial.polyval(z, c)
-        u = np.mean(np.log(R)) / np.mean(np.log(one.R))
+        f_inv, u = np.polynomial.polynomial.polyval(z, c), np.mean(np.log(R)) / np.mean(np.log(one.R))
         rows.append((error, u, np.abs(f_inv - truth).mean(), np.abs(f_inv - truth**u).mean()))
     return Drift(*np.array(rows).T)
 
