@@ -25,13 +25,15 @@ REACH = len(KERNELS[-1]) // 2
 def log_average(L: F32, *, delta: float = 1e-6) -> float:
     """Return exp(mean(log(delta + L))), delta in medians of a quarter of a million pixels."""
     floor = max(delta * (extremes.positive_median(L) or 1.0), TINY)
-    return float(np.exp(np.log(L + np.float32(floor)).mean(dtype=np.float64)))
+    rows = _bands.banded(lambda L: np.log(L + np.float32(floor)).mean(axis=1, keepdims=True), L)
+    return float(np.exp(rows.mean(dtype=np.float64)))
 
 
 def scale_to_key(L: F32, *, key: float = 0.18) -> F32:
     """Return Lm = a L / Lav, at most LIMIT."""
     with np.errstate(over="ignore"):
-        return np.minimum(L / np.float32(max(log_average(L) / key, TINY)), LIMIT)
+        unit = np.float32(max(log_average(L) / key, TINY))
+        return _bands.banded(lambda L: np.minimum(L / unit, LIMIT), L)
 
 
 def white_point(Lm: F32) -> float:
