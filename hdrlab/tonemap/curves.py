@@ -19,8 +19,9 @@ from typing import Literal
 
 import numpy as np
 
-from hdrlab.core import colour, extremes
+from hdrlab.core import extremes
 from hdrlab.core.arrays import F32, Array, ArrayLike, as_luminance
+from hdrlab.core.colour import decode_srgb
 
 LAWS = ("monotone", "exposure")
 
@@ -120,4 +121,4 @@ def tonemap(
     low, high = extremes.robust_minimum(L, cut=cut) or 1.0, extremes.robust_maximum(L, cut=cut) or 1.0
     own: dict[str, dict[str, float]] = {"linear": {}, "gamma": {"gamma": gamma}, "log": {"low": low}}
     F = CURVES[curve](L, high=high, **own[curve])
-    return colour.decode_srgb(F).astype(np.float32) if encoded else F
+    return np.asarray(decode_srgb(F), np.float32) if encoded else F
