@@ -27,6 +27,7 @@ from benchmarks.rows import Case, Figures, Results, Row, Run, Usage
 
 ROOT = Path(__file__).parents[1]
 THREADS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
+UNCOMPILED = "PYTHONDONTWRITEBYTECODE"
 ROUNDS, MOST_ROUNDS, ENOUGH = (
     5,
     41,
@@ -53,8 +54,12 @@ def measured(subject: str, row: Row, folder: Path) -> tuple[Results, dict[str, s
 
 
 def child(subject: str, row: Row, folder: Path, *what: str) -> dict[str, Any]:
-    """Return what a process of its own finds out; BLAS reads its number of threads when it is loaded."""
-    env = {name: value for name, value in os.environ.items() if name not in THREADS}
+    """Return what a process of its own finds out; BLAS reads its number of threads when it is loaded.
+
+    Commands find modules compiled, as an installed package's are.
+    """
+    env = {name: value for name, value in os.environ.items() if name not in {*THREADS, UNCOMPILED}}
+    env["PYTHONPYCACHEPREFIX"] = str(folder / "compiled")
     if what[0] != "default":
         env |= dict.fromkeys(THREADS, "1")
     command = [sys.executable, "-m", "benchmarks.measure", subject, row.name, str(folder), *what]
