@@ -44,8 +44,7 @@ def warp(f: F32, u: F32) -> F32:
 
 def lands_inside(u: F32) -> Mask:
     """Return where p + u(p) lies in the picture, (H, W)."""
-    places = np.indices(u.shape[1:]) + u
-    ends = np.array(u.shape[1:]).reshape(2, 1, 1) - 1
+    places, ends = np.indices(u.shape[1:]) + u, np.array(u.shape[1:]).reshape(2, 1, 1) - 1
     return np.all((places >= 0) & (places <= ends), axis=0)
 
 

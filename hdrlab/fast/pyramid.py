@@ -38,7 +38,10 @@ def _halve(a: F32) -> F32:
 
 def interpolate(image: F32, shape: Sequence[int]) -> F32:
     """Return `image` (H, W) at the next finer level, of this shape, by linear interpolation."""
-    return np.concatenate([values for _, _, values in _finer(image, shape, side=0)])
+    fine = np.empty(shape, np.float32)
+    for _, rows, values in _finer(image, shape, side=0):
+        fine[rows] = values
+    return fine
 
 
 gaussian = with_parts(__name__, pyramid.gaussian, reduce=reduce)

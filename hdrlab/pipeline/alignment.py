@@ -83,8 +83,7 @@ def register(
     images = as_stack(images)
     if method not in METHODS:
         raise ValueError(f"expected a method of align out of {', '.join(METHODS)}, got {method!r}")
-    as_light = light_scale(images, times, g)
-    by_bits = starmap(best_percentile, photograph_pairs(images))
+    as_light, by_bits = light_scale(images, times, g), starmap(best_percentile, photograph_pairs(images))
     pairs = tuple(register_by_light(images, as_light, method) if method in SEARCHES else by_bits)
     if method == "auto":
         names = ["mtb" if np.any(one.step != np.eye(3)) else "none" for one in pairs]

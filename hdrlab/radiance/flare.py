@@ -98,8 +98,7 @@ def glare_steps(
     The share is measured again in each round, or is the one given.
     """
     F = E = as_radiance(F)
-    transform = spread_transform(F.shape, power, core)
-    factor = max(1, F.shape[1] // WIDTH)
+    transform, factor = spread_transform(F.shape, power, core), max(1, F.shape[1] // WIDTH)
     for _ in range(ROUNDS):
         G = scatter(E, transform)
         now = lowest_ratio(block_means(F, factor), block_means(G, factor))[0] if share is None else share
