@@ -110,7 +110,7 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
 
     The mean is read along lines between the nodes, k at a node nearby: it is right to about a tenth.
     """
-    y, x = np.ogrid[: len(v), : v.shape[1]]
+    y, x = np.arange(len(v))[:, None], np.arange(v.shape[1])
     z = (v - np.float32(a.low)) * np.float32(1 / a.step)
     level = np.floor(z)
     first, last = (row.away.view(np.float32).ravel() for row in (above, below))
@@ -118,7 +118,7 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
     place = level.astype(np.intp) + x // a.h * a.Z
     at = place + y * (a.X * a.Z)
     left, right = (away.take(i, mode="clip").view(np.float32) for i in (at, at + a.Z))
-    left += np.repeat(x % a.h / a.h, 2, axis=1).astype(np.float32) * (right - left)
+    left += np.repeat(x % a.h / a.h, 2).astype(np.float32) * (right - left)
     place += (x % a.h > a.h // 2) * a.Z
     near = a.h // 2 + 1
     k = np.concatenate([above.k.take(place[:near]), below.k.take(place[near:])])
