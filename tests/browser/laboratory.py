@@ -50,6 +50,7 @@ DIGEST = """(el) => {
     return hash;
 }"""
 
+LOOK = 100  # ms between two looks at what a kernel does: at each frame they would keep a processor from it
 PATIENCE = 300_000  # ms until a moved control shows: a limit for errors; speed is for benchmarks
 
 # What a widget's script sees of its model. Bytes arrive as in a notebook: as a view into a larger buffer.
@@ -101,6 +102,7 @@ class Lab(NamedTuple):
                 return session?.isReady && session.session?.kernel?.status === "idle";
             }""",
             timeout=PATIENCE,
+            polling=LOOK,
         )
 
     def run_all(self, page: Any, *, timeout: float = 600) -> None:
@@ -115,6 +117,7 @@ class Lab(NamedTuple):
                 .filter((cell) => cell.model.type === "code" && cell.model.sharedModel.source.trim())
                 .every((cell) => cell.model.executionCount && cell.model.executionState !== "running")""",
             timeout=1000 * timeout,
+            polling=LOOK,
         )
 
     def close(self) -> None:

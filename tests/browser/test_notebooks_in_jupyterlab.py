@@ -8,7 +8,7 @@ import re
 from pathlib import Path
 
 import pytest
-from laboratory import DIGEST, PATIENCE, changed_by
+from laboratory import DIGEST, LOOK, PATIENCE, changed_by
 
 FOLDER = Path(__file__).parents[2] / "notebooks"
 THREE = ["02_exposure_and_metering.ipynb", "03_alignment_mtb.ipynb", "18_all_operators.ipynb"]
@@ -71,6 +71,7 @@ def move_tune(page, widget):
         f"([el, before]) => ({DIGEST})(el) === before",
         arg=[widget.element_handle(), before],
         timeout=PATIENCE,
+        polling=LOOK,
     )
 
 
@@ -84,6 +85,7 @@ def until_answered(page, widget):
             && el.querySelector("[role=status]").textContent === "" """,
         arg=[widget.element_handle(), wanted],
         timeout=PATIENCE,
+        polling=LOOK,
     )
 
 
