@@ -202,8 +202,7 @@ def function(task: Task) -> Callable[..., Any]:
     if task.own is not None:
         return runpy.run_path(str(task.own))[task.name]
     module, _, name = task.function.rpartition(".")
-    found: Callable[..., Any] = getattr(import_module(f"hdrlab.{module}"), name)
-    return found
+    return getattr(import_module(f"hdrlab.{module}"), name)
 
 
 def read_secret(path: Path) -> tuple[str, bool]:

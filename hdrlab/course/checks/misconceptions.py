@@ -130,13 +130,14 @@ def closest(asked: plan.Task, calls: Sequence[Call]) -> Misconception | None:
 
     Of several the nearest. An answer like the library's is no misconception, and neither is no answer at all.
     """
-    right, task = plan.function(asked), asked.id
-    calls = [(given, named, in_gauge(task, came)) for given, named, came in calls]
-    truths = [in_gauge(task, call_quietly(right, given, named)) for given, named, _ in calls]
-    far = [difference(call[2], truth) for call, truth in zip(calls, truths, strict=True)]
-    if max(far, default=0) <= ROUNDING or all(came is None for _, _, came in calls):
+    calls = [(given, named, in_gauge(asked.id, came)) for given, named, came in calls]
+    if all(came is None for _, _, came in calls):
         return None
-    agreeing = [(score, one) for one in of_task(asked) if (score := _distance(one, calls, far)) is not None]
+    right = plan.function(asked)
+    truths = [in_gauge(asked.id, call_quietly(right, given, named)) for given, named, _ in calls]
+    far = [difference(call[2], truth) for call, truth in zip(calls, truths, strict=True)]
+    mistakes = of_task(asked) if max(far) > ROUNDING else ()
+    agreeing = [(score, one) for one in mistakes if (score := _distance(one, calls, far)) is not None]
     return min(agreeing, key=lambda pair: pair[0])[1] if agreeing else None
 
 
