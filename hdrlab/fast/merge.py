@@ -86,7 +86,7 @@ def merge_with_quality(
         if isinstance(images, Expendable) and start % BAND == 0:
             for j in order[1:-1]:  # the shortest and the longest tell what is stuck
                 _release(stack[j, :start])
-    plan.pairs.clear()  # memory
+    plan.pairs.clear()  # the tables are needed no more
     if repair:
         quality[repair_stuck(E, stack, t, mask)] = Quality.STUCK
     return Merged(E.reshape(stack.shape[1:]), quality)
