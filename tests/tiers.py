@@ -17,6 +17,7 @@ wheel      the wheel, installed elsewhere
 # by tier, how the addresses of its tests begin: a folder, a file, or one test of a file
 TIERS = {
     "quick": (
+        "tests/calibration/test_wilburn.py::test_curves_that_differ",
         "tests/response/test_response_laws.py::test_every_recovery[marginal-film-leaves_the_photographs",
         "tests/response/test_response_laws.py::test_every_recovery[marginal-film-refuses",
         "tests/response/test_response_laws.py::test_every_recovery_that_asks_the_photographs[marginal-film-refuses",

@@ -68,6 +68,15 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
         assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(one.I, ALPHA)
 
 
+@pytest.mark.parametrize(("scale", "offset"), [(1.0, 0.0), (3.0, 0.7), (0.2, -5.0)])
+def test_curves_that_differ_in_scale_and_offset_alone_are_the_same(scale, offset):
+    M = np.linspace(0.1, 0.9, 200)
+    truth, cut = InverseResponse(M, M**2, np.ones(0), np.ones(0)), slice(20, -30)
+    found = InverseResponse(M[cut], scale * M[cut] ** 2 + offset, np.ones(0), np.ones(0))
+    for fit in (False, True):
+        assert np.allclose(difference(found, truth, fit=fit), 0, atol=1e-9)
+
+
 # Joining
 
 
