@@ -72,6 +72,16 @@ def test_the_way_of_hue_keeps_the_hue_that_clipping_turns():
     assert hue(colour.recolour(E, L, Ld)) > 0.6
 
 
+@pytest.mark.parametrize("room", [0.3, 0.49, 0.51, 0.75, 0.99])
+def test_by_way_of_hue_a_colour_is_paler_the_more_of_the_room_up_to_1_it_takes_and_whole_below_half(room):
+    E = np.array([[[1.2, 1.0, 0.9]]])
+    L = colour.luminance(E)
+    Ld = room / (room + 1.2 / L - 1)
+    exact = E / L[..., None] * Ld[..., None]
+    paler = Ld + (exact - Ld) / (1 + room**8) ** (1 / 8)
+    assert np.allclose(keeping_hue(E, L, Ld), paler if room > 0.5 else exact, atol=1e-6)
+
+
 def test_both_ways_agree_where_the_colour_fits():
     dim = np.float32(0.03) * Ld
     assert np.allclose(colour.recolour(E, L, dim), keeping_hue(E, L, dim), rtol=1e-4, atol=1e-6)
