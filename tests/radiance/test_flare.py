@@ -48,7 +48,11 @@ def test_a_clear_lens_changes_nothing(room):
 
 
 @pytest.mark.parametrize(
-    "spread", [GlareSpread(1.0), GlareSpread(-0.1), GlareSpread(0.1, 0.0), GlareSpread(0.1, 2.0, -1.0)]
+    "spread",
+    [
+        *(GlareSpread(1.0), GlareSpread(-0.1), GlareSpread(0.1, 0.0), GlareSpread(0.1, np.inf)),
+        *(GlareSpread(0.1, 2.0, -1.0), GlareSpread(0.1, 2.0, 0.0), GlareSpread(0.1, 2.0, np.inf)),
+    ],
 )
 def test_a_lens_without_a_meaning_is_refused(spread):
     with pytest.raises(ValueError, match="share"):
