@@ -118,3 +118,17 @@ def test_no_two_sentences_are_the_same():
 def test_how_far_two_answers_are_apart_is_a_share_of_their_size_however_small(scale):
     assert misconceptions.difference([1.1 * scale, -1.1 * scale], [scale, -scale]) == pytest.approx(0.1)
     assert misconceptions.difference([scale, scale], [0.0, 0.0]) == misconceptions.MOST
+
+
+@pytest.mark.parametrize("order", [1, -1])
+def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_named(order, monkeypatch):
+    def answers(share):
+        return lambda L: 3 * (1 + share * L.max())
+
+    near, far = (
+        misconceptions.Misconception(name, "log_average", "", answers(share))
+        for name, share in (("near", 0.001), ("far", 0.005))
+    )
+    monkeypatch.setattr(misconceptions, "of_task", lambda task: [near, far][::order])
+    calls = [((np.full((2, 2), L),), {}, 3.0) for L in (1.0, 10.0)]
+    assert misconceptions.closest(PLAN.task("log_average"), calls) == near
