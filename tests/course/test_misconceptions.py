@@ -132,3 +132,19 @@ def test_of_two_mistakes_that_an_answer_agrees_with_the_one_nearer_in_all_is_nam
     monkeypatch.setattr(misconceptions, "of_task", lambda task: [near, far][::order])
     calls = [((np.full((2, 2), L),), {}, 3.0) for L in (1.0, 10.0)]
     assert misconceptions.closest(PLAN.task("log_average"), calls) == near
+
+
+@pytest.mark.parametrize(
+    ("task", "answer", "other"),
+    [
+        ("hat", np.arange(1.0, 5), np.arange(3.0, 15, 3)),
+        ("gsolve", (np.arange(5.0), np.ones(3)), (np.arange(5.0) + 7, np.ones(3) + 7)),
+        ("recover_steps", [(np.arange(256.0), 1)], [(3 * np.arange(256.0), 1)]),
+        ("recover", np.arange(256.0), np.arange(256.0) - 140),
+        ("solve", np.eye(3), np.eye(3) - 5),
+    ],
+)
+def test_answers_that_differ_in_their_scale_or_gauge_alone_are_compared_as_the_same(task, answer, other):
+    in_gauge = misconceptions.in_gauge
+    assert misconceptions.difference(in_gauge(task, other), in_gauge(task, answer)) < 1e-12
+    assert misconceptions.difference(other, answer) > 0.5
