@@ -5,12 +5,15 @@ import itertools
 import os
 import re
 import shutil
+import signal
+import socket
 import subprocess
 import sys
 import tempfile
 import textwrap
 import time
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -593,6 +596,38 @@ def test_a_submission_that_has_used_up_its_processor_is_told_so():
         subject._running.left = 0.0
         with pytest.raises(NoAnswer, match="s of a processor for a whole submission are used up"):
             subject.scaled(1.0)
+
+
+@pytest.mark.parametrize(
+    ("sent", "ended", "used", "forks", "kind"),
+    [
+        (b"", signal.SIGKILL, 2.0, True, "late"),
+        (b"", signal.SIGKILL, 2.0, False, "killed"),
+        (b"", signal.SIGKILL, 0.1, True, "killed"),
+        (b"", 0, 2.0, True, "died"),
+        (b"", 0, 0.1, True, "died"),
+        (b"nonsense", signal.SIGKILL, 2.0, True, "late"),
+        (b"nonsense", signal.SIGKILL, 0.1, True, "killed"),
+        (b"nonsense", 0, 0.1, True, "damaged"),
+    ],
+)
+def test_without_an_answer_it_is_told_who_ended_the_process(sent, ended, used, forks, kind):
+    ours, theirs = socket.socketpair()
+    theirs.sendall(sent)
+    theirs.close()
+    with Subject({"f": "def f(): return 1"}, practice.sandbox()) as subject:
+        subject._running.close()
+        subject._running = SimpleNamespace(
+            left=9.0,
+            granted=2,
+            sandbox=SimpleNamespace(forks=forks),
+            check=lambda: ours,
+            clear=lambda seconds: (ended, used),
+            close=lambda: None,
+        )
+        with pytest.raises(NoAnswer) as told:
+            subject.f()
+    assert told.value.kind == kind
 
 
 @pytest.mark.parametrize(("tier", "counts"), [("strict", True), ("container", True), ("practice", False)])
