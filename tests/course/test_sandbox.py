@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import sysconfig
 import tempfile
 import textwrap
 import time
@@ -262,6 +263,17 @@ def test_what_is_hidden_is_what_an_interpreter_keeps_beside_its_modules(tmp_path
     listed, read = inside.readable()
     assert {Path(path).name for path in listed} == {tmp_path.name, "python3.11", "python3"}
     assert {Path(path).name for path in read} == {"json", "os.py"}
+
+
+@pytest.mark.parametrize("apart", [True, False])
+def test_of_a_system_that_keeps_libraries_in_folders_by_processor_those_alone_are_there(apart, monkeypatch):
+    whole = {"/lib", "/usr/lib"}
+    own = {f"{folder}/riscv64-linux-gnu" for folder in whole}
+    there = whole | own if apart else whole
+    monkeypatch.setattr(os.path, "isdir", there.__contains__)
+    monkeypatch.setattr(os.path, "exists", there.__contains__)
+    monkeypatch.setattr(sysconfig, "get_config_var", lambda name: "riscv64-linux-gnu")
+    assert set(contents._libraries()) == (own if apart else whole)
 
 
 def test_where_processes_cannot_fork_each_check_has_a_process_of_its_own():
