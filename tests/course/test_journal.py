@@ -55,6 +55,29 @@ def test_what_has_changed_is_graded_again_and_nothing_else(tmp_path):
     assert sum(one.fresh for one in graded(tmp_path, again=True)[0]) == 5
 
 
+class AtOnce:
+    """An executor that does a piece in a process that is there already, and after it something else."""
+
+    def __init__(self, after):
+        self.after, self.ended = after, []
+
+    def start(self, piece, *, alone=False):
+        self.ended.append(journal.Ending(piece, b"{}"))
+        return True
+
+    def endings(self):
+        self.after()
+        ended, self.ended = self.ended, []
+        return ended
+
+
+def test_an_older_result_that_somebody_removes_meanwhile_is_not_missed(tmp_path):
+    former, *pieces = (journal.Piece("s0", tmp_path, key) for key in ("old", "new"))
+    journal.write(old := journal.place(tmp_path, former), b"{}")
+    (done,) = journal.done_steps(pieces, AtOnce(old.unlink), tmp_path)
+    assert list(tmp_path.iterdir()) == [done.result] and done.fresh
+
+
 def test_a_submission_that_kills_its_process_is_told_of_and_the_others_are_graded(tmp_path):
     (tmp_path / "alone").mkdir()
     _, alone = graded(tmp_path / "alone")
