@@ -86,6 +86,21 @@ def test_a_task_is_found_by_its_cell_and_else_by_its_name(read):
     assert any("several cells" in problem for problem in found.problems)
 
 
+@pytest.mark.parametrize(
+    ("order", "counts", "value"),
+    [("own other", "that of its own cell", 1), ("other another", "the last one", 3)],
+)
+def test_of_a_task_that_is_defined_twice_it_is_said_which_one_counts(read, order, counts, value):
+    cells = {
+        "own": ("def gsolve():\n    return 1", "gsolve"),
+        "other": "def gsolve():\n    return 2",
+        "another": "def gsolve():\n    return 3",
+    }
+    found = read(notebook(*(cells[name] for name in order.split())))
+    assert f"gsolve is defined in several cells; {counts} counts" in found.problems
+    assert run(found.sources["gsolve"])() == value
+
+
 def test_what_the_sheet_gives_is_taken_from_our_copy(read):
     given = [Cell("def given():\n    return 'ours'", given=True)]
     found = read(
