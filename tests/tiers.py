@@ -26,6 +26,7 @@ TIERS = {
         "tests/course/test_toy.py::test_a_folder_that_holds_something",
         "tests/course/test_toy.py::test_the_readme",
         "tests/course/test_toy.py::test_two_toy_classes",
+        "tests/course/test_variants.py::test_each_variant_has_checks",
     ),
     "notebooks": (
         "tests/test_notebooks_run.py",

@@ -116,6 +116,17 @@ def filled(homework, path):
 # What a variant is
 
 
+@pytest.mark.parametrize("task", TASKS)
+def test_each_variant_has_checks_of_its_own_and_a_result_says_which_they_were(task):
+    digests = set()
+    for variant in rewording.every(task):
+        homework = homework_of(task, variant)
+        heard = grading.heard_steps(submission.Submission({}, (), ""), homework, Conditions(tier="practice"))
+        digests.add(next(heard)["specification"])
+        heard.close()
+    assert len(digests) == len(rewording.every(task)) > 1
+
+
 def test_three_tasks_have_three_parameters_each_and_the_librarys_own_values_come_first():
     assert len(TASKS) >= 3
     for task in TASKS:
