@@ -109,3 +109,12 @@ def test_what_makes_no_sense_is_refused(handed, said):
         list(accounts(handed))
     with pytest.raises(ValueError, match="handed in"):
         what_if([], "hw1")
+
+
+@pytest.mark.parametrize("terms", [{"grace": -1}, {"per_day": -0.5}])
+def test_days_and_points_below_zero_are_refused_and_none_of_both_is_not(terms):
+    handed = [Handed("hw1", 2, (ANNA,), 9)]
+    with pytest.raises(ValueError, match="at least 0"):
+        list(accounts(handed, **terms))
+    (account,) = accounts(handed, **dict.fromkeys(terms, 0))
+    assert account.score == (7 if "grace" in terms else 9)
