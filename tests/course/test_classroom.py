@@ -6,19 +6,21 @@ import zipfile
 from datetime import UTC, datetime, timedelta
 from fractions import Fraction
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 from hats import GOOD, PLAN
 
 from hdrlab import cli
-from hdrlab.course import submission
+from hdrlab.course import grading, submission
 from hdrlab.course.classroom import marks, overview, run as classroom
 from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.journal import Piece
 from hdrlab.course.classroom.late import Handed
 from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.plan import Conditions, Homework, Late, Task
 from hdrlab.course.reports import sheets
-from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.reports.results import Check, Result, to_json
 
 DUE = datetime(2026, 10, 9, 23, 59, tzinfo=UTC)
 HOMEWORK = Homework(
@@ -142,6 +144,24 @@ def test_an_archive_is_opened_or_refused_in_a_line(members, said, tmp_path):
     path, refused = submission.opened(tmp_path / "a.zip", tmp_path / "scratch", "hw2")
     assert said in refused and bool(refused) == bool(said) and "\n" not in refused
     assert said or path.read_bytes() == b"x"
+
+
+def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeypatch):
+    killed, died = (
+        result("b1", ())._replace(checks=(Check("hat", "a", "A", 0, 1, "no answer", kind=kind),))
+        for kind in ("killed", "died")
+    )
+    elsewhere = killed._replace(checks=(*killed.checks, *died.checks))
+    grader, piece = classroom.Grader(HOMEWORK, Conditions(tier="practice")), Piece("b1", Path("b1.py"), "key")
+    for last in (died, killed):
+        answers = iter([killed, killed, last])
+        monkeypatch.setattr(grading, "grade", lambda *_, answers=answers: next(answers))
+        assert grader.result(piece) == to_json(last)
+        assert next(answers, None) is None
+    answers = iter([killed, killed, elsewhere])
+    monkeypatch.setattr(grading, "grade", lambda *_: next(answers))
+    with pytest.raises(ValueError, match="each time at another check"):
+        grader.result(piece)
 
 
 def test_a_grader_can_be_sent_to_another_process():

@@ -217,18 +217,3 @@ def test_a_function_whose_process_is_ended_from_outside_is_asked_again(tmp_path,
     killing(b"supervisor.py", below=True)
     result = results.from_json(grader.result(piece))
     assert {one.outcome for one in result.checks} == {"holds"}
-
-
-def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeypatch):
-    wrong, right = (
-        results.Check("hat", "a", "A", 0, 1, "no answer", kind=kind) for kind in ("killed", "died")
-    )
-    each = [
-        results.Result("b1", "hw2", "T", "practice", (one,), {}, (), "", "", "", {}) for one in (wrong, right)
-    ]
-    answers = iter([each[0], each[0], each[1]])
-    monkeypatch.setattr(grading, "grade", lambda *_: next(answers))
-    grader = classroom.Grader(HAT, Conditions(tier="practice"))
-    assert grader.result(journal.Piece("b1", Path("b1.py"), "key")) == results.to_json(each[1])
-    answers = iter([each[0]] * journal.TRIES)
-    assert grader.result(journal.Piece("b1", Path("b1.py"), "key")) == results.to_json(each[0])
