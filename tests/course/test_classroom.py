@@ -164,6 +164,13 @@ def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeyp
         grader.result(piece)
 
 
+def test_a_histogram_counts_every_score_and_all_the_points_among_the_best_tenth():
+    bins = overview.histogram([0.0, 4.9, 5.0, 24.9, 49.9, 50.0, 50.0], 50.0)
+    assert [start for start, _ in bins] == list(range(0, 100, 10))
+    assert [count for _, count in bins] == [2, 1, 0, 0, 1, 0, 0, 0, 0, 3]
+    assert overview.histogram([0.0, 0.0], 0)[0] == (0, 2)
+
+
 def test_a_grader_can_be_sent_to_another_process():
     grader = classroom.Grader(HOMEWORK, Conditions())
     assert pickle.loads(pickle.dumps(grader.result)).__self__ == grader
