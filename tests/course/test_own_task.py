@@ -4,11 +4,14 @@ import json
 import subprocess
 import sys
 import zipfile
+from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
 from hdrlab.course import grading, notebook, plan
 from hdrlab.course.checks import misconceptions
+from hdrlab.course.checks.plugin import Checking
 from hdrlab.course.code import inline
 from hdrlab.course.export import gradescope
 from hdrlab.course.material import handouts, own_task, stubs
@@ -89,6 +92,15 @@ def test_it_is_graded_with_its_mistakes_its_hidden_checks_and_its_limit(folder, 
     says = {one.name: one.sentence for one in misconceptions.of_task(task)}
     assert found.misconceptions == {"flat_field": says["flat_field_mean_forgotten"]}
     assert 5 <= found.score < 10 and [one.hidden for one in found.checks] == [False] * 3 + [True]
+
+
+@pytest.mark.parametrize(("marks", "points"), [((), "1"), ((3,), "3"), ((0.5,), "1/2")])
+def test_a_check_is_worth_what_its_marker_says_and_without_one_a_point(marks, points, tmp_path):
+    mark = pytest.mark.points(*marks).mark if marks else None
+    check = SimpleNamespace(name="test_a", path=Path("test_hat.py"), get_closest_marker=lambda name: mark)
+    out = tmp_path / "lines"
+    Checking({"out": str(out), "hidden": ""}).pytest_collection_finish(SimpleNamespace(items=[check]))
+    assert json.loads(out.read_text())["points"] == points
 
 
 def test_without_solution_and_mistakes_a_student_is_told_what_does_not_hold(folder, tmp_path):
