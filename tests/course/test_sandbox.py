@@ -1,5 +1,6 @@
 """The sandbox in its tiers: it answers alike in all, keeps in what it says it keeps in, and fails closed."""
 
+import contextlib
 import ctypes
 import itertools
 import os
@@ -627,19 +628,48 @@ def test_without_an_answer_it_is_told_who_ended_the_process(sent, ended, used, f
     ours, theirs = socket.socketpair()
     theirs.sendall(sent)
     theirs.close()
-    with Subject({"f": "def f(): return 1"}, practice.sandbox()) as subject:
-        subject._running.close()
-        subject._running = SimpleNamespace(
-            left=9.0,
-            granted=2,
-            sandbox=SimpleNamespace(forks=forks),
-            check=lambda: ours,
-            clear=lambda seconds: (ended, used),
-            close=lambda: None,
-        )
-        with pytest.raises(NoAnswer) as told:
-            subject.f()
+    gone = linked(lambda: ours, forks=forks, ended=ended, used=used)
+    with gone as subject, pytest.raises(NoAnswer) as told:
+        subject.f()
     assert told.value.kind == kind
+
+
+def test_a_check_has_the_time_of_three_calls_and_a_submission_of_twenty():
+    theirs = []
+
+    def check():  # nobody answers
+        ours, other = socket.socketpair()
+        theirs.append(other)
+        return ours
+
+    said = []
+    with linked(check, timeout=0.02) as subject:
+        for _ in range(10):
+            subject.fresh()
+            for _ in range(4):
+                with pytest.raises(NoAnswer) as told:
+                    subject.f()
+                assert told.value.kind == "late"
+            said.append(str(told.value))
+    for one in theirs:
+        one.close()
+    assert said[0] == "f: the 0.06 s for one check are used up"
+    assert said[-1] == "f: the 0.4 s for a whole submission are used up"
+
+
+@contextlib.contextmanager
+def linked(check, *, timeout=10.0, forks=True, ended=0, used=0.0):
+    """Yield a Subject whose links come from a function, and whose processes ended so."""
+    subject = Subject({"f": "def f(): return 1"}, practice.sandbox(), timeout)
+    subject._running = SimpleNamespace(
+        left=9.0,
+        granted=2,
+        sandbox=SimpleNamespace(forks=forks),
+        check=check,
+        clear=lambda seconds: (ended, used),
+    )
+    yield subject
+    subject._drop()
 
 
 @pytest.mark.parametrize(("tier", "counts"), [("strict", True), ("container", True), ("practice", False)])
