@@ -510,6 +510,12 @@ def test_the_doctor_says_of_each_tier_whether_it_works_and_what_would_help(witho
     assert not doctor.examine("strict").works and "apt install bubblewrap" in doctor.examine("strict").remedy
 
 
+def test_what_is_missing_is_to_be_installed_and_not_what_is_there_and_did_not_start():
+    assert doctor.remedy("the strict tier needs bubblewrap").startswith("install bubblewrap")
+    assert "install" not in doctor.remedy("the strict sandbox did not start: bwrap: Permission denied")
+    assert doctor.remedy("the practice sandbox gave no answer") == ""
+
+
 @pytest.mark.parametrize(("ended", "works"), [(doctor.TRIES - 1, True), (doctor.TRIES, False)])
 def test_a_sandbox_that_is_ended_while_it_starts_is_tried_again(monkeypatch, ended, works):
     starts = itertools.count()
