@@ -8,7 +8,7 @@ import pytest
 import scoring
 
 from hdrlab.course import plan
-from hdrlab.course.checks import SPECIFICATION, inprocess
+from hdrlab.course.checks import SPECIFICATION, compare, inprocess, laws
 
 PLAN = plan.read()
 TASKS = [task for homework in PLAN.homeworks.values() for task in homework.tasks]
@@ -155,3 +155,25 @@ def test_a_seed_hangs_on_the_secret_the_student_and_the_task():
         plan.seed("secret", "ada", "merge"),
     ]
     assert one == plan.seed("secret", "ada", "gsolve") and len({one, *others}) == 4
+
+
+@pytest.mark.parametrize("size", [256, 4096])
+def test_the_error_of_a_curve_is_that_of_levels_10_to_250_in_any_unit(size):
+    truth = np.log1p(np.arange(size))
+    assert laws.curve_error(truth + 3, truth) < 1e-12
+    for level, counts in ((9, False), (10, True), (250, True), (251, False)):
+        g = truth.copy()
+        g[level * (size - 1) // 255] += 1
+        assert (laws.curve_error(g, truth) > 1e-6) == counts
+
+
+@pytest.mark.parametrize(
+    ("came", "said"),
+    [
+        *((None, "nothing came"), ("text", "one array of numbers"), ({}, "one array of numbers")),
+        *(([[1], [2, 3]], "one array of numbers"), (np.array([1j]), "real numbers, got dtype complex128")),
+    ],
+)
+def test_what_is_no_array_of_numbers_is_told_by_what_came_instead(came, said):
+    with pytest.raises(compare.Different, match=said):
+        compare.numbers(came)
