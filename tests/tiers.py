@@ -22,6 +22,7 @@ TIERS = {
         "tests/response/test_response_laws.py::test_every_recovery[marginal-film-refuses",
         "tests/response/test_response_laws.py::test_every_recovery_that_asks_the_photographs[marginal-film-refuses",
         "tests/course/test_grading.py::test_in_a_sandbox_the_library_has_all_points_and_a_blank_none[project]",
+        "tests/course/test_hostile_files.py::test_a_reader_that_is_killed",
         "tests/course/test_journal.py::test_an_older_result",
         "tests/course/test_toy.py::test_a_folder_that_holds_something",
         "tests/course/test_toy.py::test_the_readme",
