@@ -1,11 +1,13 @@
 """Archives of students: plain ones are unpacked, and every trap is refused with one line."""
 
 import stat
+from contextlib import nullcontext
+from pathlib import PurePosixPath
 
 import pytest
 from traps import FILES, TRAPS, info, tarred, zipped
 
-from hdrlab.course.archives.members import LIMITS, Limits, Refused
+from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused, check_sizes
 from hdrlab.course.archives.unpack import unpack
 
 SMALL = Limits(members=20, total=200_000, one=100_000, depth=4, name=60, ratio=50)
@@ -88,3 +90,22 @@ def test_what_grows_beyond_its_ratio_is_refused_while_it_is_unpacked_though_it_w
     assert len(unpack(plain_tar, tmp_path / "new")) == 4
     with pytest.raises(Refused, match="it unpacks to more than"):
         unpack(archive, tmp_path / "none", LIMITS._replace(ratio=50))
+
+
+@pytest.mark.parametrize(
+    ("sizes", "packed", "said"),
+    [
+        ((1 << 20,), 1, ""),
+        ((1 << 20, 1), 1, "it unpacks to 1048577 times its size, expected at most 200"),
+        ((1 << 22,), 1 << 15, ""),
+        ((200 << 20,), 1 << 20, ""),
+        ((200 << 20, 1), 1 << 20, "it unpacks to 200 times its size"),
+        ((1 << 29, 1 << 29), 1 << 29, ""),
+        ((1 << 29, 1 << 29, 1), 1 << 29, "claim 1073741825 bytes together"),
+        (((1 << 29) + 1,), 1 << 29, "'0' claims 536870913 bytes"),
+    ],
+)
+def test_what_is_claimed_may_be_as_large_as_the_limits_and_no_byte_larger(sizes, packed, said):
+    claimed = [Member(PurePosixPath(str(k)), size) for k, size in enumerate(sizes)]
+    with pytest.raises(Refused, match=said) if said else nullcontext():
+        check_sizes(claimed, packed, LIMITS)
