@@ -183,6 +183,13 @@ def test_a_python_file_is_read_as_well_with_cells_and_without(read):
     assert run(read(percent, "hw2.py").sources["gsolve"])() == pytest.approx(np.pi)
 
 
+def test_what_is_no_python_in_a_python_file_is_told_with_the_line_at_which_its_cell_begins(read):
+    lines = ["# %%", "import numpy", "", '# %% task="gsolve"', "def gsolve(:", "# %%", "", "x = = 1"]
+    problems = read("\n".join(lines), "hw.py").problems
+    assert problems[0].startswith("line 4, which holds gsolve, is no Python, line 2")
+    assert problems[1].startswith("line 6 is no Python, line 3")
+
+
 def test_nothing_of_the_file_is_run(read, tmp_path):
     mark = tmp_path / "mark"
     read(notebook(f"open({str(mark)!r}, 'w')\nx = open({str(mark)!r}, 'w')\ndef gsolve(): return x"))
