@@ -164,6 +164,24 @@ def test_a_function_that_was_ended_twice_at_one_check_is_asked_once_more(monkeyp
         grader.result(piece)
 
 
+@pytest.mark.parametrize("secret", ["", "x"])
+def test_a_submission_is_graded_beside_the_hidden_checks_and_drawn_for_by_a_secret(secret, monkeypatch):
+    hidden, homes = (("test_hat.py", b"checks"), ("data/hat.csv", b"1,2")), []
+
+    def grade(path, homework, conditions):
+        home = conditions.hidden
+        files = [one for one in home.rglob("*") if one.is_file()]
+        assert {one.relative_to(home).as_posix(): one.read_bytes() for one in files} == dict(hidden)
+        assert conditions.student == ("b1" if secret else "")
+        homes.append(home)
+        return result(conditions.student, (True,))
+
+    monkeypatch.setattr(grading, "grade", grade)
+    grader = classroom.Grader(HOMEWORK, Conditions(tier="practice", secret=secret), hidden)
+    assert grader.result(Piece("b1", Path("b1.py"), "key")) == to_json(result("b1", (True,)))
+    assert not homes[0].exists()
+
+
 def test_a_histogram_counts_every_score_and_all_the_points_among_the_best_tenth():
     bins = overview.histogram([0.0, 4.9, 5.0, 24.9, 49.9, 50.0, 50.0], 50.0)
     assert [start for start, _ in bins] == list(range(0, 100, 10))
