@@ -8,7 +8,7 @@ import pytest
 
 from hdrlab.core import weights
 from hdrlab.course import plan
-from hdrlab.course.code import inline, names
+from hdrlab.course.code import inline, names, source
 from hdrlab.course.material import stubs
 from hdrlab.response import debevec
 
@@ -83,6 +83,14 @@ def test_a_solution_has_the_signature_of_its_sheet_and_neither_types_nor_guards(
     inside = [one for node in functions for one in node.body]
     assert not any(isinstance(one, ast.If) and isinstance(one.body[-1], ast.Raise) for one in inside)
     assert "require_" not in text and "# noqa" not in text and "hdrlab" not in text
+
+
+def test_of_a_function_no_more_is_left_out_than_what_only_raises():
+    kept = ["    if x > 9:", "        raise ValueError(x)", "    else:", "        x = 1"]
+    kept += ["    if x > 5:", "        x = 2", "    return x"]
+    guard = ["    if x < 0:", "        raise ValueError(x)", "    require_finite(x)"]
+    text = source.on_the_board("\n".join(["def f(x: float) -> float:", *guard, *kept]))
+    assert text.splitlines() == ["def f(x):", *kept]
 
 
 def test_a_class_that_the_notebook_gives_is_not_copied_again():
