@@ -25,6 +25,7 @@ TIERS = {
         "tests/course/test_hostile_files.py::test_a_reader_that_is_killed",
         "tests/course/test_journal.py::test_an_older_result",
         "tests/course/test_toy.py::test_a_folder_that_holds_something",
+        "tests/course/test_toy.py::test_a_toy_class_has",
         "tests/course/test_toy.py::test_the_readme",
         "tests/course/test_toy.py::test_two_toy_classes",
         "tests/course/test_variants.py::test_each_variant_has_checks",

@@ -1,7 +1,10 @@
 """The toy class: two commands make and grade it, and everybody in it gets what is said of them."""
 
+import ast
 import hashlib
+import json
 import shutil
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -149,6 +152,14 @@ def test_two_toy_classes_are_the_same(tmp_path):
     for file in files:
         if file.name != "README.md":  # it names the folder
             assert (tmp_path / "a" / file).read_bytes() == (tmp_path / "b" / file).read_bytes()
+
+
+def test_a_toy_class_has_files_of_the_kinds_that_their_names_say(tmp_path):
+    files = toy.write(tmp_path / "class")
+    assert all(json.loads(one.read_bytes())["cells"] for one in files if one.suffix == ".ipynb")
+    assert all(ast.parse(one.read_bytes()).body for one in files if one.suffix == ".py")
+    assert all(zipfile.is_zipfile(one) for one in files if one.suffix == ".zip")
+    assert {one.suffix for one in files} == {".ipynb", ".py", ".zip"}
 
 
 def test_a_folder_that_holds_something_is_left_alone(tmp_path, capsys):
