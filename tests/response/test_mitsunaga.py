@@ -129,6 +129,14 @@ def test_groups_with_many_clipped_members_are_left_out():
     assert np.allclose(M[:, 0] * 255, [20, 100, 200]) and np.isnan(M[2, 1]) and np.isclose(M[1, 1], 200 / 255)
 
 
+@pytest.mark.parametrize("level", [0, 255])
+def test_a_group_is_left_out_where_more_than_a_tenth_of_its_members_are_clipped(level):
+    for clipped in (1, 10, 11):
+        M = average(np.repeat([level, 100], [clipped, 100 - clipped])[:, None], 1)
+        mean = (clipped * level + (100 - clipped) * 100) / 25500
+        assert np.isnan(M[0, 0]) if clipped > 10 else np.isclose(M[0, 0], mean)
+
+
 def test_ratios_are_shared_by_the_channels():
     rng = np.random.default_rng(4)
     R = np.array([0.5, 0.45])
