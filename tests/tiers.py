@@ -29,6 +29,7 @@ TIERS = {
         "tests/course/test_toy.py::test_the_readme",
         "tests/course/test_toy.py::test_two_toy_classes",
         "tests/course/test_variants.py::test_each_variant_has_checks",
+        "tests/pipeline/test_timing.py::test_a_rough_time_is",
     ),
     "notebooks": (
         "tests/test_notebooks_run.py",

@@ -6,7 +6,7 @@ import pytest
 from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
-from hdrlab.pipeline import registration
+from hdrlab.pipeline import registration, stages
 from hdrlab.pipeline.timing import complete_times, estimate_relative_times, refine_times, space_by_stops
 
 
@@ -86,6 +86,15 @@ def test_rough_times_are_corrected_unless_they_are_to_stay():
     found, stated = (pipeline.assemble(rough, align="none", times=one) for one in ("correct", "stated"))
     assert stated.bracket.times.tobytes() == rough.times.tobytes()
     assert found.spread < stated.spread and "times estimated" in found.notes[0]
+
+
+def test_a_rough_time_is_corrected_before_the_response_is_found():
+    room = scenes.room((200, 300))
+    taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), rng=1)
+    rough = taken._replace(times=taken.times * [1, 1, 1.1, 1])
+    found = next(one for one in stages.assemble_steps(rough, align="none") if one.stage == "times")
+    assert np.abs(np.log2(found.bracket.times / taken.times)).max() < 0.03
+    assert found.g is None and "frame 3" in found.notes[0]
 
 
 @pytest.fixture(scope="module")
