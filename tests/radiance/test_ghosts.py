@@ -305,3 +305,13 @@ def test_a_black_pixel_is_at_most_level_1_and_a_full_one_at_least_the_first_clip
     assert found.high[0, 0, 0] == pytest.approx(np.exp(taken.x[1, 0, 1])) and found.high[0, 1, 0] == np.inf
     assert found.low[0, 2, 0] == pytest.approx(np.exp(taken.x[1, 0, taken.top])) and found.low[0, 1, 0] == 0
     assert found.measured[0, :, 0].tolist() == [False, True, False]
+
+
+def test_what_is_darker_than_a_clipped_frame_shows_is_found_but_for_an_edge_that_is_off_by_a_pixel():
+    E, near, outside = (np.zeros((9, 11, 3), kind) for kind in (np.float32, bool, bool))
+    E[4, 5], near[3:6, 4:7], outside[:, -2:] = 1.0, True, True
+    clipped = np.full((1, *E.shape), 255, np.uint8)
+    taken = frames.Calibrated(clipped, np.ones(1), 255, None, np.zeros((1, 3, 256)), np.ones((1, 3, 256)))
+    assert np.array_equal(deviation.find_clipped_elsewhere(taken, E), ~near[..., 0])
+    seen = taken._replace(valid=~outside[None, ..., 0])
+    assert np.array_equal(deviation.find_clipped_elsewhere(seen, E), ~(near | outside)[..., 0])
