@@ -68,6 +68,12 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
         assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(one.I, ALPHA)
 
 
+@pytest.mark.parametrize("rows", [[[0, 0], [0, 0]], [[0, 9], [0, 0]], [[0, 9], [0, 9]]])
+def test_a_picture_that_shows_no_grid_is_refused(rows):
+    with pytest.raises(ValueError, match="a grid, bright on black"):
+        display.find_corners(rows)
+
+
 @pytest.mark.parametrize(("scale", "offset"), [(1.0, 0.0), (3.0, 0.7), (0.2, -5.0)])
 def test_curves_that_differ_in_scale_and_offset_alone_are_the_same(scale, offset):
     M = np.linspace(0.1, 0.9, 200)
