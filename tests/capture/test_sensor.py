@@ -235,6 +235,7 @@ def test_photographs_that_tell_nothing_are_refused(Z):
         (dict(sensor=Sensor(), read_noise=3), "finite full_well"),
         (dict(sensor=Sensor(bits=20)), "1 to 16 bits"),
         (dict(sensor=Sensor(black=5000)), "black level"),
+        (dict(sensor=Sensor(bits=8, black=255)), "black level"),
         (dict(sensor=Sensor(), white=(0, 1, 1)), "positive gains"),
         (dict(sensor=Sensor(), E=np.ones((4, 4)), bayer=True), "radiance"),
     ],
