@@ -153,6 +153,14 @@ def test_the_operator_is_its_curve_at_every_pixel():
     assert np.allclose(ward.tonemap(L), np.clip(plain, 0, 1), atol=2e-5)
 
 
+@pytest.mark.parametrize("factor", [0.1, 7])
+def test_only_the_ratio_of_the_display_counts_also_where_a_range_fits_it(factor):
+    L = np.geomspace(3, 60, 64 * 64, dtype=np.float32).reshape(64, 64)
+    shown = ward.tonemap(L)
+    assert np.allclose(shown, ((L / L.max() * 100) - 1) / 99, atol=0.02)
+    assert np.allclose(ward.tonemap(L, black=factor, white=100 * factor), shown, atol=1e-5)
+
+
 def test_only_the_ratio_of_the_display_counts():
     L = laws.scene()
     assert np.allclose(ward.tonemap(L, black=1, white=100), ward.tonemap(L, black=0.5, white=50), atol=1e-6)
