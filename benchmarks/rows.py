@@ -35,18 +35,21 @@ class Case(NamedTuple):
     missing : peer -> why it is not there
     error : how far a result is from the truth, given who made it; None where nothing can be said
     reads : bytes of the input, which have to be read at least once; by who where they differ
+    least : what must be done at least, where that is more than to go through memory: a file by one call
     """
 
     runs: dict[str, Run]
     missing: dict[str, str]
     error: Callable[[str, Any], float | None] = lambda who, result: None
     reads: int | Mapping[str, int] = 0
+    least: Run | None = None
 
 
 class Figures(NamedTuple):
     """Of one who did it: median seconds in one thread and by default, peak MB beyond the input, error.
 
-    `floor` is the seconds that the machine takes to read the input and write the result, and nothing else.
+    `floor` is the seconds that the machine takes to read the input and write the result, and nothing else; of
+    a file, to read or write its bytes by one call.
     """
 
     seconds: float

@@ -26,7 +26,7 @@ def reading(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, 
     def error(who: str, result: Any) -> float | None:
         return None if same is None else float(np.abs(upright(who, result) - same).max())
 
-    return Case({OURS: lambda: form.read(path)} | theirs, missing, error, path.stat().st_size)
+    return Case({OURS: lambda: form.read(path)} | theirs, missing, error, least=path.read_bytes)
 
 
 def writing(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, one: bool) -> Case:
@@ -39,7 +39,9 @@ def writing(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, 
     def error(who: str, result: Any) -> float | None:
         return abs(paths[who].stat().st_size / paths[peer].stat().st_size - 1) if theirs else None
 
-    return Case({OURS: lambda: form.write(paths[OURS], E)} | theirs, missing, error, E.nbytes)
+    form.write(paths[OURS], E)
+    least = partial((folder / f"least{suffix}").write_bytes, paths[OURS].read_bytes())
+    return Case({OURS: lambda: form.write(paths[OURS], E)} | theirs, missing, error, least=least)
 
 
 def upright(who: str, E: Array) -> Array:
