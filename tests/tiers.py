@@ -17,6 +17,7 @@ wheel      the wheel, installed elsewhere
 # by tier, how the addresses of its tests begin: a folder, a file, or one test of a file
 TIERS = {
     "quick": (
+        "tests/beyond/test_patches.py::test_only_what_a_longer",
         "tests/calibration/test_wilburn.py::test_a_picture_that_shows_no_grid",
         "tests/calibration/test_wilburn.py::test_curves_that_differ",
         "tests/response/test_response_laws.py::test_every_recovery[marginal-film-leaves_the_photographs",

@@ -241,3 +241,13 @@ def test_a_match_goes_on_from_a_neighbour_and_at_the_edge_from_the_nearest_pixel
     for y, x in np.ndindex(5, 7):
         beside = min(max(y - step[0], 0), 4), min(max(x - step[1], 0), 6)
         assert found[y, x].tolist() == (at[beside] + [0, *step]).tolist()
+
+
+@pytest.mark.parametrize(("k", "unknown"), [(0, [[1, 1, 1], [2, 2, 2]]), (1, [[2, 2, 2]]), (2, [])])
+def test_only_what_a_longer_exposure_clips_has_no_price(k, unknown):
+    L, clipped = np.full((3, 4, 5, 3), 0.5, np.float32), np.zeros((3, 4, 5, 3), bool)
+    clipped[0, 0, 0, 1] = clipped[1, 1, 1, 0] = clipped[2, 2, 2, 2] = True
+    full, alpha = np.ones(3, np.float32), np.ones((4, 5, 1), np.float32)
+    scene = synthesis.Scene(L, L / 50, clipped, np.array([1.0, 4, 16]), full, 1, alpha)
+    _, price = synthesis.boost_photographs(k, scene)
+    assert np.argwhere(np.isinf(price)).tolist() == unknown
