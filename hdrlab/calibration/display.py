@@ -106,7 +106,7 @@ def find_corners(picture: ArrayLike) -> F64:
     diagonals; half a pixel out, for a pixel has a width.
     """
     bright = np.asarray(picture, np.float64)
-    y, x = np.nonzero(bright > bright.max() / 4)
+    *_, y, x = np.nonzero(np.atleast_2d(bright > bright.max() / 4))
     if bright.ndim != 2 or not bright.max() > 0 or np.ptp(x) == 0 or np.ptp(y) == 0:
         raise ValueError("expected a picture (H, W) of a grid, bright on black")
     signs = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]])

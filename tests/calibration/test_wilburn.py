@@ -68,7 +68,9 @@ def test_the_grid_is_read_back_from_a_photograph_of_it():
         assert np.allclose(one.M * 255, np.round(high * ALPHA), atol=1e-9) and np.allclose(one.I, ALPHA)
 
 
-@pytest.mark.parametrize("rows", [[[0, 0], [0, 0]], [[0, 9], [0, 0]], [[0, 9], [0, 9]]])
+@pytest.mark.parametrize(
+    "rows", [[[0, 0], [0, 0]], [[0, 9], [0, 0]], [[0, 9], [0, 9]], [[[0, 9], [9, 0]]], [0, 9, 9]]
+)
 def test_a_picture_that_shows_no_grid_is_refused(rows):
     with pytest.raises(ValueError, match="a grid, bright on black"):
         display.find_corners(rows)
