@@ -150,8 +150,7 @@ def reconstruct(
     if Z.ndim != 2 or Z.dtype not in (np.uint8, np.uint16) or Z.size == 0:
         raise ValueError(f"expected levels (H, W) of uint8 or uint16, got {describe(Z)}")
     e = _transparency(e, Z.shape)
-    w = weight(Z, e, full_well=full_well, read_noise=read_noise)
-    values = Z / (levels(Z) - 1) / e
+    w, values = weight(Z, e, full_well=full_well, read_noise=read_noise), Z / (levels(Z) - 1) / e
     if c is None:
         return _fill(values, w, e, sigma)
     masks = [as_channels(c, Z.shape) == k for k in range(3)]

@@ -35,8 +35,7 @@ def tvl1(a: F32, b: F32) -> F32:
 
 def warp(f: F32, u: F32) -> F32:
     """Return f(p + u(p)), linear between pixels; beyond the edge it is the edge's."""
-    places = np.indices(u.shape[1:]) + u
-    planes = f.reshape(*f.shape[:2], -1).astype(np.float32)
+    places, planes = np.indices(u.shape[1:]) + u, f.reshape(*f.shape[:2], -1).astype(np.float32)
     channels = np.moveaxis(planes, -1, 0)
     found = [map_coordinates(one, places, order=1, mode="nearest") for one in channels]
     return np.stack(found, axis=-1).reshape(f.shape)

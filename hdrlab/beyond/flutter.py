@@ -119,8 +119,7 @@ def expose(
 ) -> F64:
     """Return one photograph of the moving thing, 1 = full: smeared, noisy, clipped, rounded to levels."""
     X: F64 = gain * smear(x, h)
-    X = X + np.random.default_rng(rng).normal(0, sigma, X.shape)
-    top = 2**bits - 1
+    X, top = X + np.random.default_rng(rng).normal(0, sigma, X.shape), 2**bits - 1
     return np.round(np.clip(X, 0, 1) * top) / top
 
 

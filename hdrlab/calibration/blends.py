@@ -168,8 +168,7 @@ def ln_exposure(joined: InverseResponse, *, black: float = 0.0, n: int = 256) ->
     if not black < joined.X[0]:
         raise ValueError(f"expected a black below {joined.X[0]}, the darkest X measured, got {black}")
     M, X = joined.M, joined.X - black
-    slope = max((X[-1] - X[-9]) / (M[-1] - M[-9]), 0)
-    levels = np.arange(n) / (n - 1)
+    slope, levels = max((X[-1] - X[-9]) / (M[-1] - M[-9]), 0), np.arange(n) / (n - 1)
     levels[0] = 0.25 / (n - 1)
     table = np.interp(levels, np.r_[0, M, 1], np.r_[0, X, X[-1] + slope * (1 - M[-1])])
     g = np.log(np.maximum(table, 1e-12))

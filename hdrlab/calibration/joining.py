@@ -82,8 +82,7 @@ def build_equations(
 
     p holds the blends' predicted brightnesses one after the other.
     """
-    widest = int(np.argmax([np.ptp(blend.M) for blend in blends]))
-    weight = 1 / np.interp(p, GRID, v)
+    widest, weight = int(np.argmax([np.ptp(blend.M) for blend in blends])), 1 / np.interp(p, GRID, v)
     A = i_splines(p, count) * weight[:, None]
     systems, start = [], 0
     for j, (I, M) in enumerate(blends):  # noqa: E741, the paper's letter

@@ -124,7 +124,6 @@ def join(blends: Sequence[Blend], *, degree: int = 6, runs: int = 12, ends: floa
     >>> round(float(np.interp(0.5, joined.M, joined.X)), 2), round(float(joined.s[1] / joined.s[0]), 2)
     (0.25, 0.2)
     """
-    a = last(join_steps(blends, degree=degree, runs=runs)).a
-    usable = select_blends(blends)
+    a, usable = last(join_steps(blends, degree=degree, runs=runs)).a, select_blends(blends)
     s, r = np.transpose([np.polyfit(blend.I, evaluate(blend.M, a), 1) for blend in rescale(usable)])
     return build_response(usable, evaluate(GRID, a), s, r, ends=ends)

@@ -170,8 +170,7 @@ def shoot(
         raise ValueError(f"expected radiance (H, W, 3) for a mosaic and white balance, got {describe(E)}")
     rng, order = np.random.default_rng(rng), np.argsort(times, kind="stable")
     light = views(E, moves[order])
-    stuck = rng.random(light[0].shape) < camera.hot
-    pairs = zip(light, times[order], strict=True)
+    stuck, pairs = rng.random(light[0].shape) < camera.hot, zip(light, times[order], strict=True)
     images = [photograph(view, time, camera, stuck, rng) for view, time in pairs]
     linear = responses.as_response(camera.response) is responses.as_response("linear")
     return bracket(np.stack(images), times[order], linear=linear)

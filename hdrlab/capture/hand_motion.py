@@ -86,8 +86,7 @@ def shake(
     >>> shake(3, (100, 150), radius=2, degrees=0, rng=1)[:, :2, 2].round(2).tolist()  # dx, dy
     [[1.8, 0.05], [0.0, 0.0], [1.15, -0.68]]
     """
-    rng = np.random.default_rng(rng)
-    knobs = np.array([radius, degrees, zoom, tilt], float)
+    rng, knobs = np.random.default_rng(rng), np.array([radius, degrees, zoom, tilt], float)
     if count < 1 or not np.all(np.isfinite(knobs) & (knobs >= 0)) or zoom >= 0.5 or tilt >= 0.5:
         got = f"{count} frames, radius {radius}, degrees {degrees}, zoom {zoom}, tilt {tilt}"
         raise ValueError(f"expected at least one frame, motion of at least 0, zoom and tilt < 0.5, got {got}")

@@ -181,8 +181,7 @@ def shoot(
         moments.append(E_j)
         masks.append(mask)
     images, taken = (np.concatenate([getattr(one, name) for one in shots]) for name in ("images", "times"))
-    order = short_to_long(images, taken)
-    taken_in_order = bracket(images, taken, linear=shots[0].linear)
+    order, taken_in_order = short_to_long(images, taken), bracket(images, taken, linear=shots[0].linear)
     return Moving(taken_in_order, still, np.stack(moments)[order], np.stack(masks)[order] > 0)
 
 

@@ -137,8 +137,7 @@ def around(middle: float, times: F64, frames: int, stops: float) -> NDArray[np.i
     >>> around(1 / 60, exposure.shutter_series().values, 3, 2.0).tolist()
     [13, 11, 9]
     """
-    known = np.log2(times)
-    wanted = np.log2(middle) + stops * (np.arange(frames) - (frames - 1) / 2)
+    known, wanted = np.log2(times), np.log2(middle) + stops * (np.arange(frames) - (frames - 1) / 2)
     wanted += max(known.min() - wanted[0], 0) + min(known.max() - wanted[-1], 0)
     chosen = np.abs(known[:, None] - wanted).argmin(axis=0)
     if len(set(chosen)) < frames:

@@ -87,8 +87,7 @@ def expose_levels(L: ArrayLike, time: float, sensor: Sensor, *, sensitivity: flo
         raise ValueError(f"expected luminances, a time and a sensitivity, got {describe(L)} and {time} s")
     X = sensitivity * time * L
     N = np.minimum(sensor.full_well * X, full_electrons(sensor))
-    Z = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black
-    ratio = snr(X, sensor)
+    Z, ratio = np.floor(N / sensor.gain + 0.5).astype(np.int64) + sensor.black, snr(X, sensor)
     return ExposedLevels(Z, ratio, sensor.full_well * X >= full_electrons(sensor), ratio < 1)
 
 

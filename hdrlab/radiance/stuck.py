@@ -29,8 +29,7 @@ def find_stuck(shortest: Array, longest: Array) -> Mask:
     >>> int(find_stuck(shortest, longest).sum())
     1
     """
-    quarter = (np.iinfo(shortest.dtype).max + 1) // 4
-    found = np.zeros(shortest.shape[:2], bool)
+    quarter, found = (np.iinfo(shortest.dtype).max + 1) // 4, np.zeros(shortest.shape[:2], bool)
     for top in range(0, len(found), ROWS):
         a, b = shortest[top : top + ROWS], longest[top : top + ROWS]
         still = np.maximum(a, b) - np.minimum(a, b) < quarter // 8
