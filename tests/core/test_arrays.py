@@ -83,6 +83,10 @@ def test_values_that_are_no_light_are_counted(check):
         check(E)
 
 
+def test_minus_zero_is_no_negative_light():
+    assert arrays.as_radiance(np.float32([[-0.0, 1.0]])).tolist() == [[0.0, 1.0]]
+
+
 def test_a_float64_beyond_float32_counts_as_infinite():
     with pytest.raises(ValueError, match="1 infinite"):
         arrays.as_radiance([[1e39, 1]])
