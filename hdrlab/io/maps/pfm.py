@@ -4,8 +4,9 @@ PF is RGB and Pf is gray; a negative scale says little endian; rows run from the
 The scale's magnitude is not applied: the format never settled whether to multiply or to divide by it.
 """
 
-import mmap
+import os
 import re
+import sys
 from math import prod
 from pathlib import Path
 from typing import NamedTuple
@@ -99,10 +100,15 @@ def read(path: str | Path, *, flip: bool = True) -> F32:
     >>> read(file).tolist(), read(file, flip=False).tolist()
     ([[1.0], [2.0]], [[2.0], [1.0]])
     """
-    read_header(path)
-    with open(path, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as data:
-        E = from_bytes(data)  # type: ignore[arg-type]
-    return E if flip else E[::-1]
+    header = read_header(path)
+    E = np.empty((header.height, header.width, 3)[: 3 if header.colour else 2], np.float32)
+    rows = list(E[::-1] if flip else E)
+    with open(path, "rb", buffering=0) as file:
+        file.seek(header.start)
+        each = getattr(os, "readv", lambda _, some: sum(map(file.readinto, some)))  # each to its place
+        if sum(each(file.fileno(), rows[y : y + 512]) for y in range(0, len(rows), 512)) < E.nbytes:
+            raise ValueError(f"{path}: expected {E.nbytes} bytes of values, it was cut short meanwhile")
+    return E if (header.scale < 0) == (sys.byteorder == "little") else E.byteswap(inplace=True)
 
 
 def write(path: str | Path, E: ArrayLike, *, flip: bool = True) -> None:

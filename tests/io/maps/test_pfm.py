@@ -1,5 +1,7 @@
 """Portable float maps: written bytes first, then OpenCV as the oracle."""
 
+import os
+
 import cv2
 import numpy as np
 import pytest
@@ -79,3 +81,21 @@ def test_a_header_that_claims_too_much_costs_no_memory(tmp_path, size):
     (tmp_path / "x.pfm").write_bytes(f"PF\n{size}\n-1.0\n".encode() + bytes(71))
     with pytest.raises(ValueError, match="x.pfm: its header claims"):
         pfm.read(tmp_path / "x.pfm")
+
+
+def test_a_file_that_is_cut_while_it_is_read_is_refused(tmp_path, monkeypatch):
+    pfm.write(tmp_path / "x.pfm", RGB)
+    header = pfm.read_header(tmp_path / "x.pfm")
+    os.truncate(tmp_path / "x.pfm", header.start + RGB.nbytes - 1)
+    monkeypatch.setattr(pfm, "read_header", lambda path: header)
+    with pytest.raises(
+        ValueError, match=r"x\.pfm: expected 9324 bytes of values, it was cut short meanwhile"
+    ):
+        pfm.read(tmp_path / "x.pfm")
+
+
+def test_a_system_that_moves_one_row_at_a_time_reads_the_same(tmp_path, monkeypatch):
+    monkeypatch.delattr(os, "readv", raising=False)
+    tall = np.random.default_rng(1).random((1100, 2)).astype(np.float32)
+    pfm.write(tmp_path / "x.pfm", tall)
+    assert np.array_equal(pfm.read(tmp_path / "x.pfm"), tall)
