@@ -83,13 +83,12 @@ def main(subject: str, name: str, folder: str, what: str, who: str = "") -> None
 
 def timed(case: Case) -> dict[str, Any]:
     """Return the seconds of every round, the errors and the floors of everyone, after a round to warm up."""
-    errors, floors, rate = {}, {}, bandwidth()
-    least = min(clocked(case.least) for _ in range(9)) if case.least else None
+    errors, floors, rate, least = {}, {}, bandwidth(), list[float]()
     for who, run in case.runs.items():
         result = run()
         errors[who] = case.error(who, result)
         reads = case.reads if isinstance(case.reads, int) else case.reads[who]
-        floors[who] = least or ((reads + size(result)) / rate if reads else None)
+        floors[who] = (reads + size(result)) / rate if reads else None
     seconds: dict[str, list[float]] = {who: [] for who in case.runs}
     start = time.perf_counter()
     for done in range(MOST_ROUNDS):
@@ -97,6 +96,9 @@ def timed(case: Case) -> dict[str, Any]:
             break
         for who, run in case.runs.items():
             seconds[who].append(clocked(run))
+        if case.least:  # by turns, for what the others leave in memory and on the disk slows it down
+            least.append(clocked(case.least))
+    floors = dict.fromkeys(floors, median(least)) if least else floors
     return {"seconds": seconds, "errors": errors, "missing": case.missing, "floors": floors}
 
 

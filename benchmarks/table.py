@@ -1,7 +1,8 @@
 """The figures as text: a block per row, who did the work line by line, then what it must hold.
 
 The floor is the time in which the machine reads the input and writes the result, and does nothing else: bytes
-over the bandwidth of a copy, or a file's bytes read or written by one call, measured in the same process.
+over the bandwidth of a copy, or a file's bytes read or written by one call, measured in the same process and
+by turns with the others. A ratio that is short within a quarter of the floor is "AT FLOOR": the machine's.
 """
 
 from benchmarks.experiments import Experiment, Found, listed

@@ -249,6 +249,24 @@ def test_the_floor_is_the_time_to_read_the_input_and_to_write_the_result(monkeyp
     assert text.splitlines()[2].split()[-2:] == ["25", "-"]
 
 
+def test_the_floor_of_a_file_is_one_call_by_turns_with_everyone(monkeypatch):
+    monkeypatch.setattr(measure, "ENOUGH", 0)
+    monkeypatch.setattr(measure, "bandwidth", lambda: 1000.0)
+    monkeypatch.setattr(measure, "clocked", lambda run: run())
+    order, least = [], iter([9, 2, 4, 3, 7])
+    runs = {"a": lambda: order.append("a") or 1}
+    case = Case(runs, {}, least=lambda: order.append("least") or next(least))
+    assert measure.timed(case)["floors"] == {"a": 4}
+    assert order == ["a", *["a", "least"] * 5]
+
+
+@pytest.mark.parametrize(("floor", "said"), [(0.09, "AT FLOOR"), (0.0800, "AT FLOOR"), (0.0799, "MISSED")])
+def test_a_ratio_that_is_missed_within_a_quarter_of_the_floor_is_the_machines(floor, said):
+    results = RESULTS | {OURS: RESULTS[OURS]._replace(floor=floor)}
+    assert faster(5).verdict(results) == said
+    assert faster(4).verdict(results) == "ok" and close(0.1, "error").verdict(results) == "MISSED"
+
+
 def test_the_machine_copies_at_least_a_hundred_megabytes_a_second():
     assert measure.bandwidth() > 1e8
 

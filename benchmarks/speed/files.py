@@ -11,6 +11,7 @@ import numpy as np
 from benchmarks import data, peers
 from benchmarks.rows import OURS, Case, Row, Run, close, faster
 from hdrlab.core.arrays import Array
+from hdrlab.io.files import replacing, reserve
 from hdrlab.io.maps import exr, pfm, rgbe
 
 Peer = Callable[[Path, Array, bool], Run]
@@ -40,8 +41,15 @@ def writing(form: ModuleType, peer: str, make: Peer, suffix: str, folder: Path, 
         return abs(paths[who].stat().st_size / paths[peer].stat().st_size - 1) if theirs else None
 
     form.write(paths[OURS], E)
-    least = partial((folder / f"least{suffix}").write_bytes, paths[OURS].read_bytes())
+    least = partial(at_least, folder / f"least{suffix}", paths[OURS].read_bytes())
     return Case({OURS: lambda: form.write(paths[OURS], E)} | theirs, missing, error, least=least)
+
+
+def at_least(path: Path, content: bytes) -> None:
+    """Write bytes by one call as a new file that takes the old one's place: whole or not at all."""
+    with replacing(path) as name, open(name, "wb") as file:
+        reserve(file, len(content))
+        file.write(content)
 
 
 def upright(who: str, E: Array) -> Array:
