@@ -60,13 +60,14 @@ def measure_level_exposures(
     whole: Mask = np.all(Z <= TOP, axis=0)
     if mask is not None:
         whole &= mask[:, *few].reshape(len(stack), -1)
+    np.copyto(Z, 255, where=~whole)  # a level beyond TOP, which has no median
     medians = np.empty((len(stack), channels, 256))
     for c, light in enumerate(E[few].reshape(-1, channels).T):
         rising = np.argsort(light)[np.count_nonzero(light == 0) :]  # once for all frames
         lE = np.log2(light.take(rising))
         for j, levels in enumerate(Z[c]):
-            own = whole[j].take(rising)
-            medians[j, c] = _median_per_level(levels.take(rising)[own], lE[own]) + np.log2(times[j])
+            medians[j, c] = _median_per_level(levels.take(rising), lE) + np.log2(times[j])
+    medians[..., TOP + 1 :] = np.nan
     return medians
 
 
@@ -78,9 +79,9 @@ def choose_grid(shape: tuple[int, ...]) -> tuple[slice, slice]:
 
 def _median_per_level(Z: Flags, lE: F32) -> F64:
     """Return the median of lE, which rises, over the pixels of each level, (256,)."""
-    lE, count = lE[np.argsort(Z, kind="stable")], np.bincount(Z, minlength=256)
+    order, count = np.argsort(Z, kind="stable"), np.bincount(Z, minlength=256)
     first, enough = np.cumsum(count) - count, count >= FEWEST
-    low, high = ((first + half)[enough] for half in ((count - 1) // 2, count // 2))
+    low, high = (order[(first + half)[enough]] for half in ((count - 1) // 2, count // 2))
     medians = np.full(256, np.nan)
     medians[enough] = (lE[low] + lE[high]) / 2
     return medians

@@ -77,18 +77,18 @@ def measure_motion(
     stack, t, w, curves, top = as_tables(images, times, g, w, "log", TOP)
     mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
     few = np.s_[:, ::every, ::every]
-    Z = stack[few].reshape(*stack[few].shape[:3], -1)
-    seen = (Z < top).all(axis=-1) if mask is None else (Z < top).all(axis=-1) & mask[few]
+    Z = np.moveaxis(stack[few].reshape(*stack[few].shape[:3], -1), -1, 0).copy()
+    seen = (Z < top).all(axis=0) if mask is None else (Z < top).all(axis=0) & mask[few]
     weight = np.where(np.arange(len(w)) > 0, w / w.max(), 0).astype(np.float32)
-    R, W = np.zeros((2, len(Z), *(n // BLOCK for n in Z.shape[1:3])), np.float32)  # sums of w r, and of w
-    for c in range(Z.shape[-1]):
-        trust = weight.take(Z[..., c]) * seen
-        r = curves[:, c].astype(np.float32).take(Z[..., c]) - np.log(t).astype(np.float32)[:, None, None]
+    R, W = np.zeros((2, len(t), *(n // BLOCK for n in Z.shape[2:])), np.float32)  # sums of w r, and of w
+    for levels, x in zip(Z, curves.T.astype(np.float32), strict=True):
+        trust = weight.take(levels) * seen
+        r = x.take(levels) - np.log(t).astype(np.float32)[:, None, None]
         r -= (trust * r).sum(axis=0) / np.maximum(trust.sum(axis=0), 1e-9)
         R += sum_blocks(trust * r)
         W += sum_blocks(trust)
-    rows, columns = (measure_bands(R.sum(axis=k), W.sum(axis=k), Z.shape[-1] * R.shape[k]) for k in (2, 1))
-    W[W < FAINT * BLOCK**2 * Z.shape[-1]] = 0
+    rows, columns = (measure_bands(R.sum(axis=k), W.sum(axis=k), len(Z) * R.shape[k]) for k in (2, 1))
+    W[W < FAINT * BLOCK**2 * len(Z)] = 0
     R /= np.maximum(W, 1e-9)
     for one, own in zip(R, W, strict=True):
         one -= np.median(one[own > 0]) if own.any() else 0
@@ -113,5 +113,5 @@ def measure_bands(R: F32, W: F32, count: int) -> float:
 def sum_blocks(values: Array) -> F32:
     """Return the sums over blocks of BLOCK x BLOCK pixels, (P, H / BLOCK, W / BLOCK)."""
     h, w = values.shape[1] // BLOCK, values.shape[2] // BLOCK
-    whole = values[:, : h * BLOCK, : w * BLOCK]
-    return np.asarray(whole.reshape(len(whole), h, BLOCK, w, BLOCK).sum(axis=(2, 4)), np.float32)
+    rows = values[:, : h * BLOCK].reshape(len(values), h, BLOCK, -1).sum(axis=2, dtype=np.float32)
+    return np.asarray(sum(rows[..., k : w * BLOCK : BLOCK] for k in range(BLOCK)), np.float32)

@@ -134,12 +134,12 @@ def assemble_steps(
     w, merge = WEIGHTS[weight], partial(merge_with_quality, method=method)
     images, seconds, _, valid, _ = state.bracket
     few = np.s_[:, *consistency.choose_grid(images.shape[1:3])]  # judged while there are photographs
-    shown = None if valid is None else valid[few]
-    E = merge(images[few], seconds, g, w(g), valid=shown, repair=False).E
+    some, shown = images[few].copy(), None if valid is None else valid[few]
+    E = merge(some, seconds, g, w(g), valid=shown, repair=False).E
     judges: list[Callable[..., Any]] = [
         lambda: contradictions.find_contradictions(images, seconds, valid=valid),
         lambda: motion.measure_motion(images, seconds, g, w(g), valid=valid),
-        lambda: consistency.measure_level_exposures(images[few], seconds, E, valid=shown),
+        lambda: consistency.measure_level_exposures(some, seconds, E, valid=shown),
     ]
     contrary, (moved, bands), medians = each(lambda judge: judge(), judges, pixels=images[0].size)
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
