@@ -1,7 +1,7 @@
 """The bilateral filter, fast on a coarse grid over place and level.
 
 v        signal                (H, W), and g, w, k as in `core.filters.bilateral`
-h        node spacing          pixels, odd, at most sigma_s / 2
+h        node spacing          pixels, odd, at most SPACING sigma_s
 z        level of a node       low, low + step, ...: Z of them, step at most sigma_r / 2
 
 Take the level as a third axis, and what differs much is far away: the filter is a Gaussian blur of that space
@@ -20,6 +20,8 @@ from hdrlab.fast import blur
 
 # levels in all
 MIN_LEVELS, MAX_LEVELS = 8, 1000
+# of sigma_s
+SPACING = 0.55
 # levels per sigma_r, at least, and bins of a histogram per level
 LEVELS, BINS = 2, 4
 # a closeness below 1e-15 is none: the least numbers of float32 are slow
@@ -41,7 +43,7 @@ class Axes(NamedTuple):
 
 def _axes(v: F32, *, sigma_s: float, sigma_r: float) -> Axes:
     """Return the grid that holds v: node (j, i) lies on pixel (j h, i h), the last ones beyond the edge."""
-    h = max(1, 2 * int((sigma_s / 2 + 1) / 2) - 1)
+    h = max(1, 2 * int((SPACING * sigma_s + 1) / 2) - 1)
     low, extent = float(v.min()), float(np.ptp(v))
     step = min(sigma_r / LEVELS, max(extent / MIN_LEVELS, TINY))
     if extent > (most := MAX_LEVELS * step):
@@ -114,15 +116,21 @@ def _read(v: F32, a: Axes, above: Row, below: Row) -> Filtered:
     z = (v - np.float32(a.low)) * np.float32(1 / a.step)
     level = np.floor(z)
     first, last = (row.away.view(np.float32).ravel() for row in (above, below))
-    away = (first + (y / a.h).astype(np.float32) * (last - first)).view(np.complex64)
+    away = (y / a.h).astype(np.float32) * (last - first)
+    away += first
     place = level.astype(np.intp) + x // a.h * a.Z
-    at = place + y * (a.X * a.Z)
-    left, right = (away.take(i, mode="clip").view(np.float32) for i in (at, at + a.Z))
-    left += np.repeat(x % a.h / a.h, 2).astype(np.float32) * (right - left)
+    at, there = place + y * (a.X * a.Z), away.view(np.complex64).ravel()
+    left, right = (some.take(at, mode="clip").view(np.float32) for some in (there, there[a.Z :]))
+    right -= left
+    right *= np.repeat(x % a.h / a.h, 2).astype(np.float32)
+    left += right
+    z -= level
+    z *= left[:, 1::2]
+    z += left[:, ::2]
+    z += v
     place += (x % a.h > a.h // 2) * a.Z
     near = a.h // 2 + 1
-    k = np.concatenate([above.k.take(place[:near]), below.k.take(place[near:])])
-    return Filtered(v + (left[:, ::2] + (z - level) * left[:, 1::2]), k)
+    return Filtered(z, np.concatenate([above.k.take(place[:near]), below.k.take(place[near:])]))
 
 
 def bilateral(v: ArrayLike, *, sigma_s: float, sigma_r: float) -> Filtered:
