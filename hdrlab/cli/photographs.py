@@ -78,11 +78,10 @@ def assemble(asked: Any) -> None:
     common.say("note", assembly.notes)
     common.say("warning", _shorten(assembly.doubts))
     comments = ["unit: cd/m^2"] * bool(metered) + [f"doubt: {doubt}" for doubt in assembly.doubts]
-    with ThreadPoolExecutor(1) as beside:
-        try:
-            shown = _develop(assembly, asked.tonemap) if asked.picture or asked.report else None
-        finally:  # beside the picture, and without one that fails
-            writing = beside.submit(radiance.write_radiance, asked.out, assembly.E, comments=comments)
+    with ThreadPoolExecutor(1) as beside:  # the picture, and without one that fails
+        writing = beside.submit(radiance.write_radiance, asked.out, assembly.E, comments=comments)
+        size = beside.submit(common.size, assembly.E)
+        shown = _develop(assembly, asked.tonemap) if asked.picture or asked.report else None
         if asked.uncertainty and assembly.s is not None:
             both = dict(zip(layers.CERTAIN, (assembly.E, assembly.s), strict=True))
             layers.write_layers(asked.uncertainty, both, comments=comments)
@@ -96,7 +95,7 @@ def assemble(asked: Any) -> None:
             recipe = {"response": asked.response} | methods | {"tonemap": shown.settings}
             write_report(asked.report, assembly, shown.picture, recipe=recipe)
         writing.result()
-    click.echo(f"{asked.out}: {common.size(assembly.E)}, {common.agreement(assembly.spread)}")
+    click.echo(f"{asked.out}: {size.result()}, {common.agreement(assembly.spread)}")
     if asked.strict and assembly.doubts:
         click.get_current_context().exit(3)
 
