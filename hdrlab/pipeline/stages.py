@@ -13,7 +13,7 @@ import numpy as np
 from hdrlab.core import steps, weights
 from hdrlab.core.arrays import F64
 from hdrlab.core.bracket import Bracket
-from hdrlab.core.threads import each
+from hdrlab.core.threads import beside, each
 from hdrlab.diagnostics import consistency, contradictions, motion, outlying_frames
 from hdrlab.diagnostics.doubts import say
 from hdrlab.fast.merge import Expendable, merge_with_quality
@@ -117,6 +117,7 @@ def assemble_steps(
     state = registration.aligned(bracket, align, response, in_place=in_place)
     apart = bool(state.doubts)  # photographs that do not lie on each other contradict each other, too
     yield (state := state._replace(notes=(*said, *state.notes)))
+    judged, contrary = state.bracket, find_contrary(state.bracket)
     choice = recovery.choose_response(response, state.bracket)
     explained = choice.spread <= timing.TRUE
     if times != "stated":
@@ -128,6 +129,8 @@ def assemble_steps(
     if not explained:
         state = leave_out_contrary(state, relative=bool(said))
         choice = recovery.choose_response(response, state.bracket)
+    if state.bracket is not judged:
+        contrary = find_contrary(state.bracket)
     g, doubts, fallback = recovery.find_response(response, choice, state.bracket)
     notes, doubts = (*state.notes, *choice.notes), (*state.doubts, *doubts)
     yield (state := state._replace(stage="response", g=g, notes=notes, doubts=doubts))
@@ -137,11 +140,10 @@ def assemble_steps(
     some, shown = images[few].copy(), None if valid is None else valid[few]
     E = merge(some, seconds, g, w(g), valid=shown, repair=False).E
     judges: list[Callable[..., Any]] = [
-        lambda: contradictions.find_contradictions(images, seconds, valid=valid),
         lambda: motion.measure_motion(images, seconds, g, w(g), valid=valid),
         lambda: consistency.measure_level_exposures(some, seconds, E, valid=shown),
     ]
-    contrary, (moved, bands), medians = each(lambda judge: judge(), judges, pixels=images[0].size)
+    (moved, bands), medians, told = *each(lambda judge: judge(), judges, pixels=images[0].size), contrary()
     remove = ghosts in ("regions", "reference") or (ghosts == "auto" and moved > motion.MOVED)
     if release and not remove and consistency.measure_spread(medians) <= timing.WORTHLESS:
         state = state._replace(bracket=state.bracket._replace(images=images[:0].copy()))
@@ -153,8 +155,14 @@ def assemble_steps(
     if flare != "none":
         yield (state := remove_glare(state))
     left = (0.0, 0.0) if state.moving is not None or apart else (moved, bands)
-    found = assess(state, medians, contrary, *left)
+    found = assess(state, medians, told, *left)
     yield found._replace(doubts=state.doubts) if apart else found  # what it says would follow from that
+
+
+def find_contrary(bracket: Bracket) -> Callable[[], contradictions.Contradictions]:
+    """Return a function that waits for the contradictions in a bracket, which no response is needed for."""
+    find = partial(contradictions.find_contradictions, bracket.images, bracket.times, valid=bracket.valid)
+    return beside(find, pixels=bracket.images[0].size)
 
 
 def leave_out_contrary(state: Assembly, *, relative: bool) -> Assembly:

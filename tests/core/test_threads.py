@@ -62,3 +62,22 @@ def test_a_large_picture_is_the_same_in_bands(monkeypatch):
             colour.render(*(one[part] for one in (E, L, Ld)), way=way) for part in (np.s_[:400], np.s_[400:])
         ]
         assert np.array_equal(colour.render(E, L, Ld, way=way), np.concatenate(halves))
+
+
+def test_what_is_done_beside_begins_at_once_where_there_are_processors_and_else_when_it_is_asked_for(count):
+    begun = threading.Event()
+    answer = threads.beside(lambda: begun.set() or 7)
+    assert begun.wait(60 * (count > 1)) == (count > 1)
+    assert answer() == 7
+
+
+def test_what_fails_beside_fails_where_it_is_asked_for():
+    with pytest.raises(ZeroDivisionError):
+        threads.beside(lambda: 1 // 0)()
+
+
+def test_a_small_picture_has_nothing_beside_it():
+    def work():
+        return threading.get_ident()
+
+    assert threads.beside(work, pixels=threads.PIXELS - 1) is work

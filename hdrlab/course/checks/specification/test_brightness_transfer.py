@@ -70,6 +70,5 @@ def test_a_photograph_of_more_pixels_has_the_same_transfer(subject, rng):
     Divide each histogram by its own sum.
     """
     h_A, h_B = drawn(rng)
-    T = brightness_transfer(h_A, h_B)
-    came = subject.brightness_transfer(h_A, 3 * h_B)
+    T, came = brightness_transfer(h_A, h_B), subject.brightness_transfer(h_A, 3 * h_B)
     same(came, T, 0.02, what="T of three times the pixels", kind="curve", where=sure(T, len(T)))

@@ -47,8 +47,7 @@ def test_there_and_back_is_the_time_one_began_with(subject, rng):
     T' = T (F' / F)^2 S / S'.
     """
     T, F, F_new, S, S_new = drawn(rng)
-    there = float(subject.equivalent_time(T, F, F_new, S=S, S_new=S_new))
-    exposure = T * S / F**2
+    there, exposure = float(subject.equivalent_time(T, F, F_new, S=S, S_new=S_new)), T * S / F**2
     same(there * S_new / F_new**2, exposure, 1e-4 * exposure, what="T' S' / F'^2, which is the exposure")
     back = subject.equivalent_time(there, F_new, F, S=S_new, S_new=S)
     same(back / T, np.array(1.0), 1e-4, what="the time after the way back, over that before")

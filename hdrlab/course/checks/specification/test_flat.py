@@ -51,6 +51,5 @@ def test_a_patch_that_is_cut_is_not_flat(subject, rng):
 
     False within size // 2 pixels of the edge.
     """
-    inside = np.pad(np.ones((36, 56)), 2)
-    came = subject.flat(drawn(rng), size=5, psi=0.05, sigma=1.0)
+    inside, came = np.pad(np.ones((36, 56)), 2), subject.flat(drawn(rng), size=5, psi=0.05, sigma=1.0)
     same(came, inside, 0, what="flat, of frames with less than their noise", picture=True)

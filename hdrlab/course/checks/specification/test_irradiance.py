@@ -34,8 +34,7 @@ def test_it_is_the_weighted_mean_of_the_slide(subject, rng):
     E = sum_j w f^-1(Z_ij) t_j / sum_j w t_j^2, the time squared below.
     """
     Z, t, f_inv = drawn(rng)
-    truth = robertson.irradiance(Z, t, f_inv, HAT)
-    seen = HAT[Z].sum(axis=1) > 0.05
+    truth, seen = robertson.irradiance(Z, t, f_inv, HAT), HAT[Z].sum(axis=1) > 0.05
     same(subject.irradiance(Z, t, f_inv, HAT), truth, 2e-3 * np.nanmax(truth), what="E", where=seen)
 
 
@@ -62,8 +61,7 @@ def test_twice_the_time_is_half_the_irradiance(subject, rng):
     The time stands once above, and squared below.
     """
     Z, t, f_inv = drawn(rng)
-    truth = robertson.irradiance(Z, t, f_inv, HAT)
-    seen = HAT[Z].sum(axis=1) > 0.05
+    truth, seen = robertson.irradiance(Z, t, f_inv, HAT), HAT[Z].sum(axis=1) > 0.05
     same(subject.irradiance(Z, 2 * t, f_inv, HAT), truth / 2, 1e-3 * np.nanmax(truth), what="E", where=seen)
 
 

@@ -48,8 +48,7 @@ def test_the_iterations_end_at_the_curve_of_the_camera(subject, rng):
     """
     for response in (laws.drawn_response(rng), responses.RESPONSES["gamma"]):  # the line is far from it
         Z, t = samples(rng, response, N=2000)
-        f = asked(subject, Z, t, max_iterations=25)[-1]
-        truth = np.exp(responses.true_g(response))
+        f, truth = asked(subject, Z, t, max_iterations=25)[-1], np.exp(responses.true_g(response))
         scale = np.sum(f[SHOWN] * truth[SHOWN]) / np.sum(f[SHOWN] ** 2)
         same_curve(scale * f, truth, 0.02)
 

@@ -87,8 +87,7 @@ def test_the_knobs_are_used(subject, rng):
     """
     blurred = drawn(rng)
     for knobs in ({"phi": 12.0}, {"key": 0.72}, {"threshold": 0.02}):
-        truth = list(reinhard.scale_steps(blurred, **knobs))
-        came = asked(subject, blurred, **knobs)
+        truth, came = list(reinhard.scale_steps(blurred, **knobs)), asked(subject, blurred, **knobs)
         sure = ~doubtful(truth, knobs.get("threshold", 0.05))
         ((knob, value),) = knobs.items()
         same_adaptation(came, truth, f"the adaptation with {knob}={value}", sure)

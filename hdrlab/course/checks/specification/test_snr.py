@@ -56,8 +56,7 @@ def test_where_the_curve_is_level_the_weight_is_bounded(subject, rng):
     """
     g = drawn(rng, 120)
     g[70:100], g[100:] = g[70], g[100:] - g[100] + g[70]
-    expected = weights.snr(g, least=0.2, span=3)
-    came = asked(subject, g, least=0.2, span=3)
+    expected, came = weights.snr(g, least=0.2, span=3), asked(subject, g, least=0.2, span=3)
     same(came, expected, 0.02 * expected.max(), what="w of a level", kind="curve")
 
 

@@ -69,8 +69,7 @@ def test_twice_the_light_is_one_more_in_the_exponent_and_black_is_zero(subject, 
     """
     E = drawn(rng)
     E[2, 3] = 0
-    truth = rgbe.to_pixels(E).astype(float)
-    lit = E.max(axis=-1, keepdims=True) > 0
+    truth, lit = rgbe.to_pixels(E).astype(float), E.max(axis=-1, keepdims=True) > 0
     one, two = asked(subject, E), asked(subject, 2 * E)
     same(two - one, lit * np.array([0, 0, 0, 1]), 0, what="what twice the light changes")
     same(one[..., 3], truth[..., 3], 0, what="the exponents")

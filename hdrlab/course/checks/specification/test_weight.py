@@ -23,8 +23,7 @@ def fused(F, powers):
 
 def compared(subject, F, powers, what):
     """Compare W away from the border."""
-    expected = fused(F, powers)
-    came = np.asarray(subject.weight(F, powers))[INNER]
+    expected, came = fused(F, powers), np.asarray(subject.weight(F, powers))[INNER]
     same(came, expected, 2e-3 * float(expected.max()), what=what, picture=True)
 
 
