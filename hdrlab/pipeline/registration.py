@@ -17,6 +17,8 @@ from hdrlab.pipeline.assembly import Assembly, Method
 # what to do where photographs do not lie on each other, by the method
 ADVICE = {"mtb": 'align by "auto", which rotates them too, or leave one out'}
 LEAVE = 'leave one out, or align by "none" if it is the scene that moved'
+# of a photograph, which are moved at once
+ROWS = 32
 
 
 def aligned(bracket: Bracket, align: Method, response: Method = "auto", in_place: bool = False) -> Assembly:
@@ -104,5 +106,6 @@ def shift_in_place(images: Array, offsets: Array) -> Array:
     shape = images[:, *shown].shape
     out = images.reshape(-1)[: np.prod(shape)].reshape(shape)
     for one, image, by in zip(out, images, offsets.tolist(), strict=True):
-        one[:] = cut(image, by, shown)
+        for y in range(0, len(one), ROWS):  # none goes further than where it came from
+            one[y : y + ROWS] = cut(image, by, shown)[y : y + ROWS]
     return out
