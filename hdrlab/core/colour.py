@@ -28,7 +28,7 @@ from hdrlab.core.threads import each
 
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], np.float32)  # ITU-R BT.709, the primaries of sRGB
 DARK = np.float32(1e-30)  # below this luminance a pixel has no colour: it is gray
-ROWS = 8  # a band of rows that stays in the processor's cache
+ROWS = 16  # a band of rows that stays in the processor's cache
 
 
 def luminance(E: ArrayLike) -> F32:
