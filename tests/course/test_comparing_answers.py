@@ -1,0 +1,238 @@
+"""Comparing an answer with what was expected: each verdict, and each word of it."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course.checks import compare
+from hdrlab.course.checks.compare import Different, finite, numbers, parts, plain, same, states
+
+
+@pytest.fixture(autouse=True)
+def notes():
+    """What is noted of a check, which begins with nothing."""
+    compare.notes.clear()
+    yield compare.notes
+    compare.notes.clear()
+
+
+def refused(ask, *given, **named):
+    """Return the words of a refusal, which are the same as those that are remembered."""
+    with pytest.raises(Different) as raised:
+        ask(*given, **named)
+    assert str(raised.value) == raised.value.message
+    return str(raised.value)
+
+
+def test_what_holds_is_required_in_silence_and_what_does_not_is_told_with_what_is_remembered():
+    compare.require(True, "it holds")
+    compare.require([0], "something is there")
+    with pytest.raises(Different, match="^it does not hold$") as raised:
+        compare.require(0, "it does not hold", came=np.ones(2))
+    assert (raised.value.kind, raised.value.expected, raised.value.came.tolist()) == ("values", None, [1, 1])
+
+
+@pytest.mark.parametrize(
+    ("came", "said"),
+    [
+        (None, "the answer: expected numbers, and nothing came (None)"),
+        ("abc", "the answer: expected one array of numbers, got str of 3"),
+        (b"ab", "the answer: expected one array of numbers, got bytes of 2"),
+        ({"a": 1}, "the answer: expected one array of numbers, got something else"),
+        ([], "the answer: expected one array of numbers, got list of 0"),
+        ((), "the answer: expected one array of numbers, got tuple of 0"),
+        ([[1, 2], [3]], "the answer: expected one array of numbers, got list of 2"),
+        (["a"], "the answer: expected one array of numbers, got list of 1"),
+        ([1j], "the answer: expected one array of numbers, got list of 1"),
+        (np.array(1j), "the answer: expected real numbers, got dtype complex128"),
+        (np.array(["a"]), "the answer: expected real numbers, got dtype <U1"),
+    ],
+)
+def test_what_is_no_array_of_real_numbers_is_refused_by_what_it_is(came, said, notes):
+    assert refused(numbers, came) == said and not notes
+    assert refused(numbers, came, what="w") == said.replace("the answer", "w", 1)
+
+
+@pytest.mark.parametrize("came", [True, 3, 2.5, np.uint8(7), np.arange(3), np.zeros((0, 2)), np.array(True)])
+def test_numbers_of_any_real_kind_are_taken_as_they_are(came, notes):
+    assert np.array_equal(numbers(came), came) and not notes
+
+
+@pytest.mark.parametrize(
+    ("came", "said"),
+    [
+        ([1, 2.5], "w: list of 2 was taken for an array of shape (2,)"),
+        (((1, 2), (3, 4), (5, 6)), "w: tuple of 3 was taken for an array of shape (3, 2)"),
+        ([[True]], "w: list of 1 was taken for an array of shape (1, 1)"),
+    ],
+)
+def test_a_list_of_numbers_is_taken_for_an_array_and_that_is_noted(came, said, notes):
+    assert np.array_equal(numbers(came, what="w"), np.array(came)) and notes == [said]
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        ((3,), (3, 1)),
+        ((1, 3, 1), (3,)),
+        ((2, 1, 3), (2, 3)),
+        ((1, 1), ()),
+        ((), (1,)),
+        ((2, 3), (1, 2, 1, 3)),
+    ],
+)
+def test_axes_of_length_one_are_left_out_or_put_in_and_that_is_noted(shape, expected, notes):
+    values = np.arange(np.prod(shape, dtype=int)).reshape(shape)
+    found = compare.as_shape(values, expected)
+    assert found.shape == expected and found.ravel().tolist() == values.ravel().tolist()
+    assert notes == [f"the answer: shape {shape} was taken for {expected}"]
+
+
+@pytest.mark.parametrize(
+    ("shape", "expected"),
+    [
+        ((3, 2), (2, 3)),
+        ((6,), (2, 3)),
+        ((2,), (3,)),
+        ((2, 2), (2,)),
+        ((2,), (2, 2)),
+        ((0, 1), (0,)),
+        ((1,), (2,)),
+    ],
+)
+def test_another_shape_is_refused_with_both_shapes(shape, expected, notes):
+    said = refused(compare.as_shape, np.zeros(shape), expected)
+    assert said == f"the answer: expected shape {expected}, got shape {shape}" and not notes
+
+
+def test_the_same_shape_is_the_same_array_and_nothing_is_noted(notes):
+    array = np.zeros((0, 1))
+    assert compare.as_shape(array, (0, 1)) is array and not notes
+
+
+def test_of_several_parts_as_many_as_are_expected_are_taken():
+    assert parts((1, 2, 3), 2) == (1, 2) and parts([1, 2], 2) == (1, 2)
+    assert refused(parts, (1,), 2) == "the answer: expected 2 things, got tuple of 1"
+    assert refused(parts, "abc", 2) == "the answer: expected 2 things, got str of 3"
+    assert refused(parts, None, 1) == "the answer: expected 1 things, got nothing (None)"
+    assert refused(parts, np.ones(3), 2, what="w") == "w: expected 2 things, got one array"
+
+
+def test_states_are_what_a_generator_yielded_and_at_least_one():
+    assert states((1, 2)) == [1, 2] and states([0]) == [0]
+    for came, named in (([], "list of 0"), ("abc", "str of 3"), (np.ones(3), "one array"), (7, "one array")):
+        assert refused(states, came) == f"the steps: expected a generator that yields states, got {named}"
+
+
+@pytest.mark.parametrize(
+    ("came", "expected", "tolerance", "said"),
+    [
+        (1.5, 1, 0.5, ""),
+        (1.5, 1, 0.25, "expected 1, got 1.5; the difference may be 0.25"),
+        (-1, 1, 1, "expected 1, got -1; the difference may be 1"),
+        (1, 2, 0, "expected 2, got 1"),
+        (
+            [1, 2, 9],
+            [1, 2, 3],
+            1,
+            "expected 3 at (2,), got 9; the difference may be 1; 1 of 3 values are off",
+        ),
+        (
+            [0, 5, 9],
+            [1, 2, 3],
+            1,
+            "expected 3 at (2,), got 9; the difference may be 1; 2 of 3 values are off",
+        ),
+        ([[1, 2], [3, 5]], [[1, 2], [3, 4]], 0, "expected 4 at (1, 1), got 5; 1 of 4 values are off"),
+        ([np.nan, 1], [1, 1], 9, "expected finite numbers, got 1 NaN or infinite ones"),
+        ([-np.inf, np.nan], [1, 1], 9, "expected finite numbers, got 2 NaN or infinite ones"),
+        ([np.nan, 1], [np.nan, 1], 0, ""),
+        ([2, 1], [np.nan, 1], 9, "expected NaN where nothing is known, got numbers at 1 places"),
+        ([2, np.inf], [np.nan, np.nan], 9, "expected NaN where nothing is known, got numbers at 2 places"),
+        (np.zeros((0, 2)), np.zeros((0, 2)), 0, ""),
+        (
+            np.uint8([1]),
+            [-1],
+            1,
+            "expected -1 at (0,), got 1; the difference may be 1; 1 of 1 values are off",
+        ),
+    ],
+)
+def test_a_value_may_be_off_by_the_tolerance_and_no_more_and_the_worst_is_named(
+    came, expected, tolerance, said
+):
+    came = np.array(came)
+    if said:
+        assert refused(same, came, expected, tolerance, what="w") == f"w: {said}"
+    else:
+        assert same(came, expected, tolerance) is came
+
+
+@pytest.mark.parametrize(
+    ("where", "came", "said"),
+    [
+        ([True, False], [1, 7], ""),
+        ([True, False], [1, np.nan], ""),
+        ([False, True], [1, 7], "expected 2 at (1,), got 7; 1 of 2 values are off"),
+        (False, [np.nan, 7], ""),
+        (True, [3, 2], "expected 1 at (0,), got 3; 1 of 2 values are off"),
+        (np.array([True, False]), [np.inf, 2], "expected finite numbers, got 1 NaN or infinite ones"),
+    ],
+)
+def test_values_outside_the_mask_may_be_anything(where, came, said):
+    if said:
+        assert refused(same, np.array(came), [1, 2], 0, where=where) == f"the answer: {said}"
+    else:
+        assert same(np.array(came), [1, 2], 0, where=where).shape == (2,)
+
+
+def test_where_a_nan_is_expected_outside_the_mask_a_number_may_come():
+    assert same(np.array([5.0, 1]), [np.nan, 1], 0, where=[False, True]).tolist() == [5, 1]
+    assert "at 1 places" in refused(same, np.array([5.0, 1]), [np.nan, 1], 0, where=[True, False])
+
+
+@pytest.mark.parametrize(
+    ("shape", "named", "kind"),
+    [
+        ((8,), {}, "values"),
+        ((9,), {}, "curve"),
+        ((9, 9), {}, "values"),
+        ((), {}, "values"),
+        ((9, 9), {"picture": True}, "image"),
+        ((9,), {"picture": True, "kind": "curve"}, "image"),
+        ((9,), {"kind": "values"}, "values"),
+        ((3, 3), {"kind": "curve"}, "curve"),
+    ],
+)
+def test_a_difference_remembers_both_arrays_and_how_it_is_drawn(shape, named, kind):
+    with pytest.raises(Different) as raised:
+        same(np.ones(shape), np.zeros(shape), 0.5, **named)
+    assert raised.value.kind == kind
+    assert not raised.value.expected.any() and raised.value.came.all()
+    assert raised.value.expected.shape == raised.value.came.shape == shape
+
+
+def test_of_an_answer_whose_shape_alone_is_known_finite_numbers_are_asked():
+    assert finite([[1, 2]], (2,)).tolist() == [1, 2]
+    assert refused(finite, np.ones(3), (2,)) == "the answer: expected shape (2,), got shape (3,)"
+    said = refused(finite, np.array([1, np.nan, np.inf]), (3,), what="w")
+    assert said == "w: expected finite numbers, got 2 NaN or infinite ones"
+
+
+def test_answers_of_trusted_code_become_what_the_channel_brings():
+    assert plain(None) is None and plain("ab") == "ab" and plain(b"ab") == b"ab"
+    found = plain(([1, 2.5], iter([3]), (4,), 5))
+    assert isinstance(found, tuple) and [type(one) for one in found] == [list, list, tuple, np.ndarray]
+    assert found[3].shape == () and found[3] == 5 and found[0][1] == 2.5 and found[1] == [3]
+
+
+@pytest.mark.parametrize(
+    ("came", "named"),
+    [(None, "nothing (None)"), (np.float32(1), "one array"), (1.5, "one array"), ({}, "something else")],
+)
+def test_what_came_is_named_in_few_words(came, named):
+    assert refused(parts, came, 1).endswith(f"got {named}")
+
+
+def test_a_mark_is_worth_what_is_said_and_needs_nothing_unless_told():
+    assert compare.points(4).mark.args == (4,) and compare.points(4).mark.kwargs == {"needs": ""}
+    assert compare.points(1, needs="other").mark.kwargs == {"needs": "other"}
