@@ -1,0 +1,223 @@
+"""What root asks of the kernel before a submission runs: each call, as the kernel's manual has it, in order.
+
+The kernel here answers and does nothing, so that all of this can be asked on any machine, by anybody.
+"""
+
+import errno
+import json
+import os
+import runpy
+import struct
+import sys
+from ctypes import c_ulong
+
+import pytest
+
+from hdrlab.course.sandbox import descent
+
+CREATE, ADD, RESTRICT = 444, 445, 446  # landlock_create_ruleset, landlock_add_rule, landlock_restrict_self
+RULES = 1000  # a descriptor that there is not
+
+
+class Kernel:
+    """A C library and a module os that write down what is asked of them; `version` is Landlock's."""
+
+    def __init__(self, version=6):
+        self.version, self.asked, self.opened = version, [], {}
+
+    def said(self, *words):
+        self.asked.append(words)
+        return 0
+
+    def syscall(self, number, *words):
+        if number == CREATE and words[0] is None:
+            return self.said("version", *words) or self.version
+        self.said(number, *words)
+        return RULES if number == CREATE else 0
+
+    def __getattr__(self, name):
+        if name in ("prctl", "mount", "unshare", "setgroups", "setresgid", "setresuid", "execve"):
+            return lambda *words: self.said(
+                name, *(word.value if isinstance(word, c_ulong) else word for word in words)
+            )
+        return getattr(os, name)
+
+    def open(self, path, flags):
+        self.said("open", str(path), flags)
+        self.opened[made := os.open(path, flags)] = str(path)
+        return made
+
+    def close(self, descriptor):
+        path = self.opened.pop(descriptor, None)
+        if path is not None:
+            os.close(descriptor)
+        self.said("close", path or descriptor)
+
+    def set_inheritable(self, descriptor, whether):
+        self.said("inherit", self.opened[descriptor], whether)
+
+
+@pytest.fixture
+def kernel(monkeypatch):
+    """A kernel that writes down what descent.py asks, and at whose end no descriptor is left open."""
+    made = Kernel()
+    monkeypatch.setattr(descent, "_libc", made)
+    monkeypatch.setattr(descent, "os", made)
+    yield made
+    for left in made.opened:
+        os.close(left)
+
+
+def test_the_numbers_are_those_of_the_kernels_headers():
+    assert (descent.NEW_MOUNTS, descent.BIND, descent.RECURSIVE) == (0x20000, 0x1000, 0x4000)
+    assert descent.PRIVATE == 0x40000
+    assert (descent.CREATE, descent.ADD, descent.RESTRICT) == (CREATE, ADD, RESTRICT)
+    assert [descent.EXECUTE, descent.WRITE_FILE, descent.READ_FILE, descent.READ_DIR] == [1, 2, 4, 8]
+    assert (descent.DIE_WITH_PARENT, descent.NO_NEW_PRIVILEGES, descent.KILL) == (1, 38, 9)
+
+
+def test_what_the_system_refuses_is_an_error_with_its_number_and_what_was_asked():
+    with pytest.raises(OSError, match="a trick was refused") as raised:
+        descent.check_answer(descent._libc.prctl(-1, 0, 0, 0, 0), "a trick")
+    assert raised.value.errno == errno.EINVAL
+    assert descent.check_answer(0, "nothing") == 0 and descent.check_answer(7, "a descriptor") == 7
+
+
+@pytest.mark.parametrize(("answer", "version"), [(-1, 0), (0, 0), (1, 1), (7, 7)])
+def test_a_kernel_without_landlock_has_version_zero(answer, version, kernel):
+    kernel.version = answer
+    assert descent.landlock() == version
+    assert kernel.asked == [("version", None, 0, 1)]
+
+
+# by Landlock's version: rights over files, ports, scopes, and the bytes of them that it knows
+KNOWN = {
+    1: (0x1FFF, 0, 0, 8),
+    2: (0x3FFF, 0, 0, 8),
+    3: (0x7FFF, 0, 0, 8),
+    4: (0x7FFF, 3, 0, 16),
+    5: (0xFFFF, 3, 0, 16),
+    6: (0xFFFF, 3, 3, 24),
+    7: (0xFFFF, 3, 3, 24),
+}
+
+
+@pytest.mark.parametrize("version", KNOWN)
+def test_a_fence_handles_every_right_that_the_kernels_landlock_knows(version, kernel):
+    kernel.version = version
+    descent.fence([], [], [])
+    *rights, size = KNOWN[version]
+    assert kernel.asked == [
+        ("version", None, 0, 1),
+        (CREATE, struct.pack("=QQQ", *rights), size, 0),
+        ("prctl", 38, 1, 0, 0, 0),
+        (RESTRICT, RULES, 0),
+        ("close", RULES),
+    ]
+
+
+def test_a_fence_lets_files_be_read_folders_be_listed_and_one_file_be_written(kernel, tmp_path):
+    folder, file, listed, written = (tmp_path / name for name in ("folder", "file", "listed", "written"))
+    folder.mkdir()
+    listed.mkdir()
+    file.touch()
+    written.touch()
+    descent.fence([str(folder), str(file)], [str(listed)], [str(written)])
+    rights = {str(folder): 4 + 8 + 1, str(file): 4 + 1, str(listed): 8, str(written): 4 + 2}
+    asked = kernel.asked[2:-3]
+    assert [one[:3] for one in asked if one[0] == "open"] == [("open", path, os.O_PATH) for path in rights]
+    rules = [one for one in asked if one[0] == ADD]
+    assert [one[1:3] + one[4:] for one in rules] == [(RULES, 1, 0)] * 4
+    assert [struct.unpack("=Qi", one[3])[0] for one in rules] == list(rights.values())
+    assert [one[0] for one in asked] == ["open", ADD, "close"] * 4
+    assert [one[1] for one in asked if one[0] == "close"] == list(rights) and not kernel.opened
+
+
+def test_a_rule_is_about_the_place_that_was_opened_for_it(kernel, monkeypatch, tmp_path):
+    places = []
+    monkeypatch.setattr(
+        kernel, "open", lambda path, flags: places.append(Kernel.open(kernel, path, flags)) or places[-1]
+    )
+    descent.fence([], [str(tmp_path)], [])
+    (rule,) = [one for one in kernel.asked if one[0] == ADD]
+    assert struct.unpack("=Qi", rule[3]) == (8, *places)
+
+
+def test_paths_are_bound_on_a_stage_of_this_process_alone(kernel, monkeypatch, tmp_path):
+    stage, folder, file = tmp_path / "stage", tmp_path / "folder", tmp_path / "file"
+    for one in (stage, folder):
+        one.mkdir()
+    file.touch()
+    monkeypatch.setattr(descent, "STAGE", str(stage))
+    descent.stage([str(folder), str(file)])
+    mounts = [one for one in kernel.asked if one[0] in ("unshare", "mount")]
+    none, where = b"", str(stage).encode()
+    assert mounts[:3] == [
+        ("unshare", 0x20000),
+        ("mount", b"none", b"/", none, 0x4000 | 0x40000, none),
+        ("mount", b"tmpfs", where, b"tmpfs", 0, b"size=64k,mode=755"),
+    ]
+    assert [one[2:] for one in mounts[3:]] == [(where + b"/%d" % j, none, 0x5000, none) for j in (0, 1)]
+    assert all(one[1].startswith(b"/proc/self/fd/") for one in mounts[3:])
+    assert (stage / "0").is_dir() and (stage / "1").is_file() and not kernel.opened
+    opened = [one[1] for one in kernel.asked if one[0] == "open"]
+    assert opened == [str(folder), str(file), f"{stage}/1"]
+    begun = [one[0] for one in kernel.asked]
+    assert begun.index("mount") < begun.index("open"), "what is opened before is of the old namespace"
+
+
+def test_nothing_of_root_is_left_to_who_becomes_another_user(kernel):
+    descent.become(60706)
+    assert kernel.asked == [
+        ("setgroups", []),
+        ("setresgid", 60706, 60706, 60706),
+        ("setresuid", 60706, 60706, 60706),
+        ("prctl", 1, 9, 0, 0, 0),
+    ]
+
+
+def order(**more):
+    return json.dumps({"user": 5, "command": ["/bin/a", "b"], "environment": {"C": "d"}, **more})
+
+
+def test_an_order_without_a_stage_and_a_fence_becomes_the_user_and_starts_the_program(kernel):
+    descent.main(order())
+    assert [one[0] for one in kernel.asked] == ["setgroups", "setresgid", "setresuid", "prctl", "execve"]
+    assert kernel.asked[-1] == ("execve", "/bin/a", ["/bin/a", "b"], {"C": "d"})
+
+
+def test_an_order_with_both_is_done_in_the_order_that_root_needs(kernel, monkeypatch):
+    monkeypatch.setattr(descent, "stage", lambda paths: kernel.said("stage", paths))
+    monkeypatch.setattr(descent, "fence", lambda **order: kernel.said("fence", order))
+    fence = {"read": ["r"], "walk": ["w"], "write": []}
+    descent.main(order(stage=["/a"], fence=fence))
+    assert kernel.asked[:3] == [("stage", ["/a"]), ("fence", fence), ("setgroups", [])]
+
+
+def test_homes_that_root_has_opened_stand_in_the_words_by_their_numbers(kernel, tmp_path):
+    names = [str(tmp_path / name) for name in ("a", "b")]
+    for name in names:
+        os.mkdir(name)
+    words = {"command": ["{0}/bin", "{1}:{0}", "{2}"], "environment": {"HOME": "{1}"}}
+    descent.main(order(homes=names, **words))
+    first, second = (f"/proc/self/fd/{number}" for number in kernel.opened)
+    assert kernel.asked[:4] == [
+        *(("open", name, os.O_PATH) for name in names),
+        *(("inherit", name, True) for name in names),
+    ]
+    assert kernel.asked[-1] == (
+        "execve",
+        f"{first}/bin",
+        [f"{first}/bin", f"{second}:{first}", "{2}"],
+        {"HOME": second},
+    )
+
+
+def test_it_is_run_as_a_file_with_its_order_as_the_only_word(monkeypatch):
+    kernel = Kernel()
+    monkeypatch.setattr("ctypes.CDLL", lambda name, use_errno: kernel)
+    for name in ("setgroups", "setresgid", "setresuid", "execve"):
+        monkeypatch.setattr(os, name, getattr(kernel, name))
+    monkeypatch.setattr(sys, "argv", ["descent.py", order(), "more"])
+    runpy.run_path(descent.__file__, run_name="__main__")
+    assert kernel.asked[-1] == ("execve", "/bin/a", ["/bin/a", "b"], {"C": "d"})
