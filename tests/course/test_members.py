@@ -1,0 +1,174 @@
+"""What the members of an archive may be called and how large they may be, to the letter and to the byte."""
+
+import io
+import stat
+import zipfile
+from pathlib import PurePosixPath
+
+import pytest
+
+from hdrlab.course.archives import members
+from hdrlab.course.archives.members import LIMITS, Limits, Member, Refused
+from hdrlab.course.archives.packing import packed
+
+
+def test_the_limits_are_those_of_a_submission_with_photographs():
+    assert LIMITS == (2000, 1024**3, 512 * 1024**2, 12, 200, 200) and members.PIECE == 65536
+    ports = {f"{port}{k}" for port in ("com", "lpt") for k in "123456789"}
+    assert members.DEVICES == {"con", "prn", "aux", "nul"} | ports
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("/a", "'/a' is an absolute name"),
+        ("\\a", r"'\\a' is an absolute name"),
+        ("C:/a", "'C:/a' is an absolute name"),
+        ("c:", "'c:' is an absolute name"),
+        ("a/../b", "'a/../b' leads out of the archive's folder"),
+        ("..", "'..' leads out of the archive's folder"),
+        ("a\\..\\b", r"'a\..\b' leads out of the archive's folder"),
+        ("a\\b", r"'a\b' has a backslash or a control character in its name"),
+        ("a\x01b", "b' has a backslash or a control character in its name"),
+        ("a\u200bb", "has a backslash or a control character in its name"),
+        ("a\udc80b", "has a backslash or a control character in its name"),
+        ("", "'' is empty, too long, or too deep"),
+        (".", "'.' is empty, too long, or too deep"),
+        ("n" * 201, "n\u2026' is empty, too long, or too deep"),
+        ("\u00e9" * 101, "\u00e9\u2026' is empty, too long, or too deep"),
+        ("/".join("abcdefghijklm"), "'a/b/c/d/e/f/g/h/i/j/k/l/m' is empty, too long, or too deep"),
+        ("Con", "'Con' is a device's name on some systems"),
+        ("a/lpt9.tar.gz/b", "'a/lpt9.tar.gz/b' is a device's name on some systems"),
+        ("a./b", "'a./b' is a device's name on some systems"),
+        ("a ", "is a device's name on some systems"),
+        ("ab:c", "'ab:c' is a device's name on some systems"),
+    ],
+)
+def test_a_name_that_no_submission_needs_is_refused_with_the_reason(name, said):
+    with pytest.raises(Refused) as refused:
+        members.check_names([name])
+    found = str(refused.value).replace("\\\\", "\\")
+    assert found.endswith(said.replace("\\\\", "\\")) and found.isprintable() and len(found) < 150
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "a",
+        "..a",
+        "a..b/c",
+        "com0",
+        "com10",
+        "a.con",
+        "console.txt",
+        ".x",
+        "\u00e9" * 100,
+        "n" * 200,
+        "a:"[:1] + "b",
+    ],
+)
+def test_a_name_that_only_looks_like_one_of_them_is_taken(name):
+    assert members.check_names([name]) == [PurePosixPath(name)]
+    deep = "/".join("abcdefghijkl")
+    assert members.check_names([deep, "./x/./y"])[1] == PurePosixPath("x/y")
+
+
+@pytest.mark.parametrize(
+    ("names", "twice"),
+    [
+        (["a", "a"], "'a'"),
+        (["a/b", "a/./b"], "'a/b'"),
+        (["Ab", "aB"], "'aB'"),
+        (["e\u0301", "\u00e9"], "'\u00e9'"),
+        (["stra\u00dfe", "STRASSE"], "'STRASSE'"),
+        (["a", "a/b"], "'a/b'"),
+        (["a/b", "a"], "'a'"),
+        (["a/b/c", "A/B"], "'A/B'"),
+        (["x/a", "X/a/b"], "'X/a/b'"),
+    ],
+)
+def test_two_names_that_are_one_file_on_some_system_are_refused_at_the_second(names, twice):
+    with pytest.raises(Refused, match="is there twice, or differs from another by case") as refused:
+        members.check_names([*names[:1], "between", *names[1:]])
+    assert str(refused.value).startswith(twice)
+
+
+def test_files_may_share_their_folders():
+    names = ["a/b/c", "a/b/d", "a/c", "d", "A/e"]
+    assert members.check_names(names) == [PurePosixPath(name) for name in names]
+
+
+def test_of_a_long_name_sixty_letters_are_shown():
+    assert members.quote_name("n" * 60) == repr("n" * 60)
+    assert len(members.quote_name("n" * 200)) == len(members.quote_name("n" * 61)) == 62
+
+
+def test_the_number_of_members_is_said_from_the_first_that_is_too_many():
+    members.check_count(3, Limits(members=3))
+    with pytest.raises(Refused, match="^it has 4 members, expected at most 3$"):
+        members.check_count(4, Limits(members=3))
+    with pytest.raises(Refused, match="it has 2 members"):
+        members.check_names(["../a", "b"], Limits(members=1))
+
+
+def test_a_ratio_is_said_in_whole_times_also_of_nothing():
+    big = [Member(PurePosixPath("a"), (1 << 20) + 1)]
+    with pytest.raises(Refused, match=r"^it unpacks to 262144 times its size, expected at most 200$"):
+        members.check_sizes(big, 4, LIMITS)
+    with pytest.raises(Refused, match=r"^it unpacks to 1048577 times its size, expected at most 200$"):
+        members.check_sizes(big, 0, LIMITS)
+    members.check_sizes([Member(PurePosixPath("a"), 1 << 20)], 0, LIMITS)
+    with pytest.raises(Refused, match="^'a' claims 8 bytes, expected at most 7$"):
+        members.check_sizes([Member(PurePosixPath("a"), 8)], 8, Limits(one=7))
+    with pytest.raises(Refused, match="^its files claim 14 bytes together, expected at most 13$"):
+        members.check_sizes([Member(PurePosixPath("a"), 7)] * 2, 8, Limits(one=7, total=13))
+
+
+@pytest.mark.parametrize("size", [0, 1, 65535, 65536, 65537, 200_000])
+def test_a_member_of_the_claimed_size_is_written_whole_and_one_byte_more_or_less_is_refused(size, tmp_path):
+    data = bytes(k % 251 for k in range(size))
+    members.write(io.BytesIO(data), tmp_path / "new" / "folder" / "a", size)
+    assert (tmp_path / "new" / "folder" / "a").read_bytes() == data
+    with pytest.raises(Refused, match=f"^'b' is larger than the {size} bytes it claims$"):
+        members.write(io.BytesIO(data + b"x"), tmp_path / "b", size)
+    with pytest.raises(Refused, match=f"^'c' is shorter than the {size + 1} bytes it claims$"):
+        members.write(io.BytesIO(data), tmp_path / "c", size + 1)
+
+
+class Endless(io.RawIOBase):
+    """What never ends, and counts what was read of it."""
+
+    taken = 0
+
+    def read(self, size=-1):
+        self.taken += size
+        return bytes(size)
+
+
+def test_of_what_never_ends_no_more_is_read_than_tells_that_it_is_too_large(tmp_path):
+    source = Endless()
+    with pytest.raises(Refused, match="larger than the 10 bytes"):
+        members.write(source, tmp_path / "a", 10)
+    assert source.taken == 11
+
+
+def test_a_member_takes_no_files_place_follows_no_link_and_cannot_be_run(tmp_path):
+    (tmp_path / "there").write_bytes(b"old")
+    (tmp_path / "link").symlink_to(tmp_path / "planted")
+    for name in ("there", "link"):
+        with pytest.raises(FileExistsError):
+            members.write(io.BytesIO(b"new"), tmp_path / name, 3)
+    assert (tmp_path / "there").read_bytes() == b"old" and not (tmp_path / "planted").exists()
+    members.write(io.BytesIO(b"new"), tmp_path / "a", 3)
+    assert stat.S_IMODE((tmp_path / "a").stat().st_mode) & 0o133 == 0
+
+
+def test_what_is_packed_is_the_same_to_the_byte_in_every_year_and_says_what_can_be_run():
+    files = {"run": b"#!", "b.PNG": b"0" * 99, "a.txt": b"0" * 99}
+    whole = packed(files, ["run"])
+    assert whole == packed(dict(reversed(files.items())), ("run",))
+    with zipfile.ZipFile(io.BytesIO(whole)) as opened:
+        told = [(one.filename, one.external_attr >> 16, one.compress_type) for one in opened.infolist()]
+        assert {one.date_time for one in opened.infolist()} == {(1980, 1, 1, 0, 0, 0)}
+        assert {one.filename: opened.read(one) for one in opened.infolist()} == files
+    assert told == [("a.txt", 0o100644, 8), ("b.PNG", 0o100644, 0), ("run", 0o100755, 8)]

@@ -1,0 +1,153 @@
+"""A tar, byte by byte: what is refused, at which byte it begins, and in which words."""
+
+import bz2
+import gzip
+import lzma
+import os
+import tarfile
+from functools import partial
+
+import pytest
+import unpacking
+from traps import info
+from unpacking import TOLD, refused
+
+from hdrlab.course.archives import tarball
+from hdrlab.course.archives.members import Limits, Refused
+
+
+@pytest.fixture
+def taken(tmp_path):
+    """taken(data) -> what is unpacked of an archive of these bytes."""
+    return partial(unpacking.taken, tmp_path)
+
+
+def header(name="a", kind=b"0", size=0):
+    """The header of a member of a tar, 512 bytes."""
+    made = info(name, kind)
+    made.size = size
+    return made.tobuf(tarfile.USTAR_FORMAT)
+
+
+def block(data):
+    return data + bytes(-len(data) % 512)
+
+
+END = bytes(1024)
+
+
+@pytest.mark.parametrize("size", [0, 1, 511, 512, 513, 1024])
+def test_a_tar_is_read_from_header_to_header_whatever_the_sizes_are(size, taken):
+    data = os.urandom(size)
+    whole = header("a", size=size) + block(data) + header("f/b", size=1) + block(b"x") + END
+    assert taken(whole) == {"a": data, "f/b": b"x"}
+    assert taken(header("folder", b"5") + whole) == {"a": data, "f/b": b"x"}
+
+
+def test_a_tar_of_nothing_is_none(taken):
+    said = "it holds no files, or is no .zip or .tar archive"
+    assert [refused(taken, data) for data in (b"", bytes(511), bytes(512), END)] == [said] * 4
+
+
+def test_a_tar_that_ends_at_its_last_block_is_whole(taken):
+    assert taken(header("a")) == {"a": b""}
+    assert taken(header("a", size=3) + block(b"abc")) == {"a": b"abc"}
+
+
+def test_a_header_without_its_mark_is_told(taken):
+    said = f"{TOLD} (a header without its mark)"
+    assert refused(taken, b"x" * 512) == said
+    damaged = bytearray(header("b"))
+    for at in (257, 261):
+        damaged[at] ^= 1
+        assert refused(taken, header("a") + bytes(damaged) + END) == said
+        damaged[at] ^= 1
+    assert taken(header("a") + bytes(damaged) + END) == {"a": b"", "b": b""}
+
+
+@pytest.mark.parametrize(
+    ("kind", "said"),
+    [
+        (b"2", "'a' is a link, expected plain files"),
+        (b"1", "'a' is a link, expected plain files"),
+        (b"3", "'a' is a device or a sparse file, expected plain files"),
+        (b"6", "'a' is a device or a sparse file, expected plain files"),
+    ],
+)
+def test_what_is_no_plain_file_is_told_by_its_kind(kind, said, taken):
+    assert refused(taken, header("ok") + header("a", kind) + END) == said
+
+
+@pytest.mark.parametrize("kind", [b"x", b"g", b"X", b"L", b"K"])
+def test_a_header_of_a_header_is_of_65536_bytes_at_most(kind, taken):
+    said = "a header of it claims 65537 bytes, expected at most 65536"
+    assert refused(taken, header("a", kind, 65537) + bytes(65536 + 512)) == said
+    assert said not in refused(taken, header("a", kind, 65536) + bytes(65536))
+
+
+def test_a_plain_file_may_be_larger_than_a_header(taken):
+    assert taken(header("a", size=65537) + block(b"x" * 65537)) == {"a": b"x" * 65537}
+
+
+@pytest.mark.parametrize("kind", [b"x", b"g", b"X"])
+def test_a_header_that_changes_a_size_is_refused_wherever_it_says_so(kind, taken):
+    said = "a header of it changes the size of a member"
+    rest = b"11 size=513\n"
+    for before in (b"", b"13 path=abcd\n" * 30):
+        data = before + rest
+        assert refused(taken, header("p", kind, len(data)) + block(data) + header("a")) == said
+    words = b"20 comment=ab size=\n"
+    assert taken(header("p", b"0", len(words)) + block(words)) == {"p": words}
+
+
+def test_a_size_below_zero_is_refused(taken):
+    damaged = bytearray(header("a"))
+    damaged[124:136] = b"\xff" * 12
+    assert refused(taken, bytes(damaged) + END) == "a header of it claims a size below zero"
+
+
+def test_headers_that_speak_of_others_are_no_members(taken):
+    path = b"13 path=abcd\n"
+    assert len(path) == 13
+    named = header("p", b"x", 13) + block(path) + header("a", size=1) + block(b"1")
+    assert taken(named + END, members=1) == {"abcd": b"1"}
+    long = header("././@LongLink", b"L", 5) + block(b"long\0") + header("a", size=1) + block(b"1")
+    assert taken(long + END, members=1) == {"long": b"1"}
+    assert refused(taken, named + long, members=1) == "it has 2 members, expected at most 1"
+    alone = "it holds no files, or is no .zip or .tar archive"
+    assert refused(taken, header("p", b"x", 13) + block(path)) == alone
+
+
+def test_folders_are_members_too(taken):
+    folders = b"".join(header(name, b"5") for name in "bcd")
+    assert refused(taken, folders + header("a"), members=3) == "it has 4 members, expected at most 3"
+
+
+# a tar may unpack to what the limits allow, and of each member a header and the rest of a block, and a record
+@pytest.mark.parametrize("more", [0, 512])
+def test_a_plain_tar_may_be_as_large_as_its_limits_with_headers_and_no_larger(more, tmp_path):
+    limits = Limits(members=3, total=70_000, ratio=1)
+    most = 70_000 + 3 * 1024 + 10240
+    archive, fresh = tmp_path / "a", tmp_path / "fresh"
+    fresh.mkdir()
+    archive.write_bytes(header("a") + bytes(most - 512) + bytes(more))
+    if more:
+        with pytest.raises(Refused, match=f"^it unpacks to more than {most} bytes, or 1 times its size$"):
+            tarball.unpack(archive, fresh, limits)
+    else:
+        assert len(tarball.unpack(archive, fresh, limits)) == 1
+
+
+@pytest.mark.parametrize("packing", [gzip, bz2, lzma])
+def test_a_packed_tar_may_unpack_to_a_megabyte_whatever_its_ratio_and_else_to_its_ratio(packing, taken):
+    most, data = 1 << 20, os.urandom(6000)
+    whole = header("a", size=6000) + data + bytes(most - 6512)
+    assert taken(packing.compress(whole), ratio=1) == {"a": data}
+    larger = packing.compress(whole + b"\0")
+    said = "it unpacks to more than {} bytes, or {} times its size".format
+    assert refused(taken, larger, ratio=1) == said(most, 1)
+    enough = most // len(larger) + 1
+    assert taken(larger, ratio=enough) == {"a": data}
+    assert refused(taken, larger, ratio=enough - 1) == said(most, enough - 1)
+    assert refused(taken, larger, ratio=enough, total=6000, members=1).startswith("it has")
+    assert refused(taken, larger, ratio=enough, total=8000, members=1) == said(8000 + 1024 + 10240, enough)

@@ -1,0 +1,135 @@
+"""A zip, byte by byte: what is refused, at which byte it begins, and in which words."""
+
+import errno
+import io
+import struct
+import zipfile
+from functools import partial
+from pathlib import PurePosixPath
+
+import pytest
+import unpacking
+from traps import entry, zipped
+from unpacking import TOLD, refused
+
+from hdrlab.course.archives import tarball
+
+
+@pytest.fixture
+def taken(tmp_path):
+    """taken(data) -> what is unpacked of an archive of these bytes."""
+    return partial(unpacking.taken, tmp_path)
+
+
+def archive(*files, **knobs):
+    made = io.BytesIO()
+    zipped(made, files, **knobs)
+    return made.getvalue()
+
+
+def test_an_archive_of_as_many_bytes_as_are_allowed_is_opened(taken):
+    whole = archive(("a", b"x"))
+    assert taken(whole, total=len(whole)) == {"a": b"x"}
+    said = f"it has {len(whole)} bytes, expected at most {len(whole) - 1}"
+    assert refused(taken, whole, total=len(whole) - 1) == said
+
+
+@pytest.mark.parametrize(
+    ("mode", "said"),
+    [
+        (0o100644, ""),
+        (0, ""),
+        (0o120777, "'a' is a link, expected plain files"),
+        (0o020666, "'a' is a device, expected plain files"),
+        (0o010666, "'a' is a device, expected plain files"),
+        (0o140666, "'a' is a device, expected plain files"),
+    ],
+)
+def test_an_entry_is_told_by_its_kind_of_file(mode, said, taken):
+    whole = archive((entry("a", mode), b"x"), ("b", b"y"))
+    if said:
+        assert refused(taken, whole) == said
+    else:
+        assert taken(whole) == {"a": b"x", "b": b"y"}
+
+
+def test_other_flags_than_that_of_encryption_are_none(taken):
+    whole = bytearray(archive(("a", b"x")))
+    at = whole.rfind(b"PK\1\2") + 8
+    whole[6] |= 2
+    whole[at] |= 2
+    assert taken(bytes(whole)) == {"a": b"x"}
+    whole[at] |= 1
+    assert refused(taken, bytes(whole)) == "'a' is encrypted"
+
+
+def test_a_name_with_a_zero_in_it_is_refused_though_the_reader_would_cut_it(taken):
+    whole = archive(("abc", b"x")).replace(b"abc", b"a\0c")
+    assert refused(taken, whole) == "'ac' has a control character in its name"
+
+
+def test_members_beside_each_other_share_nothing_and_one_byte_nearer_they_do(taken):
+    whole = bytearray(archive(("a", b"xy"), ("b", b"z"), ("f/", b"")))
+    assert taken(bytes(whole)) == {"a": b"xy", "b": b"z"}
+    at = whole.find(b"PK\1\2") + 20
+    for more, shares in ((1, False), (2, True)):  # a header has 30 bytes, and a name of one byte
+        packed = whole[:]
+        packed[at : at + 4] = struct.pack("<L", struct.unpack_from("<L", whole, at)[0] + more)
+        if shares:
+            assert refused(taken, bytes(packed)) == "'a' shares its bytes with another member"
+        else:
+            assert taken(bytes(packed)) == {"a": b"xy", "b": b"z"}
+
+
+def test_a_list_that_is_cut_short_is_told_at_each_byte(taken):
+    whole = archive(("a", b"x"))
+    said = "it is cut short: its list of members is missing"
+    for cut in (1, 21, 22, 23):
+        assert refused(taken, whole[:-cut]) == said
+    assert refused(taken, b"PK\5\6") == said
+    assert refused(taken, b"PK\5\6" + bytes(18)).startswith(TOLD)
+
+
+def test_the_list_is_found_before_a_comment_of_any_length(taken):
+    made = io.BytesIO()
+    with zipfile.ZipFile(made, "w") as opened:
+        opened.writestr("a", b"x")
+        opened.comment = b"c" * 65535
+    assert taken(made.getvalue()) == {"a": b"x"}
+
+
+def test_a_zip_of_the_large_form_is_refused_by_the_mark_before_its_list(taken):
+    whole = archive(("a", b"x"))
+    at = whole.rfind(b"PK\5\6")
+    said = "it is a zip for more than 4 GB or 65535 members"
+    assert refused(taken, whole[:at] + b"PK\6\7" + bytes(16) + whole[at:]) == said
+    assert said not in refused(taken, whole[:at] + b"PK\6\7" + bytes(17) + whole[at:])
+
+
+def test_a_list_may_claim_as_many_members_and_bytes_as_are_allowed(taken):
+    whole = bytearray(archive(("a", b"x")))
+    at = whole.rfind(b"PK\5\6")
+    for count, size, said in (
+        (4, 5, "it has 4 members, expected at most 3"),
+        (1, 3073, "its list of members takes 3073 bytes, expected at most 3072"),
+        (3, 3072, TOLD),
+    ):
+        struct.pack_into("<HL", whole, at + 10, count, size)
+        assert refused(taken, bytes(whole), members=3).startswith(said)
+
+
+def test_what_else_a_reader_cannot_do_with_it_is_told_in_eighty_characters(taken, monkeypatch):
+    for error, why in ((ValueError("n" * 200), "n" * 79 + "\u2026"), (EOFError(), "EOFError")):
+        monkeypatch.setattr(tarball, "unpack", lambda *given, error=error: (_ for _ in ()).throw(error))
+        assert refused(taken, b"x") == f"{TOLD} ({why})"
+    place = OSError(errno.EINVAL, "a place before the beginning")
+    monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(place))
+    assert refused(taken, b"x").startswith(TOLD)
+    full = OSError(errno.ENOSPC, "no room")
+    monkeypatch.setattr(tarball, "unpack", lambda *given: (_ for _ in ()).throw(full))
+    with pytest.raises(OSError, match="no room"):
+        taken(b"x")
+
+
+def test_paths_are_those_of_the_archive(taken):
+    assert set(taken(archive(("f/g/a", b"x")))) == {str(PurePosixPath("f", "g", "a"))}
