@@ -84,6 +84,7 @@ def test_a_name_that_only_looks_like_one_of_them_is_taken(name):
         (["a", "a/b"], "'a/b'"),
         (["a/b", "a"], "'a'"),
         (["a/b/c", "A/B"], "'A/B'"),
+        (["a/b/c", "a"], "'a'"),
         (["x/a", "X/a/b"], "'X/a/b'"),
     ],
 )

@@ -1,0 +1,170 @@
+"""The subject of a check: what is asked, what is remembered of it, and which answers are none."""
+
+import math
+import socket
+from functools import partial
+
+import answering
+import numpy as np
+import pytest
+from answering import right, silence
+
+from hdrlab.course.checks import subject as module
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
+    return partial(answering.opened, monkeypatch)
+
+
+def test_what_a_submission_may_take_is_what_the_page_for_instructors_says():
+    assert (module.TIMEOUT, module.OUTPUT, module.REMEMBERED, module.KILLED) == (10, 65536, 8 << 20, 9)
+    assert (module.CHECK, module.WHOLE, module.PROCESSOR, module.SETTLE) == (3, 20, 4, 1)
+
+
+@pytest.mark.parametrize("timeout", [2.0, 10.0])
+def test_a_sandbox_is_given_the_processors_time_of_a_check_and_of_all(timeout, opened):
+    subject, process = opened(timeout=timeout)
+    assert subject.left == 20 * timeout
+    with subject:
+        assert process.begun == ("a sandbox", ["numpy"], (3 * timeout, 4 * timeout))
+        process.left = 0.5
+        assert subject.left == 0.5
+    assert process.closed and subject.left == 20 * timeout
+    with pytest.raises(RuntimeError, match="with statement"):
+        subject.f()
+
+
+def test_a_call_is_sent_with_its_source_and_remembered_with_its_answer(opened):
+    subject, process = opened(right(np.arange(3)), right((1, [2])), (0, ("refused", ("", "a set"))))
+    with subject:
+        assert subject.f(1, k=2).tolist() == [0, 1, 2]
+        assert subject.f() == (1, [2]) and len(process.links) == 1
+        silence(subject)
+        order = {"task": "f", "source": "def f(): return 1", "args": (1,), "kwargs": {"k": 2}}
+        assert process.asked[0] == ("call", order, 60)
+        first, second, third = subject.calls
+        assert first[:3] == ("f", (1,), {"k": 2}) and first.answer.tolist() == [0, 1, 2]
+        assert second.answer == (1, [2]) and third == ("f", (), {}, None)
+        subject.fresh(f="def f(): return 2", g="g")
+        assert subject.calls == [] and process.links[0].closed
+        process.answers.append(right(4))
+        subject.g()
+        assert process.asked[-1][1]["source"] == "g" and len(process.links) == 2
+    assert process.links[1].closed
+
+
+def test_only_the_tasks_that_were_handed_in_are_there(opened):
+    subject, _ = opened()
+    assert subject.f.__name__ == "f"
+    subject._sources["_g"] = ""
+    for name in ("g", "_g"):
+        with pytest.raises(AttributeError, match=f"the submission has no task {name}"):
+            getattr(subject, name)
+
+
+def test_answers_are_kept_as_long_as_they_fit_together(opened, monkeypatch):
+    monkeypatch.setattr(module, "REMEMBERED", 100)
+    sizes = [40, 61, 60, 1, 0]
+    subject, _ = opened(
+        *(right(np.zeros(size, np.uint8)) for size in sizes), right((np.zeros(60, np.uint8), "a"))
+    )
+    with subject:
+        for _ in sizes:
+            subject.f()
+        assert [None if one.answer is None else one.answer.size for one in subject.calls] == [
+            40,
+            None,
+            60,
+            None,
+            0,
+        ]
+        subject.fresh()
+        subject.f()
+        assert subject.calls[0].answer is not None
+
+
+def test_what_is_printed_is_kept_up_to_its_first_characters(opened, monkeypatch):
+    monkeypatch.setattr(module, "OUTPUT", 10)
+    subject, _ = opened(right(1, "abcd"), right(1, "efgh\x07"), right(1, "ijkl"), right(1, "mn"))
+    with subject:
+        said = []
+        for _ in range(4):
+            subject.f()
+            said.append(subject.said)
+        assert said == ["abcd", "abcdefgh", "abcdefghij", "abcdefghij"]
+        subject.fresh()
+        assert subject.said == ""
+
+
+@pytest.mark.parametrize(
+    ("answer", "why"),
+    [
+        (("answer", ("", 1), 61), "an answer to what was not asked"),
+        (("answer", 1), "an answer without its output"),
+        (("answer", ("", 1, 2)), "an answer without its output"),
+        (("answer", ["", 1]), "an answer without its output"),
+        (("answer", (1, "")), "an answer without its output"),
+        (("refused", ("", 1)), "an answer of no kind"),
+        (("raised", ("", "a")), "an answer of no kind"),
+        (("of no kind", ("", "a")), "an answer of no kind"),
+        (("raised", ("", {"error": "E", "message": "", "text": "", "line": "1"})), "an answer of no kind"),
+        (("raised", ("", {"error": "E", "message": "", "text": "", "line": 1, "more": 1})), "of no kind"),
+        (("refused", ("", {"error": "E", "message": "", "text": "", "line": 1})), "an answer of no kind"),
+    ],
+)
+def test_an_answer_of_another_form_is_none(answer, why, opened):
+    subject, _ = opened((0, answer))
+    with subject:
+        kind, said = silence(subject)
+        assert kind == "damaged" and said.startswith("f sent what is no answer: ") and said.endswith(why)
+
+
+def test_what_came_before_it_was_asked_for_is_no_answer(opened):
+    for spoken, said in ((b"x", "f sent what is no answer: something before it was asked"), (b"", None)):
+        subject, process = opened(right(7))
+        process.spoken = spoken
+        with subject:
+            if said:
+                assert silence(subject) == ("damaged", said) and not process.asked
+            else:
+                assert subject.f() == 7
+
+
+def test_a_real_link_has_spoken_when_something_lies_on_it():
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        assert module._has_spoken(ours) is False
+        theirs.sendall(b"xy")
+        assert module._has_spoken(ours) is True and ours.recv(9) == b"y"
+
+
+@pytest.mark.parametrize(
+    ("told", "said"),
+    [
+        (
+            {"error": "ValueError", "message": "no", "text": "x = 1", "line": 3},
+            "ValueError: no (line 3: x = 1)",
+        ),
+        ({"error": "ValueError", "message": "", "text": "", "line": None}, "ValueError"),
+        ({"error": "E", "message": "a\x07b", "text": "", "line": 0}, "E: ab (line 0: )"),
+        ({"error": "E", "message": "n" * 2001, "text": "", "line": None}, f"E: {'n' * 2000}"),
+        ({"error": "E", "message": "m", "text": "", "line": None}, "E: m"),
+    ],
+)
+def test_what_was_raised_is_told_with_its_line(told, said, opened):
+    subject, _ = opened((0, ("raised", ("", told))))
+    with subject:
+        assert silence(subject) == ("raised", f"f raised {said}")
+
+
+def test_what_does_not_travel_is_told_by_what_it_is(opened):
+    subject, _ = opened((0, ("refused", ("", "a set" + "n" * 400))))
+    with subject:
+        said = "f answered with something that is no array: it contains a set" + "n" * 295
+        assert silence(subject) == ("refused", said) and subject.calls[0].answer is None
+
+
+def test_without_a_sandbox_the_time_has_no_bound_but_its_own(opened):
+    assert min(opened(timeout=math.inf)[0].left, 1) == 1

@@ -1,0 +1,89 @@
+"""The subject of a check, to the second: what its calls may take, and how a silence is explained."""
+
+from functools import partial
+
+import answering
+import pytest
+from answering import right, silence
+
+from hdrlab.course.sandbox.inside import channel
+
+KILL = 9
+
+
+@pytest.fixture
+def opened(monkeypatch):
+    """opened(answers...) -> a Subject with one task, f, and the Process behind it."""
+    return partial(answering.opened, monkeypatch)
+
+
+def test_a_call_may_take_what_is_left_of_its_own_of_its_checks_and_of_the_submissions_seconds(opened):
+    subject, process = opened(*[right(1, seconds=9.0)] * 3, right(1, seconds=3.0))
+    with subject:
+        for left in (191, 182, 173, 170):
+            subject.f()
+            assert subject.left == left
+        assert process.until == [(10, 10), (10, 10), (10, 10), (3, 3)]
+        assert silence(subject) == ("late", "f: the 30 s for one check are used up")
+        subject.fresh()
+        process.answers += [right(1, seconds=1.0), (10.5, TimeoutError())]
+        subject.f()
+        assert silence(subject) == ("late", "f took longer than 10 s") and subject.left == 158.5
+
+
+def test_a_submission_that_has_used_its_seconds_is_told_so_in_each_check(opened):
+    subject, process = opened(*[right(1, seconds=30.0)] * 6, right(1, seconds=15.0), right(1, seconds=5.0))
+    with subject:
+        for _ in range(8):
+            subject.f()
+            subject.fresh()
+        assert process.until[-2:] == [(10, 10), (5, 5)] and subject.left == 0
+        assert silence(subject) == ("late", "f: the 200 s for a whole submission are used up")
+        assert len(process.asked) == 8
+
+
+@pytest.mark.parametrize(("left", "answered"), [(0.001, True), (0.0, False), (-1.0, False)])
+def test_a_submission_has_four_calls_time_of_a_processor(left, answered, opened):
+    subject, process = opened(right(1), (1, TimeoutError()))
+    with subject:
+        process.left = left
+        if answered:
+            subject.f()
+            process.left = 0.0001
+            assert silence(subject) == ("late", "f took longer than 10 s")
+        else:
+            said = "f: the 40 s of a processor for a whole submission are used up"
+            assert silence(subject) == ("late", said) and not process.asked
+
+
+@pytest.mark.parametrize(
+    ("error", "ended", "used", "forks", "kind", "said"),
+    [
+        (EOFError(), KILL, 1.5, True, "late", "f took longer than 2 s of a processor"),
+        (EOFError(), KILL, 1.499, True, "killed", "f ended its process, and gave no answer"),
+        (EOFError(), KILL, 9.0, False, "killed", "f ended its process, and gave no answer"),
+        (OSError(), 11, 9.0, True, "died", "f ended its process, and gave no answer"),
+        (OSError(), 0, 0.0, True, "died", "f ended its process, and gave no answer"),
+        (channel.Damaged("half"), KILL, 2.0, True, "late", "f took longer than 2 s of a processor"),
+        (channel.Damaged("half"), KILL, 1.0, True, "killed", "f sent what is no answer: half"),
+        (channel.Damaged("half"), 0, 9.0, True, "damaged", "f sent what is no answer: half"),
+    ],
+)
+def test_who_gave_no_answer_is_told_by_how_the_process_ended(error, ended, used, forks, kind, said, opened):
+    subject, process = opened((4.0, error), right(1), ended=ended, used=used, forks=forks)
+    with subject:
+        assert silence(subject) == (kind, said)
+        assert process.links[0].closed and process.cleared == [1.0] and subject.left == 196
+        subject.f()
+        assert len(process.links) == 2
+
+
+def test_where_the_supervisor_is_gone_too_the_process_was_killed(opened):
+    subject, process = opened((0, EOFError()))
+
+    def gone(seconds):
+        raise OSError
+
+    process.clear = gone
+    with subject:
+        assert silence(subject)[0] == "killed"
