@@ -1,0 +1,217 @@
+"""How near an answer must be to a known mistake's, in numbers, and where a mistake's function comes from."""
+
+import warnings
+
+import numpy as np
+import pytest
+
+from hdrlab.course import plan
+from hdrlab.course.checks import MISTAKES, misconceptions
+from hdrlab.course.checks.misconceptions import MOST, Misconception, closest, difference, in_gauge
+
+NAN, INF = np.nan, np.inf
+
+
+def test_what_counts_as_the_same_is_a_thousandth_and_a_mistake_explains_nine_tenths():
+    assert (misconceptions.ROUNDING, misconceptions.NEARER, MOST) == (1e-3, 0.1, 1e3)
+    assert Misconception("a", "b", "c", len).once is True
+
+
+@pytest.mark.parametrize(
+    ("a", "b", "apart"),
+    [
+        (3, 3, 0),
+        (3, 2, 0.5),
+        (-2, 2, 2),
+        ([1, 2, 2], (1, 2, 2), 0),
+        (np.array([3, 4]), np.array([0, 0]), MOST),
+        (np.zeros(2), np.zeros(2), 0),
+        (np.array([4.0, 4.0]), np.array([3.0, 5.0]), (2 / 34) ** 0.5),
+        (np.array([0.0, 5.0]), np.array([3.0, 1.0]), (25 / 10) ** 0.5),
+        (np.full(2, 1e-9), np.full(2, 1e-13), MOST),
+        (np.full(2, 500.0), np.ones(2), 499),
+        (np.full(2, 3000.0), np.ones(2), MOST),
+        (np.array([NAN, 2.0]), np.array([NAN, 1.0]), 1),
+        (np.array([INF, 2.0]), np.array([NAN, 1.0]), 1),
+        (np.array([1.0, NAN]), np.array([NAN, 1.0]), MOST),
+        (np.array([NAN]), np.array([NAN]), 0),
+        (np.array([]), np.array([]), 0),
+        (np.ones((1, 2)), np.ones((2, 1)), 0),
+        (np.ones(2), np.ones(3), MOST),
+        (np.ones(2), np.array(["a", "b"]), MOST),
+        (np.array(["a", "b"]), np.ones(2), MOST),
+        (np.array([True, False]), np.array([1, 0]), 0),
+        (None, None, 0),
+        (None, 1, MOST),
+        (1, None, MOST),
+        ("a", "a", 0),
+        ("a", "b", MOST),
+        (b"a", b"a", 0),
+        (b"a", "a", MOST),
+        (1, "a", MOST),
+        ({}, 1, MOST),
+        ([1, [2]], np.ones(2), MOST),
+        ([], np.ones(2), MOST),
+        ([1, 3], np.array([1, 1]), 2**0.5),
+        ((1, 3), np.array([1, 1]), 2**0.5),
+        ((), (), 0),
+        ((1, 2), (1,), MOST),
+        (1, (1,), MOST),
+        ("ab", ("a", "b"), MOST),
+        ((1, 3), (1, 2), 0.5),
+        ([4, 3], [2, 2], 1),
+    ],
+)
+def test_the_difference_of_two_answers_is_that_of_its_worst_part_as_a_share_of_what_is_expected(a, b, apart):
+    assert difference(a, b) == pytest.approx(apart, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("task", "answer", "gauged"),
+    [
+        ("hat", np.array([1.0, 4.0, 2.0]), [0.25, 1, 0.5]),
+        ("hat", [1, 4, 2], [0.25, 1, 0.5]),
+        ("gsolve", (np.array([1.0, 2.0, 4.0]), np.array([9.0])), ([-1, 0, 2], [7])),
+        ("gsolve", (np.array([1.0, 2.0, 4.0, 8.0, 16.0]), np.array([9.0])), ([-3, -2, 0, 4, 12], [5])),
+        ("recover", np.arange(256.0) ** 2, (np.arange(256.0) ** 2 - 128**2).tolist()),
+        ("recover", list(range(256)), list(range(-128, 128))),
+        ("recover_steps", [(np.arange(256.0), 7)], [(np.arange(256) / 128).tolist()]),
+        ("recover_steps", [[np.arange(256.0), 7]], [(np.arange(256) / 128).tolist()]),
+        ("recover_steps", [np.arange(256.0)], [(np.arange(256) / 128).tolist()]),
+        ("solve", np.array([1.0, 2.0, 6.0]), [-2, -1, 3]),
+        ("solve", (1, 2, 6), [-2, -1, 3]),
+        ("merge", np.array([1.0, 2.0]), [1, 2]),
+    ],
+)
+def test_an_answer_is_compared_in_the_gauge_or_scale_that_its_checks_leave_free(task, answer, gauged):
+    parts = type(gauged)(map(np.array, gauged)) if task in ("gsolve", "recover_steps") else np.array(gauged)
+    assert difference(in_gauge(task, answer), parts) < 1e-12
+
+
+@pytest.mark.parametrize("answer", ["no", None, 7, {"a": 1}])
+def test_an_answer_of_another_form_stays_as_it_is(answer):
+    for task in ("gsolve", "recover_steps"):
+        assert in_gauge(task, answer) is answer or in_gauge(task, answer) == answer
+    assert in_gauge("merge", answer) is answer
+
+
+# Which mistake it is
+
+TASK = plan.Task("merge", "radiance.debevec.merge", 1)
+
+
+@pytest.fixture
+def named(monkeypatch):
+    """named({name: answer}, came, right) -> the name of the mistake that an answer shows; right is 1."""
+
+    def named(answers, *came, right=1.0):
+        mistakes = [Misconception(name, "merge", "", lambda k, one=one: one) for name, one in answers.items()]
+        monkeypatch.setattr(misconceptions, "of_task", lambda task: mistakes)
+        monkeypatch.setattr(plan, "function", lambda task: lambda k: right)
+        found = closest(TASK, [((k,), {}, one) for k, one in enumerate(came)])
+        return found and found.name
+
+    return named
+
+
+@pytest.mark.parametrize(
+    ("came", "name"),
+    [
+        (1.001, None),
+        (1.0011, "near"),
+        (1.0015, "near"),
+        (1.01, None),
+        (None, None),
+    ],
+)
+def test_an_answer_is_no_mistake_within_a_thousandth_of_the_librarys(came, name, named):
+    assert named({"near": 1.0015, "far": 5.0}, came) == name
+
+
+@pytest.mark.parametrize(
+    ("came", "name"),
+    [(2.0, "two"), (2.0 * 1.0999, "two"), (2.0 * 1.1001, None), (1.5 * 0.9, None), (1.95, "two")],
+)
+def test_a_mistake_must_explain_all_but_a_tenth_of_the_difference_to_the_library(came, name, named):
+    assert named({"two": 2.0}, came) == name
+
+
+def test_where_the_difference_to_the_library_is_small_a_tenth_of_it_is_asked(named):
+    assert named({"some": 1.1}, 1.11) == "some"  # 0.0091 of 1.1, of 0.11
+    assert named({"some": 1.1}, 1.115) is None
+
+
+def test_each_call_must_agree_and_the_nearest_in_all_is_named(named):
+    assert named({"a": 2.0, "b": 2.1}, 2.0, 2.0) == "a"
+    assert named({"b": 2.1, "a": 2.0}, 2.0, 2.02) == "a"
+    assert named({"a": 2.0, "b": 2.1}, 2.1, 2.09) == "b"
+    assert named({"a": 2.0}, 2.0, 3.0) is None
+    assert named({"a": 2.0}, 2.0, 1.0) is None
+    assert named({"a": 2.0}, None, None) is None and named({"a": 2.0}) is None
+    assert named({"a": 2.0}, 2.0, None) is None
+    assert named({}, 2.0) is None
+
+
+def test_a_wrong_function_may_warn_and_may_fail_and_then_has_no_answer():
+    def warns(k):
+        warnings.warn("of a kind", UserWarning, stacklevel=1)
+        return np.log(np.zeros(1)) * 0 + k
+
+    def fails(k):
+        raise ZeroDivisionError
+
+    assert np.isnan(misconceptions.call_quietly(warns, (1,), {})).all()
+    assert misconceptions.call_quietly(warns, (), {"k": 2.0}).shape == (1,)
+    assert misconceptions.call_quietly(fails, (1,), {}) is None
+
+
+# Where they stand
+
+
+def test_the_mistakes_of_a_task_are_its_own_and_those_in_method_miss_what_it_is_about(tmp_path):
+    (tmp_path / "mistakes" / "method").mkdir(parents=True)
+    for place, value in (("vignette_b.py", 2), ("method/vignette_a.py", 1), ("other_a.py", 0)):
+        text = f'"""Mistake\n\nnumber {value}."""\ndef vignette():\n    return {value}\n'
+        (tmp_path / "mistakes" / place).write_text(text, encoding="utf8")
+    found = misconceptions.of_task(plan.Task("vignette", f"{tmp_path / 'vignette.py'}:vignette", 1))
+    told = [(one.name, one.task, one.sentence, one.function(), one.once) for one in found]
+    assert told == [
+        ("vignette_a", "vignette", "Mistake number 1.", 1, False),
+        ("vignette_b", "vignette", "Mistake number 2.", 2, True),
+    ]
+
+
+def test_of_the_librarys_tasks_each_has_the_changes_that_begin_with_its_name():
+    for task in plan.read().homeworks["hw2"].tasks:
+        names = [one.name for one in misconceptions.of_task(task)]
+        expected = [one for one in misconceptions.CHANGES if misconceptions.task_of(one) == task.id]
+        assert names == sorted(expected) and names
+    once = {one.name: one.once for one in misconceptions.known()}
+    assert once == {name: "misses" not in one for name, one in sorted(misconceptions.CHANGES.items())}
+    assert (MISTAKES / "changes.toml").is_file() and set(once.values()) == {True, False}
+
+
+def test_a_change_must_stand_once_in_the_solution(monkeypatch):
+    change = {"says": "", "changes": [["old", "new"], ["more", "less"]]}
+    monkeypatch.setitem(misconceptions.CHANGES, "merge_x", change)
+    cells = {"hat": "old", "merge": "old and more"}
+    assert misconceptions.put_in(cells, "merge_x") == {"hat": "old", "merge": "new and less"}
+    assert cells["merge"] == "old and more"
+    for text in ("more", "old old more"):
+        with pytest.raises(ValueError, match="expected once in the solution of merge, for merge_x: old"):
+            misconceptions.put_in({"merge": text}, "merge_x")
+
+
+def test_a_changed_solution_is_run_among_those_of_its_homework():
+    hat = [one for one in misconceptions.known() if one.task == "hat"]
+    right = plan.function(plan.read().task("hat"))()
+    assert hat and all(np.shape(one.function()) == right.shape for one in hat)
+
+
+def test_a_mistake_in_a_variant_is_a_change_of_that_variants_solution():
+    task = plan.read().task("exclusion")._replace(variant="compared/above/six")
+    image = np.uint8([[100, 113, 114, 120, 126, 127, 200]])
+    (strange, *_), given = misconceptions.of_task(task), (image, 120)
+    assert strange.function(*given).shape == image.shape
+    others = [one.function(*given) for one in misconceptions.of_task(task)]
+    assert any(not np.array_equal(one, plan.function(task)(*given)) for one in others)
