@@ -1,0 +1,193 @@
+"""A plan of one's own, value by value: what is taken, where its bounds are, and what a plan leaves out."""
+
+import stat
+
+import pytest
+
+from hdrlab.course import grading, plan
+from hdrlab.course.plan import ByHand, Conditions, Homework, Late, Task
+from hdrlab.response.debevec import gsolve
+
+TASK = 'id = "gsolve", function = "response.debevec.gsolve"'
+
+
+@pytest.fixture
+def read(tmp_path):
+    """read(...) -> the plan of a homework with these lines, tasks and whatever stands before it."""
+
+    def read(lines="", tasks=f"{{ {TASK}, points = 7.5 }}", before="", due="2026-10-01T12:00:00Z"):
+        text = f'{before}\n[hw9]\ntitle = "Curves"\ndue = {due}\n{lines}\ntasks = [{tasks}]\n'
+        (tmp_path / "plan.toml").write_text(text, encoding="utf8")
+        return plan.read(tmp_path / "plan.toml")
+
+    return read
+
+
+def test_what_is_not_said_is_nothing_and_the_strict_tier():
+    assert Task("a", "b.a", 1.0) == ("a", "b.a", 1.0, False, (), "")
+    assert Late() == (0, 0.0) and ByHand("a", 1.0) == ("a", 1.0, ())
+    assert Conditions() == ("strict", "", "", None, 10.0, True)
+
+
+def test_a_task_has_the_name_of_its_function_and_a_file_where_it_is_ones_own(tmp_path):
+    library, own = Task("a", "response.debevec.gsolve", 1), Task("a", f"{tmp_path}/v.1.py:vignette", 1)
+    assert (library.name, library.own) == ("gsolve", None)
+    assert (own.name, own.own) == ("vignette", tmp_path / "v.1.py")
+    assert Task("a", "plain", 1).name == "plain"
+
+
+@pytest.mark.parametrize(("at_most", "points"), [(None, 12), (20.0, 12), (12.0, 12), (7.0, 7)])
+def test_a_homework_is_worth_its_tasks_or_what_counts_at_most(at_most, points):
+    tasks = (Task("a", "b.a", 5.0), Task("c", "b.c", 7.0))
+    assert Homework("hw", "", None, tasks, (ByHand("x", 3.0),), at_most).points == points
+
+
+def test_a_solution_is_the_librarys_a_variants_or_ones_own(tmp_path):
+    assert plan.function(Task("gsolve", "response.debevec.gsolve", 1)) is gsolve
+    (tmp_path / "v.py").write_text("def vignette():\n    return 7\n", encoding="utf8")
+    assert plan.function(Task("v", f"{tmp_path}/v.py:vignette", 1))() == 7
+    task = Task("exclusion", "align.mtb.exclusion", 1, variant="compared/above/six")
+    assert plan.function(task).__module__ == "exclusion"
+
+
+def test_a_task_says_what_everybody_is_to_write_and_its_parameters(read):
+    found = read(tasks=f"{{ {TASK}, points = 2, minimum = true }}").homeworks["hw9"]
+    assert found.tasks == (Task("gsolve", "response.debevec.gsolve", 2.0, True),)
+    assert not read(tasks=f"{{ {TASK}, points = 2, minimum = 1 }}").homeworks["hw9"].tasks[0].minimum
+    shift = 'id = "shift", function = "align.mtb.shift", points = 1'
+    names = list(plan.rewording.parameters("shift"))
+    for some in ([], names[:1], names):
+        task = read(tasks=f"{{ {shift}, parameters = {some} }}").homeworks["hw9"].tasks[0]
+        assert task.parameters == tuple(some)
+    with pytest.raises(ValueError, match=rf"expected parameters of shift out of {', '.join(names)}, got"):
+        read(tasks=f"{{ {shift}, parameters = ['other'] }}")
+    with pytest.raises(ValueError, match="expected parameters of gsolve out of none"):
+        read(tasks=f"{{ {TASK}, points = 1, parameters = ['other'] }}")
+
+
+@pytest.mark.parametrize(
+    ("function", "taken"),
+    [
+        ("v.py:vignette", True),
+        ("v.py:", False),
+        ("v.txt:vignette", False),
+        ("folder/v.py:vignette", False),
+        ("../v.py:vignette", False),
+    ],
+)
+def test_a_function_of_ones_own_is_in_a_file_beside_the_plan(function, taken, read, tmp_path):
+    tasks = f'{{ id = "shift", function = "{function}", points = 1 }}'
+    if taken:
+        assert read(tasks=tasks).homeworks["hw9"].tasks[0].own == tmp_path / "v.py"
+        with pytest.raises(ValueError, match="out of none"):
+            read(tasks=tasks.replace("points", "parameters = ['cut'], points"))
+    else:
+        with pytest.raises(
+            ValueError, match="expected a function of hdrlab, or FILE.py:NAME beside the plan"
+        ):
+            read(tasks=tasks)
+
+
+@pytest.mark.parametrize(
+    ("points", "by_hand", "said"),
+    [
+        ("0", "", ""),
+        ("0.5", "0", ""),
+        ("-0.5", "", "of 0 points or more each"),
+        ("1", "-1", "of 0 points or more each"),
+        ("inf", "", "of 0 points or more each"),
+        ("nan", "", "of 0 points or more each"),
+        ("1", "inf", "of 0 points or more each"),
+    ],
+)
+def test_points_are_at_least_zero_and_have_a_sum(points, by_hand, said, read):
+    lines = f"by_hand = [{{ title = 'T', points = {by_hand}, rubric = ['a', 1] }}]" if by_hand else ""
+    if said:
+        with pytest.raises(ValueError, match=said):
+            read(lines, f"{{ {TASK}, points = {points} }}")
+    else:
+        found = read(lines, f"{{ {TASK}, points = {points} }}").homeworks["hw9"]
+        assert found.points == float(points)
+        assert found.by_hand == ((ByHand("T", 0.0, ("a", "1")),) if by_hand else ())
+
+
+@pytest.mark.parametrize(
+    ("at_most", "taken"), [(7.5, True), (0.1, True), (10.5, True), (10.6, False), (0, False)]
+)
+def test_what_counts_at_most_lies_above_zero_and_up_to_all_points_with_those_by_hand(at_most, taken, read):
+    lines = f"at_most = {at_most}\nby_hand = [{{ title = 'T', points = 3 }}]"
+    if taken:
+        assert read(lines).homeworks["hw9"].at_most == at_most
+    else:
+        with pytest.raises(ValueError, match=f"above 0 and at most 10.5, got {at_most:g}"):
+            read(lines)
+    assert read().homeworks["hw9"].at_most is None
+
+
+@pytest.mark.parametrize(
+    ("free", "a_day", "taken"),
+    [
+        (0, 0, True),
+        (0, 1.5, True),
+        (3, 0, True),
+        (-1, 1, False),
+        (1, -0.1, False),
+        (-1, -1, False),
+        ("'a'", 1, False),
+    ],
+)
+def test_what_is_late_costs_nothing_or_more(free, a_day, taken, read):
+    late = f"[late]\nfree_days = {free}\npoints_a_day = {a_day}"
+    if taken:
+        assert read(before=late).late == (free, a_day)
+    else:
+        with pytest.raises(ValueError, match=r"expected free_days and points_a_day, at least 0, in \[late\]"):
+            read(before=late)
+
+
+@pytest.mark.parametrize("due", ["2026-10-01T12:00:00", "2026-10-01", "7", "12:00:00"])
+def test_a_due_date_has_a_time_and_a_zone(due, read):
+    assert read().homeworks["hw9"].due.isoformat() == "2026-10-01T12:00:00+00:00"
+    with pytest.raises(ValueError, match=r"expected due of \[hw9\] as a date with time and zone, got"):
+        read(due=due)
+
+
+def test_a_task_stands_once_in_all_homeworks_and_is_found_by_its_id(read):
+    found = read()
+    assert found.task("gsolve").points == 7.5
+    with pytest.raises(KeyError, match="expected a task out of gsolve, got 'merge'"):
+        found.task("merge")
+    with pytest.raises(ValueError, match="expected tasks, each once, got gsolve$"):
+        read(tasks=f"{{ {TASK}, points = 1 }}, {{ {TASK}, points = 2 }}")
+    with pytest.raises(ValueError, match="expected tasks, each once, got none"):
+        read("by_hand = [{ title = 'T', points = 1 }]", tasks="")
+
+
+def test_checks_of_a_task_of_ones_own_stand_beside_it_and_without_any_there_is_no_homework(tmp_path):
+    own = Homework("hw2", "", None, (Task("vignette", f"{tmp_path / 'v.py'}:vignette", 1.0),))
+    with pytest.raises(ValueError, match=f"expected checks for hw2 in {tmp_path}, got none"):
+        grading.files_of(own, None)
+    (tmp_path / "test_vignette.py").touch()
+    assert grading.files_of(own, None) == [tmp_path / "test_vignette.py"]
+
+
+def test_a_secret_is_made_once_for_its_owner_and_read_ever_after(tmp_path):
+    file = tmp_path / "secret"
+    secret, made = plan.read_secret(file)
+    assert made and len(secret) == 43 and file.read_text("utf8") == secret + "\n"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert plan.read_secret(file) == (secret, False)
+    file.write_text(" \n", encoding="utf8")
+    with pytest.raises(ValueError, match="expected a line that nobody else knows, it is empty"):
+        plan.read_secret(file)
+    file.unlink()
+    assert plan.read_secret(file)[0] != secret
+    (tmp_path / "link").symlink_to(tmp_path / "planted")
+    with pytest.raises(FileExistsError):
+        plan.read_secret(tmp_path / "link")
+
+
+def test_a_seed_is_a_digest_of_secret_student_and_task_that_does_not_change_with_the_years():
+    assert f"{plan.seed('salt', 'ada', 'gsolve'):064x}" == (
+        "232f8d0106ce80bf45e6f941f8f86093a4e05652921d8288ce0ef3e1260b2131"
+    )
