@@ -1,0 +1,134 @@
+"""The grader's half of pytest, asked by hand: what it hands to a check, and writes down before one."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import checked
+import numpy as np
+import pytest
+from checked import Asked, item
+
+from hdrlab.course.checks import compare, plugin
+from hdrlab.course.checks.plugin import Missing
+from hdrlab.course.checks.subject import NoAnswer
+
+
+@pytest.fixture
+def checking(tmp_path):
+    """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
+    compare.notes.clear()
+    yield checked.checking(tmp_path)
+    compare.notes.clear()
+
+
+def request(task="hat"):
+    return SimpleNamespace(node=item(task=task))
+
+
+def fixture(checking, name):
+    """The function beneath a fixture."""
+    found = getattr(type(checking), name)
+    return getattr(found, "__wrapped__", None) or found.__pytest_wrapped__.obj
+
+
+def test_what_is_kept_of_a_check_is_bounded():
+    assert (plugin.CALLS, plugin.LONGEST, plugin.SAID, plugin.DRAWN) == (20, 1500, 4000, 3_000_000)
+
+
+def test_the_job_is_read_and_its_worker_registered(tmp_path):
+    (tmp_path / "job.json").write_text('{"by": "json:dumps", "more": 1}', encoding="utf8")
+    said, options = [], []
+    config = SimpleNamespace(
+        addinivalue_line=lambda *words: said.append(words),
+        getoption=lambda name: str(tmp_path / "job.json") if name == "--job" else None,
+        pluginmanager=SimpleNamespace(register=lambda *words: said.append(words)),
+    )
+    plugin.pytest_configure(config)
+    assert said == [("markers", plugin.MARKER), ('{"by": "json:dumps", "more": 1}', "hdrlab-checking")]
+    plugin.pytest_addoption(SimpleNamespace(addoption=lambda name, **_: options.append(name)))
+    assert options == ["--job"]
+
+
+@pytest.mark.parametrize("alive", [True, False])
+def test_a_sandbox_is_opened_with_the_jobs_sources_unless_the_grader_has_ended(alive, checking, monkeypatch):
+    begun = []
+
+    class Made:
+        def __init__(self, *given):
+            begun.append(given)
+
+        def __enter__(self):
+            return self
+
+        def __exit__(self, *error):
+            begun.append("closed")
+
+    monkeypatch.setattr(plugin.system, "end_with", lambda grader: alive and grader == 1)
+    monkeypatch.setattr(plugin.tiers, "choose", lambda tier: f"{tier} sandbox")
+    monkeypatch.setattr(plugin, "Subject", Made)
+    if not alive:
+        with pytest.raises(pytest.exit.Exception, match="the grader has ended"):
+            checking.pytest_sessionstart()
+        assert not begun
+        return
+    checking.pytest_sessionstart()
+    assert begun == [({"hat": "def hat(): ..."}, "practice sandbox", 3.0, ["numpy"])]
+    assert isinstance(checking.submission, Made)
+    checking.pytest_unconfigure()
+    assert begun[1:] == ["closed"]
+
+
+def test_a_check_has_the_subject_afresh_and_none_where_the_task_is_missing_or_was_late(checking):
+    checking.submission, subject = Asked(), fixture(checking, "subject")
+    compare.notes.append("of the check before")
+    assert subject(checking, request()) is checking.submission
+    assert checking.submission.begun == 1 and not compare.notes
+    for late, task, kind in ((False, "gsolve", "missing"), (True, "hat", "late")):
+        checking.late |= {"hat"} if late else set()
+        with pytest.raises(NoAnswer) as raised:
+            subject(checking, request(task)).hat()
+        assert raised.value.kind == kind and str(raised.value) == ""
+    assert checking.submission.begun == 1 and Missing().said == ""
+
+
+def test_inputs_are_drawn_from_the_tasks_seed_and_from_zero_without_one(checking):
+    rng = fixture(checking, "rng")
+    for task, seed in (("hat", 7), ("gsolve", 0)):
+        assert rng(checking, request(task)).random() == np.random.default_rng(seed).random()
+
+
+def test_every_check_is_written_down_before_the_first_is_run(checking):
+    def check():
+        """Look at
+        the ends.
+
+        Then count.
+        """
+
+    def mark(*args, **kwargs):
+        return SimpleNamespace(args=args, kwargs=kwargs)
+
+    items = [
+        item("test_it_is_white[a]", mark=mark(2.5, needs="test_b"), check=check),
+        item("test_b", mark=mark(3)),
+        item("test_c", "gsolve", folder=Path("/hidden")),
+    ]
+    checking.pytest_collection_finish(SimpleNamespace(items=items))
+    first, second, third = checking.lines()
+    assert first == {
+        "check": "/checks/test_hat.py::test_it_is_white[a]",
+        "task": "hat",
+        "name": "test_it_is_white[a]",
+        "promise": "It is white[a]",
+        "points": "5/2",
+        "needs": "test_b",
+        "hints": ["Look at the ends.", "Then count."],
+        "hidden": False,
+    }
+    assert (second["points"], second["needs"], second["hints"]) == ("3", "", [])
+    assert (third["points"], third["needs"], third["hidden"], third["task"]) == ("1", "", True, "gsolve")
+
+
+def test_hints_are_the_paragraphs_of_a_docstring():
+    assert plugin.hints(None) == [] and plugin.hints(SimpleNamespace()) != [""]
+    assert plugin.promise_of(item("test_a")) == "A" and plugin.promise_of(item("test_")) == ""

@@ -1,0 +1,147 @@
+"""The grader's half of pytest, asked by hand: what it writes down of a check that has ended."""
+
+import base64
+from pathlib import Path
+from types import SimpleNamespace
+
+import checked
+import numpy as np
+import pytest
+from checked import Asked, item
+
+from hdrlab.course.checks import compare, misconceptions, plugin
+from hdrlab.course.checks.compare import Different
+from hdrlab.course.checks.subject import NoAnswer
+from hdrlab.course.sandbox.running import Unavailable
+
+
+@pytest.fixture
+def checking(tmp_path):
+    """A Checking whose lines are read by `lines`; nothing is noted of its checks so far."""
+    compare.notes.clear()
+    yield checked.checking(tmp_path)
+    compare.notes.clear()
+
+
+@pytest.mark.parametrize(
+    ("when", "raised", "written"),
+    [
+        ("call", None, "holds"),
+        ("call", ValueError(), "fails"),
+        ("setup", ValueError(), "fails"),
+        ("setup", None, None),
+    ],
+)
+def test_a_check_has_ended_when_it_was_called_or_could_not_be(when, raised, written, checking):
+    call = SimpleNamespace(when=when, excinfo=raised and SimpleNamespace(value=raised))
+    report = checking.pytest_runtest_makereport(item(), call)
+    assert next(report) is None
+    with pytest.raises(StopIteration) as stopped:
+        report.send("report")
+    assert stopped.value.value == "report"
+    assert [one["outcome"] for one in checking.lines()] == ([written] if written else [])
+
+
+def test_what_holds_is_written_with_its_notes_each_once_and_with_what_was_printed(checking):
+    compare.notes += ["b", "a", "b", "n" * 2000]
+    checking._ended(item(subject=Asked(said="<f at 0x7fab> " + "s" * 4000)), None)
+    (line,) = checking.lines()
+    assert line == {
+        "ended": "/checks/test_hat.py::test_a_promise",
+        "outcome": "holds",
+        "message": "b\na\n" + "n" * 1496,
+        "said": "<f> " + "s" * (4000 - 14),
+    }
+    assert not checking.failed
+
+
+@pytest.mark.parametrize(
+    ("raised", "outcome", "kind", "message"),
+    [
+        (NoAnswer("hat raised E", "raised"), "no answer", "raised", "hat raised E"),
+        (NoAnswer("", "missing"), "no answer", "missing", ""),
+        (NoAnswer("too long", "late"), "no answer", "late", "too long"),
+        (Different("n" * 1501), "fails", "", "n" * 1500),
+        (AssertionError(), "fails", "", "The promise does not hold"),
+        (AssertionError("a\n +  where b"), "fails", "", "a"),
+        (ValueError("of <f at 0x7f>"), "fails", "", "The answer could not be compared: ValueError: of <f>"),
+        (
+            ValueError("n" * 1600),
+            "fails",
+            "",
+            ("The answer could not be compared: ValueError: " + "n" * 1600)[:1500],
+        ),
+    ],
+)
+def test_what_does_not_hold_is_written_with_its_words(raised, outcome, kind, message, checking):
+    checking._ended(item(), raised)
+    (line,) = checking.lines()
+    assert (line["outcome"], line["kind"], line["message"], line["differs"]) == (outcome, kind, message, None)
+    assert checking.failed == {"hat"} and checking.late == ({"hat"} if kind == "late" else set())
+
+
+def test_of_a_difference_what_came_is_described_where_it_has_axes():
+    told = plugin._message(Different("w: no", came=np.ones(3)))
+    assert told.startswith("w: no\nYours: shape (3,)")
+    assert plugin._message(Different("n" * 1600, came=np.ones(3))).startswith("n" * 1500 + "\nYours")
+    assert plugin._message(Different("w: no", came=np.array(1.0))) == "w: no"
+
+
+@pytest.mark.parametrize(
+    ("kind", "shape", "drawn"),
+    [
+        ("curve", (3,), True),
+        ("image", (2, 2), True),
+        ("values", (3,), False),
+        ("image", (4, 1), True),
+        ("image", (5, 1), False),
+    ],
+)
+def test_a_difference_that_can_be_drawn_travels_as_text(kind, shape, drawn, checking, monkeypatch):
+    monkeypatch.setattr(plugin, "DRAWN", 4)
+    truth, came = np.zeros(shape), np.ones(shape, np.float32)
+    error = Different("no", expected=truth, came=came, kind=kind)
+    checking._ended(item(), error)
+    checking.job["draw"] = False
+    checking._ended(item(), error)
+    first, second = (one["differs"] for one in checking.lines())
+    assert second is None and (first is not None) is drawn
+    if drawn:
+        texts = [base64.b64encode(one.astype("<f8").tobytes()).decode() for one in (truth, came)]
+        assert first == {"kind": kind, "shape": list(shape), "expected": texts[0], "came": texts[1]}
+    assert plugin._differs(Different("no", expected=truth, kind="curve")) is None
+    assert plugin._differs(Different("no", came=truth, kind="curve")) is None
+
+
+def test_of_hidden_checks_nothing_is_kept_to_name_a_mistake_by(checking):
+    hidden = item(folder=Path("/hidden"), subject=Asked(1))
+    checking._ended(hidden, AssertionError())
+    assert not checking.failed and not checking.calls
+    checking._ended(item(subject=Asked(*range(15))), None)
+    checking._ended(item(subject=Asked(*range(15))), None)
+    assert [answer for *_, answer in checking.calls["hat"]] == [*range(15), *range(5)]
+    assert checking.calls["hat"][1] == ((1,), {}, 1)
+
+
+def test_where_the_sandbox_cannot_be_had_that_is_all_that_is_written(checking):
+    checking._ended(item(subject=Asked(1)), Unavailable("no walls"))
+    assert checking.lines() == [{"unavailable": "no walls"}] and not checking.failed
+
+
+def test_at_the_end_the_mistakes_of_what_failed_are_named_and_an_error_there_costs_one_task_alone(
+    checking, monkeypatch
+):
+    def closest(task, calls):
+        if task.id == "gsolve":
+            raise ValueError
+        assert (task.function, task.points, calls) == ("core.weights.hat", 1.0, [((0,), {}, 5)])
+        return misconceptions.Misconception("hat_x", "hat", "A sentence.", len, once=False)
+
+    monkeypatch.setattr(misconceptions, "closest", closest)
+    checking._ended(item(subject=Asked(5)), AssertionError())
+    checking.failed |= {"gsolve", "unknown"}
+    checking.pytest_sessionfinish(None)
+    assert checking.lines()[1:] == [{"recognised": "hat", "sentence": "A sentence.", "once": False}]
+    monkeypatch.setattr(misconceptions, "closest", lambda task, calls: None)
+    checking.pytest_sessionfinish(None)
+    assert len(checking.lines()) == 2
