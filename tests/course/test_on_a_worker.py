@@ -1,0 +1,53 @@
+"""A piece on a worker of a cluster: what it is done from, what it answers, and when it is let go."""
+
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from hdrlab.course import grading
+from hdrlab.course.checks.running import LIBRARY
+from hdrlab.course.classroom.executors import alone, cluster
+from hdrlab.course.classroom.executors.cluster import Task
+from hdrlab.course.classroom.journal import Piece
+
+
+def test_a_version_is_a_digest_of_the_source_and_its_tables(monkeypatch, tmp_path):
+    files = sorted(one for one in LIBRARY.rglob("*.*") if one.suffix in (".py", ".toml"))
+    assert cluster.version().endswith(f"({grading.specification(files)[:8]})")
+    assert any(one.suffix == ".toml" for one in files)
+
+
+@pytest.mark.parametrize("fails", [False, True])
+def test_a_worker_does_a_piece_from_its_bytes_and_answers_by_a_sign(fails, monkeypatch):
+    seen = []
+
+    def run(work, piece, *, patience, stopped):
+        seen.append((work, piece.owner, piece.path.name, piece.path.read_bytes(), patience, stopped))
+        if fails:
+            raise alone.Failed("it fails")
+        return b"result"
+
+    monkeypatch.setattr(cluster.process, "run", run)
+    monkeypatch.setattr(cluster, "_watch", lambda: "watched")
+    ready = []
+    task = Task(
+        len, lambda: ready.append(1), Piece("ada", Path("/far/hw.py"), "k"), b"x", 3.0, cluster.version()
+    )
+    assert cluster.do(task) == (b"-it fails" if fails else b"+result")
+    assert seen == [(len, "ada", "hw.py", b"x", 3.0, "watched")] and ready == [1]
+    with pytest.raises(ValueError, match="its hdrlab is .*, expected other"):
+        cluster.do(task._replace(version="other"))
+    assert len(seen) == 1
+
+
+def test_a_task_is_no_longer_wanted_when_it_is_forgotten_or_cancelled(monkeypatch):
+    tasks = {"mine": SimpleNamespace(state="executing"), "other": SimpleNamespace(state="cancelled")}
+    worker = SimpleNamespace(get_current_task=lambda: "mine", state=SimpleNamespace(tasks=tasks))
+    monkeypatch.setattr(cluster.distributed, "get_worker", lambda: worker)
+    stopped = cluster._watch()
+    assert stopped() is False
+    tasks["mine"].state = "cancelled"
+    assert stopped() is True
+    del tasks["mine"]
+    assert stopped() is True

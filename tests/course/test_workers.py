@@ -1,0 +1,220 @@
+"""Pieces on the workers of a cluster that does what it is told: who gets which, and who is blamed."""
+
+from functools import partial
+
+import pytest
+import workers
+from distributed import KilledWorker
+from workers import ADDRESS
+
+from hdrlab.course.classroom.executors import cluster
+from hdrlab.course.classroom.journal import Ending, Piece
+
+
+@pytest.fixture
+def clustered(monkeypatch):
+    """clustered(a=2, b=1) -> a Cluster of these workers and their threads, and its client."""
+    return partial(workers.clustered, monkeypatch)
+
+
+@pytest.fixture
+def piece(tmp_path):
+    """piece(owner) -> a Piece whose file is there."""
+
+    def piece(owner="ada"):
+        (tmp_path / f"{owner}.py").write_bytes(owner.encode())
+        return Piece(owner, tmp_path / f"{owner}.py", "key")
+
+    return piece
+
+
+def test_the_seconds_are_those_that_a_network_needs():
+    assert (cluster.CONNECT, cluster.LONELY, cluster.TICK, cluster.LOOK) == (5, 120, 0.05, 0.5)
+    assert cluster.PATIENCE == 1800
+
+
+# Who gets which
+
+
+def test_a_piece_goes_to_the_worker_with_most_room_until_there_is_none(clustered, piece):
+    made, client = clustered(a=1, b=3)
+    begun = [made.start(piece(f"p{k}")) for k in range(5)]
+    assert begun == [True] * 4 + [False]
+    assert [worker for _, worker in client.sent] == ["b", "b", "a", "b"]
+    task = client.sent[0][0]
+    assert task == (len, bool, piece("p0"), b"p0", 7.0, cluster.version())
+
+
+def test_a_piece_that_is_to_be_alone_waits_for_a_worker_without_any_and_has_it_to_itself(clustered, piece):
+    made, client = clustered(a=2)
+    assert made.start(piece("first")) and not made.start(piece("doubted"), alone=True)
+    (future,) = made._running
+    future.status, future.answer = "finished", b"+1"
+    assert made.endings() == [Ending(piece("first"), b"1")]
+    assert made.start(piece("doubted"), alone=True) and not made.start(piece("next"))
+    client.threads["b"] = 1
+    assert made.start(piece("next")) and [worker for _, worker in client.sent] == ["a", "a", "b"]
+    (future, _) = made._running
+    future.status, future.answer = "finished", b"+1"
+    made.endings()
+    assert made.start(piece("more")) and client.sent[-1][1] == "a"
+
+
+def test_without_workers_for_two_minutes_the_run_ends(clustered, piece):
+    made, client = clustered()
+    made._met = 1000.0
+    made.clock.now = 1120.0
+    assert not made.start(piece())
+    client.threads["a"] = 1
+    assert made.start(piece())
+    client.threads.clear()
+    made.clock.now = 1240.0
+    assert not made.start(piece())
+    made.clock.now = 1240.1
+    with pytest.raises(ValueError, match=f"the cluster at {ADDRESS} has had no worker for 120 s"):
+        made.start(piece())
+
+
+def test_a_cluster_that_is_lost_is_told_in_words(clustered, piece):
+    made, client = clustered(a=1)
+    client.threads = OSError("the  line\nis cut")
+    with pytest.raises(ValueError, match="is lost; what is graded stays graded: the line is cut$"):
+        made.start(piece())
+
+
+# How they end
+
+
+def ended(made, status, answer=None, which=0):
+    future = list(made._running)[which]
+    future.status, future.answer = status, answer
+    return made.endings()
+
+
+@pytest.mark.parametrize(
+    ("status", "answer", "ending"),
+    [
+        ("finished", b"+result", (b"result", "", True)),
+        ("finished", b"+", (b"", "", True)),
+        ("finished", b"-it fails", (None, "it fails", True)),
+        ("cancelled", None, (None, "it was cancelled", False)),
+        ("lost", None, (None, "it was cancelled", False)),
+        ("error", KilledWorker("task", None, 3), (None, "its worker a was lost", True)),
+    ],
+)
+def test_a_piece_ends_with_its_result_or_with_why_there_is_none(status, answer, ending, clustered, piece):
+    made, client = clustered(a=2)
+    made.start(piece(), alone=True)
+    assert made.endings() == [] and set(made.clock.slept) == {0.05}
+    waited = len(made.clock.slept)
+    assert 10 <= waited <= 11
+    assert ended(made, status, answer) == [Ending(piece(), *ending)]
+    assert not made._running and not made._taken and len(made.clock.slept) == waited
+    assert client.cancelled[-1] == []
+
+
+def test_while_a_result_is_on_its_way_the_piece_runs(clustered, piece):
+    made, _ = clustered(a=1)
+    made.start(piece())
+    assert ended(made, "finished", TimeoutError()) == [] and len(made._running) == 1
+    assert ended(made, "of its own") == []
+    assert ended(made, "finished", b"+1") == [Ending(piece(), b"1")]
+
+
+def test_an_error_over_there_that_is_no_loss_ends_the_run(clustered, piece):
+    made, _ = clustered(a=1)
+    made.start(piece())
+    with pytest.raises(ValueError, match="a of the cluster cannot do it: no walls"):
+        ended(made, "error", RuntimeError("no walls"))
+
+
+def test_a_worker_that_is_gone_is_blamed_on_a_piece_that_was_alone_there(clustered, piece):
+    made, client = clustered(a=2, b=1, c=1)
+    for owner in ("p", "q", "r", "s"):
+        made.start(piece(owner))
+    places = {task.piece.owner: worker for task, worker in client.sent}
+    assert sorted(places.values()) == ["a", "a", "b", "c"]
+    gone = [future for future, (_, worker) in made._running.items() if worker in "ab"]
+    del client.threads["a"], client.threads["b"]
+    found = made.endings()
+    assert {one.piece.owner: (one.result, one.why, one.blamed) for one in found} == {
+        owner: (None, f"its worker {worker} was lost", worker == "b")
+        for owner, worker in places.items()
+        if worker != "c"
+    }
+    assert client.cancelled == [gone] and [worker for _, worker in made._running.values()] == ["c"]
+
+
+def test_of_a_worker_killed_again_and_again_one_piece_is_lost_and_the_others_run(clustered, piece):
+    made, client = clustered(a=2)
+    made.start(piece("p"))
+    made.start(piece("q"))
+    first = next(iter(made._running))
+    assert ended(made, "error", KilledWorker("task", None, 3)) == [
+        Ending(piece("p"), None, "its worker a was lost", False)
+    ]
+    assert client.cancelled[0] == [first] and len(made._running) == 1
+
+
+# Its beginning and its end
+
+
+@pytest.fixture
+def entered(clustered, monkeypatch):
+    """entered(client's knobs) -> the client of a Cluster that was entered."""
+
+    def entered(error=None, **knobs):
+        made, client = clustered(a=1)
+        for name, value in knobs.items():
+            setattr(client, name, value)
+
+        def connected(address, *, timeout, set_as_default):
+            assert (address, timeout, set_as_default) == (ADDRESS, 5, False)
+            if error is not None:
+                raise error
+            return client
+
+        monkeypatch.setattr(cluster, "Client", connected)
+        return made, client
+
+    return entered
+
+
+def test_a_run_that_ends_takes_back_what_runs(entered, piece):
+    made, client = entered()
+    with made:
+        made.start(piece())
+        assert client.closed == 0
+    assert client.cancelled == [list(made._running)] and client.closed == 1
+
+
+@pytest.mark.parametrize(
+    ("knobs", "said"),
+    [
+        ({"scheduler": "0.1"}, "the scheduler of the cluster has hdrlab 0.1, expected"),
+        ({"versions": {"w": "0.2"}}, "w of the cluster has hdrlab 0.2, expected"),
+        ({"able": {"w": RuntimeError("no walls")}}, "w of the cluster cannot do it: no walls"),
+        ({"versions": {"w": OSError()}, "able": {"v": None, "w": OSError()}}, ""),
+    ],
+)
+def test_a_cluster_of_another_hdrlab_or_without_the_tier_is_refused(knobs, said, entered):
+    made, client = entered(**knobs)
+    if said:
+        with pytest.raises(ValueError, match=said), made:
+            pass
+        assert client.closed == 1
+    else:
+        with made:
+            pass
+
+
+def test_where_there_is_no_cluster_it_is_said_with_the_address(entered):
+    for error, why in ((OSError("x"), "there is none$"), (ValueError("odd"), "there is none: odd$")):
+        made, _ = entered(error)
+        with pytest.raises(ValueError, match=f"expected a Dask cluster at {ADDRESS}, {why}"), made:
+            pass
+    made, client = entered()
+    made._address = "nowhere://x"
+    with pytest.raises(ValueError, match="expected a Dask cluster at nowhere://x, there is none: "), made:
+        pass
+    assert client.closed == 0
