@@ -136,6 +136,18 @@ def test_a_mistake_must_explain_all_but_a_tenth_of_the_difference_to_the_library
     assert named({"two": 2.0}, came) == name
 
 
+def test_at_a_thousandth_to_the_last_bit_an_answer_is_still_the_same(named):
+    assert named({"near": 1001.0}, 1001.0, right=1000.0) is None
+    assert named({"near": 1000.0}, 1001.0, right=998.0) == "near"
+
+
+def test_of_two_mistakes_that_differ_in_the_last_bit_of_one_value_the_nearer_is_named(named):
+    near = np.full(4, 2.0)
+    far = near.copy()
+    far[0] = np.nextafter(2.0, 0)
+    assert named({"far": far, "near": near}, near, right=np.ones(4)) == "near"
+
+
 def test_where_the_difference_to_the_library_is_small_a_tenth_of_it_is_asked(named):
     assert named({"some": 1.1}, 1.11) == "some"  # 0.0091 of 1.1, of 0.11
     assert named({"some": 1.1}, 1.115) is None

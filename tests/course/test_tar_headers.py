@@ -42,6 +42,9 @@ def test_a_tar_is_read_from_header_to_header_whatever_the_sizes_are(size, taken)
     whole = header("a", size=size) + block(data) + header("f/b", size=1) + block(b"x") + END
     assert taken(whole) == {"a": data, "f/b": b"x"}
     assert taken(header("folder", b"5") + whole) == {"a": data, "f/b": b"x"}
+    assert taken(header("folder", b"5")) == {}
+    said = f"'a' claims {size} bytes, expected at most {size - 1}"
+    assert refused(taken, whole, one=size - 1) == said if size else taken(whole, one=1)
 
 
 def test_a_tar_of_nothing_is_none(taken):
@@ -57,6 +60,7 @@ def test_a_tar_that_ends_at_its_last_block_is_whole(taken):
 def test_a_header_without_its_mark_is_told(taken):
     said = f"{TOLD} (a header without its mark)"
     assert refused(taken, b"x" * 512) == said
+    assert taken(header("a") + b"x" * 511) == {"a": b""}
     damaged = bytearray(header("b"))
     for at in (257, 261):
         damaged[at] ^= 1
@@ -82,7 +86,7 @@ def test_what_is_no_plain_file_is_told_by_its_kind(kind, said, taken):
 def test_a_header_of_a_header_is_of_65536_bytes_at_most(kind, taken):
     said = "a header of it claims 65537 bytes, expected at most 65536"
     assert refused(taken, header("a", kind, 65537) + bytes(65536 + 512)) == said
-    assert said not in refused(taken, header("a", kind, 65536) + bytes(65536))
+    assert "expected at most" not in refused(taken, header("a", kind, 65536) + bytes(65536))
 
 
 def test_a_plain_file_may_be_larger_than_a_header(taken):
@@ -98,6 +102,13 @@ def test_a_header_that_changes_a_size_is_refused_wherever_it_says_so(kind, taken
         assert refused(taken, header("p", kind, len(data)) + block(data) + header("a")) == said
     words = b"20 comment=ab size=\n"
     assert taken(header("p", b"0", len(words)) + block(words)) == {"p": words}
+
+
+def test_a_size_may_be_written_in_bytes_as_in_digits(taken):
+    written = bytearray(header("a"))
+    written[124:136] = b"\x80" + bytes(10) + b"\3"
+    written[148:156] = b"%06o\0 " % (sum(written[:148]) + 8 * 32 + sum(written[156:]))
+    assert taken(bytes(written) + block(b"abc") + header("b")) == {"a": b"abc", "b": b""}
 
 
 def test_a_size_below_zero_is_refused(taken):
