@@ -1,0 +1,135 @@
+"""What the walls are made of, option by option: how the tiers for credit are launched."""
+
+import os
+from types import SimpleNamespace
+
+import pytest
+
+from hdrlab.course.sandbox import container, descent, filters, running, strict, users
+from hdrlab.course.sandbox.contents import Contents
+from hdrlab.course.sandbox.running import Unavailable
+
+INSIDE = Contents(
+    "/usr", "/python/bin/python3", {"/b": "/out/b", "/a": "/out/a"}, ("/a/x",), {"numpy": "/packages/numpy"}
+)
+
+
+def test_bubblewrap_is_told_walls_environment_places_and_what_is_hidden_in_this_order(monkeypatch):
+    monkeypatch.setattr(strict, "WALLS", ["--walls"])
+    monkeypatch.setattr(strict, "ENVIRONMENT", {"A": "1"})
+    assert strict.walls(INSIDE, INSIDE.places, 7) == [
+        "--walls",
+        *("--setenv", "A", "1", "--setenv", "LD_LIBRARY_PATH", "/python/lib"),
+        *("--ro-bind", "/out/a", "/a", "--ro-bind", "/out/b", "/b"),
+        *("--perms", "0555", "--size", "4096", "--tmpfs", "/a/x", "--remount-ro", "/a/x"),
+        *("--dev-bind", os.devnull, os.devnull),
+        *("--remount-ro", "/", "--chdir", "/", "--seccomp", "7", "--"),
+    ]
+
+
+class Lease:
+    """What holds a user number."""
+
+    def __init__(self, ended):
+        self.ended = ended
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *error):
+        self.ended.append("lease")
+
+
+@pytest.fixture
+def launched(monkeypatch):
+    """What a launch hands to a process, and to a descent; a lease that ends is in `ended`."""
+    made = SimpleNamespace(started=[], orders=[], ended=[], rules=[])
+
+    def start(words, environment, *inherited):
+        if len(inherited) > 1:
+            made.rules.append(os.read(inherited[1], 99))
+        made.started.append((words, environment, inherited[0]))
+        return "process"
+
+    def descend(**order):
+        made.orders.append(order)
+        return ["descend"]
+
+    for room in (strict, running):
+        monkeypatch.setattr(room, "start", start)
+    for room in (strict, container):
+        monkeypatch.setattr(room, "contents", lambda: INSIDE)
+    monkeypatch.setattr(filters, "program", lambda name: f"rules of a {name}".encode())
+    monkeypatch.setattr(users, "lease", lambda: (60706, Lease(made.ended)))
+    monkeypatch.setattr(users, "descend", descend)
+    return made
+
+
+CONTROL = SimpleNamespace(fileno=lambda: 5)
+
+
+@pytest.mark.parametrize("root", [True, False])
+def test_the_strict_tier_is_launched_by_bubblewrap_and_root_becomes_a_spare_user_first(
+    root, launched, monkeypatch
+):
+    monkeypatch.setattr(os, "geteuid", lambda: 0 if root else 1)
+    made = strict.launch("/bin/bwrap", CONTROL)
+    ((words, environment, control),) = launched.started
+    assert (environment, control, launched.rules) == ({}, 5, [b"rules of a supervisor"])
+    assert made.process == "process" and made.scratch == ""
+    supervisor = running.command("/python/bin/python3", INSIDE.program, 5, INSIDE.packages)
+    if root:
+        (order,) = launched.orders
+        assert words == ["descend"] and order["user"] == 60706 and order["environment"] == {}
+        assert order["stage"] == ["/out/b", "/out/a"]
+        bound = order["command"].index("--ro-bind")
+        assert order["command"][bound : bound + 6] == [
+            "--ro-bind",
+            f"{descent.STAGE}/1",
+            "/a",
+            "--ro-bind",
+            f"{descent.STAGE}/0",
+            "/b",
+        ]
+        words = order["command"]
+    assert words[0] == "/bin/bwrap" and words[-len(supervisor) :] == supervisor
+    assert not launched.ended
+    made.after()
+    assert launched.ended == (["lease"] if root else [])
+
+
+def test_the_container_tier_is_launched_through_homes_that_root_has_opened(launched, monkeypatch, tmp_path):
+    (tmp_path / "scipy.libs").mkdir()
+    found = {"numpy": f"{tmp_path}/numpy", "scipy": f"{tmp_path}/scipy"}
+    monkeypatch.setattr(running, "packages", lambda: found)
+    inside = INSIDE._replace(places={"/python/bin/python3": "/usr/local/bin/python3.11"}, hidden=())
+    monkeypatch.setattr(container, "contents", lambda: inside)
+    made = container.launch(CONTROL)
+    (order,) = launched.orders
+    program = running.PROGRAM
+    assert order["homes"] == ["/usr", str(program.parent), *found.values(), f"{tmp_path}/scipy.libs"]
+    walk, read = inside.readable()
+    assert order["fence"] == {"read": read, "walk": walk, "write": [os.devnull]} and order["user"] == 60706
+    told = {"numpy": "{2}", "scipy": "{3}"}
+    assert order["command"] == running.command("{0}/local/bin/python3.11", "{1}/supervisor.py", 5, told)
+    more = {"PYTHONHOME": "{0}", "LD_LIBRARY_PATH": "{0}/lib:{4}"}
+    assert order["environment"] == running.ENVIRONMENT | more
+    assert launched.started == [(["descend"], {}, 5)] and not launched.ended
+    made.after()
+    assert launched.ended == ["lease"]
+
+
+def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch):
+    here = {"platform": "linux", "user": 0, "landlock": 1}
+    monkeypatch.setattr(container, "sys", SimpleNamespace(platform="linux"))
+    monkeypatch.setattr(os, "geteuid", lambda: here["user"])
+    monkeypatch.setattr(descent, "landlock", lambda: here["landlock"])
+    made = container.sandbox()
+    assert made == ("container", True, container.launch, b"rules of a check", False, True, running.LIMITS)
+    for name, value, said in (("landlock", 0, "needs Landlock"), ("user", 1, "needs root")):
+        here[name] = value
+        with pytest.raises(Unavailable, match=f"the container tier {said}"):
+            container.sandbox()
+    container.sys.platform = "darwin"
+    with pytest.raises(Unavailable, match="the container tier needs Linux, and this is darwin"):
+        container.sandbox()
