@@ -1,0 +1,212 @@
+"""A piece in a process of its own: what it is told, how its end is explained, and how many run at a time."""
+
+import ast
+import io
+import os
+import pickle
+import signal
+import subprocess
+import sys
+from pathlib import Path
+from types import SimpleNamespace
+
+import pytest
+
+from hdrlab.course.checks.running import import_path
+from hdrlab.course.classroom.executors import alone, processes
+from hdrlab.course.classroom.executors.alone import Failed
+from hdrlab.course.classroom.journal import Ending, Piece
+
+
+@pytest.fixture
+def ended(monkeypatch):
+    """ended(code, answer, said, waits) -> what is done to a process that ends so, after as many looks."""
+
+    def ended(code=0, answer=b"+", said=b"", waits=0):
+        told = SimpleNamespace(asked=[], done=[], now=50.0)
+
+        class Process:
+            returncode = code
+
+            def __init__(self, command, **knobs):
+                told.command, told.knobs = command, knobs
+                told.scratch = Path(knobs["env"]["TMPDIR"])
+                assert told.scratch.is_dir()
+
+            def __enter__(self):
+                return self
+
+            def __exit__(self, *error):
+                told.done.append("left")
+
+            def communicate(self, given, timeout):
+                told.asked.append((given, timeout))
+                told.now += timeout
+                if len(told.asked) <= waits:
+                    raise subprocess.TimeoutExpired("", timeout)
+                return answer, said
+
+            def kill(self):
+                told.done.append("kill")
+
+        monkeypatch.setattr(alone.subprocess, "Popen", Process)
+        monkeypatch.setattr(alone, "time", SimpleNamespace(monotonic=lambda: told.now))
+        return told
+
+    return ended
+
+
+def failed(**knobs):
+    with pytest.raises(Failed) as raised:
+        alone.run(len, "piece", patience=1.0, **knobs)
+    return str(raised.value), raised.value.own, raised.value.killed
+
+
+def test_a_process_is_told_where_modules_are_and_then_limits_work_and_piece(ended, monkeypatch):
+    assert (alone.TICK, alone.KILLED, alone.LAST, Failed.own, Failed.killed) == (0.2, 9, 300, False, False)
+    monkeypatch.setenv("OF_THE_GRADER", "1")
+    told = ended(0, b"++answer")
+    assert alone.run(len, "piece", patience=1.0) == b"+answer"
+    assert told.command == [sys.executable, "-P", "-m", alone.__name__, str(os.getpid())]
+    environment = told.knobs["env"]
+    assert (environment["PYTHONPATH"], environment["OF_THE_GRADER"]) == (import_path(), "1")
+    ((order, tick),) = told.asked
+    stream = io.BytesIO(order)
+    assert pickle.load(stream) == [one for one in sys.path if one]
+    assert pickle.load(stream) == ({}, len, "piece") and tick == 0.2
+    assert told.done == ["kill", "left"] and not told.scratch.exists()
+    told = ended()
+    assert alone.run(len, "piece", patience=1.0, limits={"CPU": 3}) == b""
+    stream = io.BytesIO(told.asked[0][0])
+    pickle.load(stream)
+    assert pickle.load(stream)[0] == {"CPU": 3}
+
+
+@pytest.mark.parametrize(
+    ("code", "answer", "said", "why"),
+    [
+        (0, b"-ValueError: no", b"noise", ("ValueError: no", False, False)),
+        (0, b"-MemoryError: ", b"", ("MemoryError:", True, False)),
+        (0, b"-MemoryErro", b"", ("MemoryErro", False, False)),
+        (1, b"", b"one\ntwo\n", ("two", False, False)),
+        (1, b"-", b"one\ntwo ", ("two", False, False)),
+        (1, b"", b"n" * 301, ("n" * 300, False, False)),
+        (3, b"", b"", ("its process was ended (3)", False, False)),
+        (0, b"", b" \n", ("its process was ended (0)", False, False)),
+        (-9, b"", b"", ("its process was ended (-9)", False, True)),
+        (-15, b"", b"", ("its process was ended (-15)", False, True)),
+        (9, b"", b"", ("its process was ended (9)", False, False)),
+        (-11, b"", b"", ("its process was ended (-11)", True, False)),
+        (-24, b"", b"", ("its process was ended (-24)", True, False)),
+        (-1, b"", b"", ("its process was ended (-1)", True, False)),
+    ],
+)
+def test_a_failure_is_told_by_its_last_line_and_whose_doing_it_was(code, answer, said, why, ended):
+    told = ended(code, answer, said)
+    assert failed() == why and told.done == ["kill", "left"] and not told.scratch.exists()
+
+
+def test_a_process_is_told_once_and_waited_for_until_its_time_is_over(ended):
+    told = ended(0, b"+x", waits=4)
+    assert alone.run(len, "piece", patience=0.81) == b"x"
+    assert [given is None for given, _ in told.asked] == [False, True, True, True, True]
+    told = ended(0, b"+x", waits=99)
+    assert failed() == ("it took too long", False, False)
+    assert 5 <= len(told.asked) <= 6 and told.done == ["kill", "left"]
+
+
+def test_a_process_that_is_stopped_is_ended(ended):
+    stops = iter((False, False, True))
+    told = ended(0, b"+x", waits=99)
+    assert failed(stopped=lambda: next(stops)) == ("it was stopped", False, False)
+    assert len(told.asked) == 3 and told.done == ["kill", "left"]
+
+
+# In a real process: the work is to evaluate an expression
+
+
+def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
+    asked = "[__import__('resource').getrlimit(n) for n in (0, 7)], __import__('tempfile').gettempdir()"
+    piece = f"print('noise') or __import__('os').write(1, b'more') and repr(({asked})).encode()"
+    limits = {"CPU": 50, "NOFILE": 40, "OF_NO_KIND": 1}
+    found, scratch = ast.literal_eval(alone.run(eval, piece, patience=60, limits=limits).decode())
+    assert found == [(50, 51), (40, 40)]
+    assert Path(scratch).name.startswith("hdrlab-piece-") and not Path(scratch).exists()
+
+
+@pytest.mark.parametrize(
+    ("piece", "why"),
+    [
+        ("{}['a\\n b']", ("KeyError: 'a\\n b'", False, False)),
+        ("int('a\\nb')", ("ValueError: invalid literal for int() with base 10: 'a\\nb'", False, False)),
+        ("exec('raise MemoryError')", ("MemoryError:", True, False)),
+        (f"__import__('os').kill(__import__('os').getpid(), {signal.SIGTERM:d})", (None, False, True)),
+    ],
+)
+def test_an_error_is_told_in_a_line_and_who_is_ended_is_told_apart(piece, why):
+    with pytest.raises(Failed) as raised:
+        alone.run(eval, piece, patience=60)
+    said = str(raised.value)
+    assert (said if why[0] else None, raised.value.own, raised.value.killed) == why and "\n" not in said
+
+
+def test_who_was_started_by_one_that_has_died_does_nothing(monkeypatch):
+    asked = []
+    monkeypatch.setattr(alone.system, "end_with", lambda parent: asked.append(parent))
+    monkeypatch.setattr(alone.os, "dup", lambda descriptor: pytest.fail("it begins"))
+    alone.main("17")
+    assert asked == [17]
+
+
+# So many at a time
+
+
+class Threads:
+    """A pool whose futures are ended by hand."""
+
+    made: list = []
+
+    def __init__(self, count, prefix):
+        self.count, self.begun, self.ended = count, [], None
+        self.made.append(self)
+
+    def submit(self, function, work, piece, **knobs):
+        future = processes.Future()
+        self.begun.append((function, work, piece, knobs, future))
+        return future
+
+    def shutdown(self, **knobs):
+        self.ended = knobs
+
+
+@pytest.fixture
+def threads(monkeypatch):
+    """The pools that were made."""
+    monkeypatch.setattr(processes, "ThreadPoolExecutor", Threads)
+    monkeypatch.setattr(Threads, "made", [])
+    monkeypatch.setattr(processes, "LOOK", 0.01)
+    return Threads.made
+
+
+@pytest.mark.parametrize(("jobs", "processors", "count"), [(3, 2, 3), (None, 5, 5), (None, None, 1)])
+def test_as_many_run_at_a_time_as_are_asked_for_or_have_a_processor(
+    jobs, processors, count, threads, monkeypatch
+):
+    monkeypatch.setattr(os, "cpu_count", lambda: processors)
+    with processes.Processes(len, jobs) as executor:
+        pieces = [Piece(f"p{k}", Path(f"p{k}"), "key") for k in range(count + 1)]
+        assert [executor.start(one) for one in pieces] == [True] * count + [False]
+        assert executor.endings() == []
+        ((function, work, piece, knobs, future), *_) = threads[0].begun
+        assert (function, work, piece, threads[0].count) == (alone.run, len, pieces[0], count)
+        assert knobs["patience"] == 1800 and knobs["stopped"]() is False
+        future.set_result(b"result")
+        assert executor.endings() == [Ending(pieces[0], b"result")]
+        assert executor.start(pieces[-1], alone=True) and not executor.start(pieces[0])
+        threads[0].begun[-1][-1].set_exception(Failed("no"))
+        assert executor.endings() == [Ending(pieces[-1], None, "no")]
+    assert knobs["stopped"]() is True and threads[0].ended == {"cancel_futures": True}
+
+
+def test_half_an_hour_is_given_to_a_try_and_half_a_second_to_a_look():
+    assert (processes.PATIENCE, processes.LOOK) == (1800, 0.5)
