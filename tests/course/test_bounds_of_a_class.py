@@ -1,0 +1,177 @@
+"""The bounds of a class's grading, to the last one that is still taken, and who is told what."""
+
+from datetime import UTC, datetime, timedelta
+from fractions import Fraction
+
+import pytest
+
+from hdrlab.course.classroom import handins, journal, late, marks, moodle, overview, roster, run
+from hdrlab.course.classroom.handins import Handin
+from hdrlab.course.classroom.journal import Done, Piece
+from hdrlab.course.classroom.late import Handed
+from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.classroom.run import Course
+from hdrlab.course.plan import Conditions, Homework, Late, Task
+from hdrlab.course.reports import gradebook, results, sheets
+from hdrlab.course.reports.results import Check, Result
+
+NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
+HOMEWORK = Homework("hw2", "Curves", NOON, (Task("a", "b.a", 10.0),))
+CLASS = Roster((Student("b1", "Ada", "t", "a@x"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
+
+
+def test_the_bounds_are_those_that_the_pages_for_instructors_name():
+    assert (handins.LARGEST, handins.MOST, run.MOST, marks.LARGE) == (256 << 20, 1000, 64 << 20, 128 << 20)
+    assert (late.GRACE, late.DAY, list(marks.DAYS), overview.BINS) == (
+        10,
+        timedelta(days=1),
+        [*range(15)],
+        10,
+    )
+    assert (roster.TEAM, roster.NAME) == (2, 80)
+    assert set(map(chr, range(32))) | set('/\\:*?"<>|') == roster.FORBIDDEN
+    assert marks.COLUMNS[-3:] == ("score", "grace left", "note") and len(marks.COLUMNS) == 13
+
+
+def result(student="t", *kinds, problems=(), **more):
+    """A Result with a check for each kind of answer."""
+    checks = [
+        Check(
+            "a",
+            f"c{k}",
+            f"P{k}",
+            Fraction(not kind),
+            Fraction(1),
+            "no answer" if kind else "holds",
+            kind=kind,
+        )
+        for k, kind in enumerate(kinds or ("",))
+    ]
+    made = Result(student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {})
+    return made._replace(**more)
+
+
+HANDINS = {
+    team: Handin(team, (), None, NOON + timedelta(hours=hours), team) for team, hours in (("t", 0), ("b3", 1))
+}
+
+
+@pytest.mark.parametrize(
+    ("only", "hours", "teams"),
+    [
+        ((), None, "t b3"),
+        (("b1",), None, "t"),
+        (("B2", "t"), None, "t"),
+        (("b3", "b1"), None, "t b3"),
+        ((), 0, "t b3"),
+        ((), 0.5, "b3"),
+        ((), 1, "b3"),
+        ((), 1.1, ""),
+        (("t",), 0.5, ""),
+        (("t",), 0, "t"),
+    ],
+)
+def test_who_is_named_and_has_come_since_a_time_is_graded(only, hours, teams, monkeypatch):
+    since = None if hours is None else NOON + timedelta(hours=hours)
+    assert " ".join(run.select_handins(HANDINS, CLASS, only, since)) == teams
+    with pytest.raises(ValueError, match="expected names that have handed in, got b3$"):
+        run.select_handins({"t": HANDINS["t"]}, CLASS, ["b1", "b3"])
+
+
+@pytest.fixture
+def done(tmp_path):
+    """A piece whose result is there."""
+    piece = Piece("t", "file", "key")
+    journal.make_private(tmp_path / "results")
+    journal.write(journal.place(tmp_path / "results", piece), results.to_json(result("t")))
+    return Done(piece, journal.place(tmp_path / "results", piece))
+
+
+def test_feedback_is_written_where_any_of_it_is_missing_or_of_another_result(done, tmp_path):
+    folder = tmp_path / "feedback" / "t"
+    shown = results.for_team(done.result.read_bytes())
+    for spoil in (None, "result.json", "feedback.html", "result.csv"):
+        if spoil:
+            (folder / spoil).unlink()
+        assert run.write_feedback(tmp_path, done) is done
+        assert all((folder / name).is_file() for name in gradebook.FILES)
+        assert (folder / "result.json").read_bytes() == shown
+    (folder / "result.json").write_bytes(b"other")
+    (folder / "feedback.html").write_bytes(b"other")
+    run.write_feedback(tmp_path, done)
+    assert (folder / "result.json").read_bytes() == shown and (folder / "feedback.html").stat().st_size > 5
+    (folder / "feedback.html").write_bytes(b"kept")
+    run.write_feedback(tmp_path, done)
+    assert (folder / "feedback.html").read_bytes() == b"kept"
+    for one in (folder, folder.parent):
+        assert one.stat().st_mode & 0o777 == 0o700
+    assert list(run.read(tmp_path, [done.piece, Piece("x", "file", "key")])) == [result("t")]
+
+
+def test_feedback_that_cannot_be_written_says_why_in_two_hundred_characters(done, tmp_path):
+    done.result.write_bytes(b"damaged")
+    found = run.write_feedback(tmp_path, done)
+    assert found.why.startswith("its feedback could not be written: ") and found.result == done.result
+    missing = done._replace(result=None)
+    assert run.write_feedback(tmp_path, missing) is missing
+    assert list(run.read(tmp_path, [done.piece])) == []
+
+
+def test_a_row_of_the_gradebook_says_what_came_and_what_it_is_worth():
+    course = Course(CLASS, HOMEWORK, Conditions(), Late(1, 2.0), [Handed("hw1", 1, ("b3",), 5.0)])
+    came = {"t": Handin("t", ("b1", "b2"), None, NOON + timedelta(days=1, hours=1), "d", "a note")}
+    first, second, third = marks.marks(course, came, {"t": 8.0}, {"b3": "refused"})
+    assert first == (
+        "b1",
+        "Ada",
+        "t",
+        "hw2",
+        "2026-03-02T13:00+00:00",
+        2,
+        1,
+        8.0,
+        10.0,
+        2.0,
+        6.0,
+        0,
+        "a note",
+    )
+    assert second[5:] == first[5:]
+    assert third == ("b3", "Cy", "b3", "hw2", "", 0, 0, 0.0, 10.0, 0.0, 0.0, 0, "not handed in; refused")
+    ungraded = marks.marks(course, came, {})[0]
+    assert (ungraded.work, ungraded.penalty, ungraded.note) == (0, 0, "not graded; a note")
+    _, rows = moodle.gradebook([first], CLASS, HOMEWORK)
+    assert rows == [["b1", "b1", "a@x", 6.0]]
+    header, table = marks.what_if(course, {"t": 8.0})
+    assert header[:6] == ["student", "name", "team", "homework", "work", "late 0"] and len(header) == 20
+    assert table[0][4:9] == [8.0, 8.0, 8.0, 6.0, 4.0] and table[2][4:8] == [10.0, 10.0, 8.0, 6.0]
+
+
+def test_a_gradebook_is_read_by_the_next_homework(tmp_path):
+    lines = ["student,homework,received,late,work,note"]
+    lines += ["'=b1,hw1,2026,3,7.5,", "b2,hw1,,0,0,not handed in", "b3,hw1,2026,1,2,not graded; x"]
+    (tmp_path / "a.csv").write_text("\n".join(lines), encoding="utf8")
+    assert marks.read([tmp_path / "a.csv"]) == [Handed("hw1", 3, ("=b1",), 7.5)]
+
+
+def test_a_tally_counts_each_result_and_says_why_nothing_of_one_could_be_checked():
+    each = [
+        result("a", "", "raised", misconceptions={"hat": "S"}),
+        result("b", "missing", "missing", problems=("no file", "more")),
+        result("c", "missing", "", problems=("a problem",)),
+    ]
+    found = overview.tally(each)
+    assert found.points == {"a": 1, "b": 0, "c": 1} and found.refused == {"b": "no file"}
+    assert found.outcomes["a", "P0"] == {"holds": 1, "no answer": 2} and found.met == {("hat", "S"): 1}
+    assert overview.histogram([0, 0.99, 1, 9.99, 10, 12], 10) == [
+        *((0, 2), (10, 1), *((k, 0) for k in range(20, 90, 10)), (90, 3)),
+    ]
+
+
+def test_a_table_is_read_up_to_its_bound(tmp_path):
+    (tmp_path / "a.csv").write_bytes(b" A ,b\n1\n\n 2 ,3\n")
+    size = (tmp_path / "a.csv").stat().st_size
+    assert sheets.read_csv(tmp_path / "a.csv", most=size) == [{"a": "1", "b": ""}, {"a": "2", "b": "3"}]
+    with pytest.raises(ValueError, match=f"at most {size - 1} bytes, got {size}"):
+        sheets.read_csv(tmp_path / "a.csv", most=size - 1)
+    assert sheets.read_csv.__kwdefaults__ == {"most": 5_000_000}

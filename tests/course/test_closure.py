@@ -1,0 +1,166 @@
+"""The text of a task with what it needs, statement by statement: which are taken, and in which order."""
+
+import pytest
+
+from hdrlab.course.code import closure
+from hdrlab.course.code.closure import Cell, closed
+
+F = "def f():\n    return x"
+
+
+def source(*cells, task="f"):
+    """Return the statements of a task's text; the last cell is the task's own."""
+    made = [Cell(text) for text in cells[:-1]] + [Cell(cells[-1], task)]
+    texts, problems = closed(made, [task])
+    assert not problems
+    assert texts[task].endswith("\n") and not texts[task].endswith("\n\n")
+    return texts[task].removesuffix("\n").split("\n\n")
+
+
+def run(statements):
+    scope = {}
+    exec("\n\n".join(statements), scope)
+    return scope["f"]()
+
+
+@pytest.mark.parametrize(
+    ("cells", "expected"),
+    [
+        (("x = 1; y = 2", F), ["x = 1", F]),
+        (("y = 2; x = y + 1", F), ["y = 2", "x = y + 1", F]),
+        (("y = 2;  x = {\n  'a': y}", F), ["y = 2", "x = {\n  'a': y}", F]),
+        (("\u00e9 = '\u00e9'; x = \u00e9", F), ["\u00e9 = '\u00e9'", "x = \u00e9", F]),
+        (("z = 1\nx = 7\nprint(x)\nx", F), ["x = 7", F]),
+        (("import os\nx = os.sep", F), ["import os", "x = os.sep", F]),
+        (("x = sep", "from os import sep", F), ["from os import sep", "x = sep", F]),
+        (
+            ("from numpy import *\nfrom scipy.linalg import *", F),
+            ["from numpy import *", "from scipy.linalg import *", F],
+        ),
+        (("from secrets import *\nx = 1", F), ["x = 1", F]),
+        (("import math as m\nimport math as x", F), ["import math as x", F]),
+        (("x = 1", "import os as x", F), ["import os as x", F]),
+        (("import os as x", "x.sep = 1", F), ["import os as x", F]),
+    ],
+)
+def test_of_other_cells_the_statements_that_are_needed_are_taken_and_imports_stand_first(cells, expected):
+    assert source(*cells) == expected
+
+
+DECORATED = "@wrap\n@wrap\ndef x():\n    return 1"
+WRAP = "def wrap(g):\n    return g"
+
+
+@pytest.mark.parametrize(
+    ("cells", "expected"),
+    [
+        ((WRAP, DECORATED, F), [WRAP, DECORATED, F]),
+        ((DECORATED, WRAP, F), [WRAP, DECORATED, F]),
+        (("def x():\n    return 1", "def x():\n    return 2", F), ["def x():\n    return 2", F]),
+        (("class x:\n    a = 1", "class x:\n    a = 2", F), ["class x:\n    a = 2", F]),
+        (
+            ("async def x():\n    return 1", "async def x():\n    return 2", F),
+            ["async def x():\n    return 2", F],
+        ),
+        (("@int\ndef x():\n    return 1", "x = 2", F), ["@int\ndef x():\n    return 1", "x = 2", F]),
+        (("x = 0", "def x(): 1", "x.a = 1", F), ["def x(): 1", "x.a = 1", F]),
+        (("x.a = 0", "def x(): 1", "x.a = 1", "x.b = 2", F), ["def x(): 1", "x.a = 1", "x.b = 2", F]),
+        (("def x(): 0", "x.a = 0", "def x(): 1", "x.a = 1", F), ["def x(): 1", "x.a = 1", F]),
+        (("x = 1", "x = x + 1", "x *= 3", F), ["x = 1", "x = x + 1", "x *= 3", F]),
+        (
+            ("x = [1]", "x.append(2)", "x[0] = 3", "x.a.b[1] = 3", F),
+            ["x = [1]", "x.append(2)", "x[0] = 3", "x.a.b[1] = 3", F],
+        ),
+        (("for k in range(3):\n    x = k", F), ["for k in range(3):\n    x = k", F]),
+        (("k = 9", "for k in range(3):\n    x = k", F), ["for k in range(3):\n    x = k", F]),
+    ],
+)
+def test_of_a_name_that_is_bound_again_what_makes_its_value_is_taken(cells, expected):
+    assert source(*cells) == expected
+
+
+def test_a_helper_in_the_tasks_own_cell_comes_before_one_of_another_cell():
+    own = f"def x():\n    return 'own'\n\n{F}"
+    for cells in ((own, "def x():\n    return 'other'"), ("def x():\n    return 'other'", own)):
+        made = [Cell(text, "f" if text is own else "") for text in cells]
+        assert closed(made, ["f"])[0]["f"] == f"def x():\n    return 'own'\n\n{F}\n"
+    assert source("def x():\n    return 1", "def x():\n    return 2", F)[0].endswith("2")
+
+
+def test_functions_that_are_only_called_keep_their_order_and_what_runs_at_once_comes_before():
+    g = "def g():\n    return 1"
+    assert source("def h():\n    return g()", g, "def f():\n    return h()") == [
+        "def h():\n    return g()",
+        g,
+        "def f():\n    return h()",
+    ]
+    assert source("x = g()", g, F) == [g, "x = g()", F]
+
+
+def test_what_is_made_by_a_call_stands_after_all_that_the_function_reads():
+    cells = ("x = g()", "def g():\n    return list(y)", "y = [1]", "y.append(2)", "y.append(3)", F)
+    assert run(source(*cells)) == [1, 2, 3]
+    cells = (
+        "x = g()",
+        "def g():\n    return h()",
+        "def h():\n    return a + b",
+        "a = 1",
+        "a += 1",
+        "b = a",
+        F,
+    )
+    assert run(source(*cells)) == 4
+
+
+def test_an_odd_escape_is_the_students_own_business():
+    assert source("x = '\\d'", F) == ["x = '\\d'", F]
+
+
+@pytest.mark.parametrize("end", ["\n", "\r", "\r\n"])
+def test_lines_may_end_in_any_way_and_hold_a_form_feed(end):
+    assert source(f"x = 1{end}y = 2\x0c{end}x = x + y", F) == ["x = 1", "y = 2", "x = x + y", F]
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("x = 1", "x = 1"),
+        ("  x = 1\n  y = 2", "x = 1\ny = 2"),
+        ("%%time\nx = 1", "x = 1"),
+        ("%%script python\nx = 1", "x = 1"),
+        ("%%bash\nls", ""),
+        ("\n%%html\n<p>", ""),
+        ("if x:\n    %timeit f\n    !ls\ny?\n?y", "if x:\n    pass\n    pass\npass\npass"),
+        ("s = '''\n%time\n'''", "s = '''\n%time\n'''"),
+        ("s = 5 \\\n% 3", "s = 5 \\\n% 3"),
+        ("x = 1 ? \r\ny", "pass\ny"),
+        ("x = (\n%time", "x = (\npass"),
+    ],
+)
+def test_of_a_cell_what_only_a_notebook_understands_is_passed_over(text, expected):
+    assert closure.plain(text) == expected
+
+
+def test_what_is_given_takes_the_place_of_the_copy_in_the_sheet_and_is_no_answer():
+    given = [Cell("x = 'ours'", given=True), Cell("def f():\n    return 'ours'", "f", True)]
+    cells = [Cell("x = 'theirs'", given=True), Cell(F, "f")]
+    assert closed(cells, ["f"], given)[0]["f"] == f"x = 'ours'\n\n{F}\n"
+    assert closed(cells, ["f"])[0]["f"] == f"x = 'theirs'\n\n{F}\n"
+    assert closed(cells[:1], ["f"], given) == (
+        {},
+        ["f was not found: no cell defines a function of this name"],
+    )
+
+
+@pytest.mark.parametrize(
+    ("cell", "said"),
+    [
+        (Cell("x = = 1", "", False, "cell 3"), "cell 3 is no Python, line 1: "),
+        (Cell("x = 1\ny = = 1", "f", False, "cell 4"), "cell 4, which holds f, is no Python, line 2: "),
+        (Cell("x = = 1", "g", False, "cell 5"), "cell 5 is no Python, line 1: "),
+        (Cell("x = '\0'", "", False, "cell 6"), "cell 6 is no Python"),
+    ],
+)
+def test_a_cell_that_is_no_python_is_told_with_its_line(cell, said):
+    texts, problems = closed([cell, Cell("def f(): 1")], ["f"])
+    assert texts == {"f": "def f(): 1\n"} and len(problems) == 1 and problems[0].startswith(said)

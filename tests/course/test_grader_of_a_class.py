@@ -1,0 +1,133 @@
+"""How one submission of a class is graded: under what, how often, and what travels with it."""
+
+from datetime import UTC, datetime
+from fractions import Fraction
+from types import SimpleNamespace
+
+import pytest
+
+from hdrlab.course.classroom import run
+from hdrlab.course.classroom.journal import Piece
+from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.classroom.run import Grader
+from hdrlab.course.plan import Conditions, Homework, Task
+from hdrlab.course.reports import results
+from hdrlab.course.reports.results import Check, Result
+from hdrlab.course.sandbox.running import Unavailable
+
+NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
+HOMEWORK = Homework("hw2", "Curves", NOON, (Task("a", "b.a", 10.0),))
+CLASS = Roster((Student("b1", "Ada", "t", "a@x"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
+
+
+def result(student="t", *kinds, problems=(), **more):
+    """A Result with a check for each kind of answer."""
+    checks = [
+        Check(
+            "a",
+            f"c{k}",
+            f"P{k}",
+            Fraction(not kind),
+            Fraction(1),
+            "no answer" if kind else "holds",
+            kind=kind,
+        )
+        for k, kind in enumerate(kinds or ("",))
+    ]
+    made = Result(student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {})
+    return made._replace(**more)
+
+
+def grader(monkeypatch, *each, **knobs):
+    """Return a Grader whose tries give these results, and what each was asked."""
+    left, asked = list(each), []
+
+    def grade(path, homework, conditions):
+        files = (
+            {}
+            if conditions.hidden is None
+            else {
+                path.relative_to(conditions.hidden).as_posix(): path.read_bytes()
+                for path in conditions.hidden.rglob("*")
+                if path.is_file()
+            }
+        )
+        asked.append((path, conditions.student, files))
+        return left.pop(0)
+
+    monkeypatch.setattr(run.grading, "grade", grade)
+    return Grader(HOMEWORK, Conditions(**knobs.pop("conditions", {})), **knobs), asked
+
+
+PIECE = Piece("t", "file", "key")
+
+
+@pytest.mark.parametrize(
+    ("tries", "tried", "counts"),
+    [
+        ([("",)], 1, 0),
+        ([("", "raised")], 1, 0),
+        ([("killed", ""), ("", "")], 2, 1),
+        ([("", "killed"), ("killed", ""), ("raised", "")], 3, 2),
+        ([("killed", ""), ("killed", ""), ("killed", "")], 3, 0),
+        ([("killed", ""), ("", "killed"), ("killed", "")], 3, None),
+        ([("killed", ""), ("killed", ""), ("", "killed")], 3, None),
+    ],
+)
+def test_a_function_that_was_killed_is_asked_again_and_believed_when_it_is_so_each_time(
+    tries, tried, counts, monkeypatch
+):
+    made, asked = grader(monkeypatch, *(result("x", *kinds) for kinds in tries))
+    if counts is None:
+        with pytest.raises(ValueError, match="ended without an answer, each time at another check"):
+            made.result(PIECE)
+    else:
+        assert made.result(PIECE) == results.to_json(result("t", *tries[counts]))
+    assert len(asked) == tried
+
+
+@pytest.mark.parametrize(("secret", "student"), [("", ""), ("s", "t")])
+def test_inputs_are_a_students_own_where_there_is_a_secret_and_hidden_checks_are_laid_beside(
+    secret, student, monkeypatch
+):
+    files = [("test_a.py", b"1"), ("data/b/x.npy", b"2"), ("data/b/y.npy", b"3")]
+    made, asked = grader(monkeypatch, result("x"), conditions={"secret": secret}, hidden=files)
+    made.result(PIECE)
+    assert asked == [("file", student, dict(files))]
+    made, asked = grader(monkeypatch, result("x"))
+    made.result(PIECE)
+    assert asked == [("file", "", {})]
+
+
+def test_a_machine_without_the_tier_says_so_once(monkeypatch):
+    asked = []
+    monkeypatch.setattr(
+        run.doctor,
+        "examine",
+        lambda tier: asked.append(tier) or SimpleNamespace(works=tier != "none", says="no walls"),
+    )
+    run._ready.cache_clear()
+    for tier in ("some", "some", "none"):
+        made = Grader(HOMEWORK, Conditions(tier))
+        if tier == "none":
+            with pytest.raises(Unavailable, match="no walls"):
+                made.ready()
+        else:
+            made.ready()
+    run._ready.cache_clear()
+    assert asked == ["some", "none"]
+
+
+def test_hidden_checks_travel_by_name_up_to_their_bound(tmp_path, monkeypatch):
+    assert run.hidden(None) == []
+    for name in ("b.py", "a/c.npy", "a/__pycache__/c.pyc"):
+        (tmp_path / "h" / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / "h" / name).write_bytes(name.encode())
+    whole = [("a/c.npy", b"a/c.npy"), ("b.py", b"b.py")]
+    monkeypatch.setattr(run, "MOST", 11)
+    assert run.hidden(tmp_path / "h") == whole
+    monkeypatch.setattr(run, "MOST", 10)
+    with pytest.raises(ValueError, match="expected hidden checks of at most 10 bytes, got 11"):
+        run.hidden(tmp_path / "h")
+    with pytest.raises(ValueError, match="expected a folder with hidden checks, got"):
+        run.hidden(tmp_path / "h" / "b.py")
