@@ -1,0 +1,241 @@
+"""How a submission is read: within which limits, by which tries, and each bound to the last character."""
+
+import codecs
+import json
+import zipfile
+from pathlib import Path
+
+import pytest
+
+from hdrlab.course import submission
+from hdrlab.course.classroom.executors import alone
+from hdrlab.course.code.closure import Cell
+from hdrlab.course.submission import Submission
+
+SAID = [{"f": "text"}, ["a problem"], "digest", ["numpy"], {"f": "a/b"}]
+
+
+@pytest.fixture
+def tried(monkeypatch):
+    """tried(endings...) -> the knobs of each try to read in a process of its own, which ends so."""
+
+    def tried(*endings):
+        left, asked = list(endings), []
+
+        def run(work, order, *, patience, limits):
+            assert work is submission._read and Path(order[1]).is_dir()
+            asked.append((order[0], *order[2:], patience, limits))
+            end = left.pop(0)
+            if isinstance(end, Exception):
+                raise end
+            return json.dumps(end).encode()
+
+        monkeypatch.setattr(alone, "run", run)
+        return asked
+
+    return tried
+
+
+def failed(own=False, killed=False):
+    made = alone.Failed("it was ended")
+    made.own, made.killed = own, killed
+    return made
+
+
+def test_the_bounds_of_a_submission_are_those_that_the_pages_name():
+    assert (submission.LARGEST, submission.MOST_CODE, submission.MOST_SOURCE) == (
+        50_000_000,
+        1_000_000,
+        900_000,
+    )
+    assert submission.UNPACKED == (2000, 256 << 20, 512 << 20, 12, 200, 200)
+    assert (submission.SECONDS, submission.MEMORY, submission.UNPACKING) == (2, 500 << 20, 3)
+    assert (submission.TRIES, submission.PATIENCE, submission.TOLD) == (3, 25, 12)
+
+
+@pytest.mark.parametrize(
+    ("name", "seconds"),
+    [("a.ipynb", 2), ("a.py", 2), ("a.zip", 5), ("a.tar.GZ", 5), ("a.tgz", 5), ("a.zip.txt", 2)],
+)
+def test_a_file_is_read_in_two_seconds_and_an_archive_in_five(name, seconds, tried):
+    asked = tried(SAID)
+    found = submission.read(Path(name), "hw2", ["f", "g"], [Cell("x = 1")])
+    assert found == Submission({"f": "text"}, ("a problem",), "digest", ("numpy",), {"f": "a/b"})
+    limits = {"CPU": seconds, "AS": 500 << 20}
+    assert asked == [(Path(name), "hw2", ("f", "g"), (Cell("x = 1"),), 25.0, limits)]
+
+
+def test_what_costs_more_than_any_homework_is_told_and_not_tried_again(tried):
+    asked = tried(failed(own=True))
+    said = "a.zip takes more than 5 s or 500 MB to read, as no homework does"
+    assert submission.read(Path("a.zip"), "hw2", []) == Submission({}, (said,), "") and len(asked) == 1
+
+
+@pytest.mark.parametrize(
+    ("endings", "tries", "read"),
+    [
+        ([failed(killed=True), SAID], 2, True),
+        ([failed(killed=True), failed(killed=True), SAID], 3, True),
+        ([failed(killed=True), failed(killed=True), failed(killed=True), SAID], 3, False),
+        ([failed(), SAID], 1, False),
+        ([failed(killed=True), failed(), SAID], 2, False),
+    ],
+)
+def test_a_process_that_somebody_ends_is_tried_three_times_and_any_other_once(endings, tries, read, tried):
+    asked = tried(*endings)
+    if read:
+        assert submission.read(Path("a.py"), "hw2", []).hash == "digest"
+    else:
+        with pytest.raises(ValueError, match="^it could not be read: it was ended$"):
+            submission.read(Path("a.py"), "hw2", [])
+    assert len(asked) == tries
+
+
+def test_in_that_process_an_archive_is_opened_and_its_notebook_is_read(tmp_path):
+    text = "import numpy as np\nfrom scipy import ndimage\ndef f():\n    return np.pi, ndimage\n"
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as opened:
+        opened.writestr("in/hw2.py", text)
+    (tmp_path / "scratch").mkdir()
+    order = (tmp_path / "a.zip", tmp_path / "scratch", "hw2", ("f",), ())
+    sources, problems, digest, modules, variants = json.loads(submission._read(order))
+    assert sources["f"].endswith("return np.pi, ndimage\n") and problems == [] and variants is None
+    assert modules == ["numpy", "scipy", "scipy.ndimage"] and len(digest) == 64
+    (tmp_path / "b.zip").write_bytes(b"none")
+    order = (tmp_path / "b.zip", tmp_path, "hw2", ("f",), ())
+    sources, problems, digest, *_ = json.loads(submission._read(order))
+    assert (sources, digest) == ({}, "") and problems[0].startswith("The archive is refused: ")
+
+
+@pytest.mark.parametrize(
+    ("names", "told"),
+    [
+        (["a.txt"], "none"),
+        (["a.py", "b.ipynb"], "a.py, b.ipynb"),
+        ([f"{letter}.py" for letter in "abcdefg"], "a.py, b.py, c.py, d.py, e.py"),
+        (["n" * 79 + ".py", "b.py"], "n" * 79 + "\u2026, b.py"),
+        (["hw2a.py", "hw2b.py", "c.py"], "hw2a.py, hw2b.py"),
+    ],
+)
+def test_where_an_archive_holds_no_one_notebook_the_first_five_are_named(names, told, tmp_path):
+    with zipfile.ZipFile(tmp_path / "a.zip", "w") as opened:
+        for name in names:
+            opened.writestr(name, "1")
+    said = f"Expected one notebook or Python file in the archive, got {told}."
+    assert submission.opened(tmp_path / "a.zip", tmp_path, "hw2") == (tmp_path / "a.zip", said)
+
+
+# What is in it
+
+
+@pytest.fixture
+def read(tmp_path):
+    """read(data) -> the Submission of a file of these bytes."""
+
+    def read(data, *tasks, name="hw.py"):
+        (tmp_path / name).write_bytes(data if isinstance(data, bytes) else data.encode())
+        return submission.tasks_of(tmp_path / name, tasks)
+
+    return read
+
+
+def test_a_file_may_be_as_large_as_fifty_megabytes(read, monkeypatch):
+    monkeypatch.setattr(submission, "LARGEST", 7)
+    assert read("x = 123").problems == ()
+    assert read("x = 1234").problems == ("hw.py has more than 0 MB; clear its outputs",)
+
+
+def test_a_task_may_need_as_much_code_as_goes_to_the_sandbox(read, monkeypatch):
+    text = "def f(): 1\n"
+    monkeypatch.setattr(submission, "MOST_SOURCE", len(json.dumps(text)))
+    assert read(text, "f").sources == {"f": text}
+    monkeypatch.setattr(submission, "MOST_SOURCE", len(json.dumps(text)) - 1)
+    found = read(text, "f")
+    assert found.sources == {} and found.problems == ("f needs more than 13 characters of code",)
+
+
+def test_twelve_problems_are_told_each_in_three_hundred_characters(read):
+    names = [f"f{k}" for k in range(13)]
+    twelve, more = read("x = 1", *names[:12]).problems, read("x = 1", *names).problems
+    assert len(twelve) == 12 and twelve[11].startswith("f11 was not found")
+    assert more == (*twelve, "... and 1 more of the kind")
+    (long,) = read("x = 1", "n" * 400).problems
+    assert len(long) == 300
+
+
+@pytest.mark.parametrize(
+    ("data", "problems"),
+    [
+        (b"", ("hw.py is empty",)),
+        (b" \n", ("hw.py is empty", "f was not found: no cell defines a function of this name")[:1]),
+        (b"\xff", ("hw.py is neither a notebook nor Python text; save it in UTF-8",)),
+        (b"# nothing", ("f was not found: no cell defines a function of this name",)),
+        (b'{"cells": []}', ("f was not found: no cell defines a function of this name",)),
+        (b'{"cells": 1}', ("hw.py has no cells; a notebook of version 4 is expected",)),
+    ],
+)
+def test_what_is_missing_is_told_where_something_was_read(data, problems, read):
+    assert read(data, "f").problems == problems
+
+
+def test_the_variants_that_a_sheet_names_are_those_of_its_call(read):
+    call = 'use_plan("hw2", {"shift": "cut/goes/rows", "hat": "one",\n "exclusion":  "compared/above/six"})'
+    assert read(call).variants == {"shift": "cut/goes/rows", "exclusion": "compared/above/six"}
+    assert read('x = {"shift": "cut/goes/rows"}').variants is None
+    assert read("use_plan()\n# %%\nx = {'a': 1}").variants == {}
+
+
+@pytest.mark.parametrize(
+    "data",
+    [
+        "x = '\u00e9'".encode(),
+        codecs.BOM_UTF8 + "x = '\u00e9'".encode(),
+        "x = '\u00e9'".encode("utf-16"),
+        codecs.BOM_UTF16_BE + "x = '\u00e9'".encode("utf-16-be"),
+        "# coding: latin-1\nx = '\u00e9'".encode("latin-1"),
+        '  {"cells": [{"cell_type": "code", "source": "# coding: latin-1\\nx = \'\u00e9\'"}]}'.encode(),
+    ],
+)
+def test_text_is_read_as_its_author_meant_it(data):
+    (cell,), problems = submission.cells_of(data, "hw")
+    assert cell.text.endswith("x = '\u00e9'") and not problems
+
+
+def test_a_python_file_has_a_cell_for_each_fence_and_where_it_begins():
+    text = "a = 1\n\n# %%\nb = 2\n# %% [markdown]\n# words\n# %% [raw]\nr\n"
+    text += '# %% task="f" given="yes"\n\nc = 3\n# %%\n'
+    assert submission.cells_of(text.encode(), "hw.py") == (
+        [
+            Cell("a = 1\n\n", "", False, "the file's beginning"),
+            Cell("\nb = 2\n", "", False, "line 3"),
+            Cell("\n\nc = 3\n", "f", True, "line 9"),
+        ],
+        [],
+    )
+    assert submission.cells_of(b"\n# %%\nb", "hw.ipynb") == (
+        [Cell("\nb", "", False, "line 2")],
+        ["hw.ipynb is not a notebook, and was read as Python text"],
+    )
+
+
+def test_a_notebooks_cells_are_code_with_marks_of_which_nothing_is_believed():
+    code = {"cell_type": "code"}
+    cells = [
+        {"cell_type": "markdown", "source": "words"},
+        code | {"source": ["a\n", "b"], "metadata": {"hdrlab": {"task": "f", "given": True}}},
+        7,
+        code | {"source": "c", "metadata": {"hdrlab": {"task": 1, "given": 1}}},
+        code | {"input": "d", "metadata": {"hdrlab": "f"}},
+        code | {"source": None, "metadata": "f"},
+    ]
+    found = [
+        Cell("a\nb", "f", True, "cell 2"),
+        Cell("c", "", False, "cell 4"),
+        Cell("d", "", False, "cell 5"),
+    ]
+    found.append(Cell("", "", False, "cell 6"))
+    assert submission.cells_of(json.dumps({"cells": cells}).encode(), "a.ipynb") == (found, [])
+    old = {"worksheets": [{"cells": cells[:2]}, {"cells": 7}, 8]}
+    assert submission.cells_of(json.dumps(old).encode(), "a.ipynb") == ([found[0]], [])
+    for none in ([], {"cells": {}}, {"worksheets": 1}, {}):
+        said = [] if none == [] else ["a.ipynb has no cells; a notebook of version 4 is expected"]
+        assert submission.cells_of(json.dumps(none).encode(), "a.ipynb")[1] == said or none == []
