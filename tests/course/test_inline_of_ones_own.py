@@ -1,0 +1,209 @@
+"""A function of one's own with all that it needs, letter by letter: what is copied, renamed and left out."""
+
+import pytest
+
+from hdrlab.course.code import inline, source
+from hdrlab.course.code.source import Key
+
+OWN = '''\
+"""A module."""
+
+import os
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy import ndimage
+
+# a comment above
+# on two lines
+WIDTH = 3  # words
+TABLE = {"é": WIDTH}
+TABLE2 = 5
+
+
+class State(NamedTuple):
+    """A state.
+
+    More of it.
+    """
+
+    s: int
+    f: Any
+
+
+# of a helper
+def helper(x: float, k: int = WIDTH) -> float:
+    """Return one.
+
+    Parameters
+    ----------
+    x : y
+    """
+    if x < 0:
+        raise ValueError(x)
+    return State(x, k), "é" and TABLE, "é", helper
+
+
+@np.vectorize
+def again(x: int) -> int:
+    """Return x."""
+
+    y = x
+
+    return again(y) if y else helper(y)
+
+
+def main(x: Any, /, *more: int, k: float = 2, **rest: Any) -> str:
+    """Return all."""
+    return again(x) + helper(x) + ndimage.zoom(x) + np.pi + os.sep
+'''
+FIRST = '''\
+import os
+from typing import NamedTuple
+import numpy as np
+from scipy import ndimage
+
+# a comment above
+# on two lines
+WIDTH = 3  # words
+
+class State(NamedTuple):
+    """A state."""
+
+    s: int
+    f: np.ndarray
+
+TABLE = {"é": WIDTH}
+
+# of a helper
+def helper(x, k=WIDTH):
+    """Return one."""
+    return State(x, k), "é" and TABLE, "é", helper
+
+@np.vectorize
+def again2(x):
+    """Return x."""
+
+    y = x
+
+    return again2(y) if y else helper(y)
+
+def other(x, /, *more, k=2, **rest):
+    """Return all."""
+    return again2(x) + helper(x) + ndimage.zoom(x) + np.pi + os.sep
+'''
+SECOND = '''\
+@np.vectorize
+def again2(x):
+    """Return x."""
+
+    y = x
+
+    return again2(y) if y else helper(y)
+'''
+
+
+@pytest.fixture
+def inlined(tmp_path):
+    """inlined({name: (file, text, function)}) -> the text of each, with what it needs."""
+
+    def inlined(functions, given=()):
+        for file, text, _ in functions.values():
+            (tmp_path / file).write_text(text, encoding="utf8")
+        asked = {name: f"{tmp_path / file}:{function}" for name, (file, _, function) in functions.items()}
+        given = [f"{tmp_path / file}:{function}" for file, function in given]
+        return {name: block.text + "\n" for name, block in inline.inlined(asked, given).items()}
+
+    return inlined
+
+
+def test_a_function_is_copied_with_comments_and_without_types_guards_and_the_rest_of_its_words(inlined):
+    found = inlined({"other": ("own.py", OWN, "main"), "again2": ("own.py", OWN, "again")})
+    assert found == {"other": FIRST, "again2": SECOND}
+
+
+def test_what_is_given_is_not_copied(inlined):
+    found = inlined({"main": ("own.py", OWN, "main")}, [("own.py", "State"), ("own.py", "WIDTH")])["main"]
+    assert "class State" not in found and "WIDTH = 3" not in found and "TABLE = " in found
+    assert "def again(x):" in found and "def main(" in found
+
+
+def test_two_helpers_of_one_name_part_by_their_files_and_two_alike_are_one(inlined):
+    texts = {k: f"def helper():\n    return {k}\n\n\ndef main():\n    return helper()\n" for k in (1, 2)}
+    found = inlined(
+        {"a": ("a.py", texts[1], "main"), "b": ("b.py", texts[2], "main"), "c": ("c.py", texts[1], "main")}
+    )
+    assert found == {
+        "a": "def helper():\n    return 1\n\ndef a():\n    return helper()\n",
+        "b": "def helper_b():\n    return 2\n\ndef b():\n    return helper_b()\n",
+        "c": "def c():\n    return helper()\n",
+    }
+
+
+@pytest.mark.parametrize(
+    ("texts", "joined"),
+    [
+        (["A = 1", "B = 2"], "A = 1\nB = 2"),
+        (["A = 1", "def f(): 1", "B = 2", "C = 3"], "A = 1\n\ndef f(): 1\n\nB = 2\nC = 3"),
+        (["@a\ndef f(): 1", "A = 1"], "@a\ndef f(): 1\n\nA = 1"),
+        (["class A: 1", "class B: 1"], "class A: 1\n\nclass B: 1"),
+        (["# c\nclass A: 1", "A = 1"], "# c\nclass A: 1\n\nA = 1"),
+        ([], ""),
+    ],
+)
+def test_functions_and_classes_stand_a_line_apart_and_constants_close(texts, joined):
+    assert inline._joined(texts) == joined
+
+
+def test_imports_stand_in_the_order_of_where_they_come_from():
+    lines = ["from scipy import b", "import numpy as np", "from typing import A", "import os", "import ast"]
+    assert sorted(lines, key=inline._rank) == [
+        *("import ast", "import os", "from typing import A", "import numpy as np", "from scipy import b")
+    ]
+
+
+def test_places_are_written_as_they_are_read():
+    for text, key in (
+        ("response.debevec.gsolve", Key("hdrlab.response.debevec", "gsolve")),
+        ("/a/v.py:vignette", Key("/a/v.py", "vignette")),
+    ):
+        assert source.key_of(text) == key and source.written(key) == text
+    assert source.WIDTH == 110
+
+
+LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))
+
+
+@pytest.mark.parametrize(
+    ("text", "board"),
+    [
+        ("def f(x: int, *, k: float = 2) -> int:\n    return x", "def f(x, *, k=2):\n    return x"),
+        ("def f(x: int) -> int: return x", "def f(x: int) -> int: return x"),
+        ("def f(\n    x: int,\n    k=1,\n) -> int:\n    return x", "def f(x, k=1):\n    return x"),
+        ("def f():\n    check_it(1)\n    a.require_it(2)\n    checked(3)", "def f():\n    checked(3)"),
+        ("def f():\n    if x:\n        y = 1\n        raise E\n    z", "def f():\n    z"),
+        ("def f():\n    if x:\n        raise E\n    else:\n        y", None),
+        ("def f():\n    if x:\n        y", None),
+        ("if x:\n    raise E", None),
+        ("x: int = 3\ny: int\nz = 1", "x = 3\ny\nz = 1"),
+        ("class A:\n    x: int = 3\n    y: dict[str, int]", None),
+        ("class A:\n    z: Any", "class A:\n    z: np.ndarray"),
+        ("x = 1  # noqa: E731\ny = 2  # type: ignore[a]\nz = 3  # why", "x = 1\ny = 2\nz = 3  # why"),
+        ('def f():\n    """Return x, or raise a ValueError where not."""', 'def f():\n    """Return x."""'),
+        (f"def f({LONG}):\n    return 1", None),
+    ],
+)
+def test_on_the_board_stand_neither_types_nor_guards(text, board):
+    found = source.on_the_board(text)
+    if text.startswith(f"def f({LONG}"):
+        lines = found.splitlines()
+        assert lines[0] == "def f(" and lines[-2:] == ["):", "    return 1"]
+        assert " ".join(one.strip() for one in lines[1:-2]) == LONG and max(map(len, lines)) <= 110
+    else:
+        assert found == (text if board is None else board) + "\n"
+
+
+def test_a_signature_of_a_hundred_and_ten_letters_stays_on_one_line():
+    for letters, lines in ((110, 1), (111, 3)):
+        name = "n" * (letters - len("def f():"))
+        assert len(source.on_the_board(f"def f({name}):\n    return 1").splitlines()) == lines + 1

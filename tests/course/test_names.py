@@ -1,0 +1,43 @@
+"""Names that a piece of Python binds, and those that it takes from outside, statement by statement."""
+
+import ast
+
+import pytest
+
+from hdrlab.course.code import names
+
+
+@pytest.mark.parametrize(
+    ("text", "bound", "free"),
+    [
+        ("x = y", ["x"], ["y"]),
+        ("x += y", ["x"], ["y"]),
+        ("import a.b, c as d", ["a", "d"], []),
+        ("from a import b as c, d", ["c", "d"], []),
+        ("def f(x=a, *y, **z): return x, y, z, b", ["f"], ["a", "b"]),
+        ("async def f(x): return x, b", ["f"], ["b"]),
+        ("class A(B): x = y", ["A"], ["B", "y"]),
+        ("z = [x for x in xs if x < n]", ["z"], ["xs", "n"]),
+        ("z = {k: v for k, v in items}", ["z"], ["items"]),
+        ("if (n := f(x)): y = n", ["n", "y"], ["f", "x", "n"]),
+        ("z = [m := x for x in xs]", ["z", "m"], ["xs", "m"][:1]),
+        ("f = lambda x: x + y", ["f"], ["y"]),
+        ("try:\n    a\nexcept E as e:\n    b = e", ["e", "b"], ["a", "E", "e"]),
+        ("match x:\n    case [a, *b]:\n        pass", ["a", "b"], ["x"]),
+        ("with a as b: c.d(b)", ["b"], ["a", "c", "b"]),
+        ("def f():\n    global g\n    g = 1\n    return g", ["f"], ["g"]),
+    ],
+)
+def test_names_that_a_statement_binds_and_takes_from_outside(text, bound, free):
+    (node,) = ast.parse(text).body
+    assert names.bound(node) == bound and [use.node.id for use in names.free(node)] == free
+
+
+def test_imported_parts_of_numpy_and_scipy_are_named_once():
+    texts = [
+        "import numpy.fft, os\nfrom scipy import ndimage as n",
+        "from . import a\nfrom scipy import ndimage",
+        "x =",
+    ]
+    assert names.imported(texts) == ["numpy.fft", "scipy", "scipy.ndimage"]
+    assert names.modules("from .numpy import a\nimport a.b") == {"a.b"}
