@@ -1,0 +1,170 @@
+"""What a regrade would change, team by team: which result is to count, by how much it moves, and why."""
+
+import json
+import os
+from fractions import Fraction
+
+import pytest
+
+from hdrlab.course.classroom import journal, regrade
+from hdrlab.course.classroom.journal import Piece
+from hdrlab.course.classroom.regrade import Move
+from hdrlab.course.classroom.roster import Roster, Student
+from hdrlab.course.reports import results
+from hdrlab.course.reports.results import Check, Result
+
+PIECE = Piece("t", "file", "new")
+CLASS = Roster((Student("b1", "Ada", "t"), Student("=b2", "Bo", "u")))
+
+
+def result(points, submission="digest", *, name="p", outcome="holds"):
+    check = Check("a", name, f"It {name}s", Fraction(points), Fraction(10), outcome)
+    return Result("t", "hw2", "", "strict", (check,), {}, (), submission, "", "seed", {})
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """folder(standing, staged, here) -> a class's results: that under old checks, under the new, and one that counts."""
+
+    def written(standing=None, staged=None, here=None):
+        for place, found, key in (
+            ("results", standing, "old"),
+            ("regrade/results", staged, "new"),
+            ("results", here, "new"),
+        ):
+            (tmp_path / place).mkdir(parents=True, exist_ok=True)
+            if found is not None:
+                data = found if isinstance(found, bytes) else results.to_json(found)
+                journal.write(journal.place(tmp_path / place, PIECE._replace(key=key)), data)
+        return tmp_path
+
+    return written
+
+
+def moves(out, policy="replace", listed=(), asked=None):
+    return regrade.moves(out, [PIECE], policy, listed, asked or {})
+
+
+@pytest.mark.parametrize(
+    ("policy", "listed", "before", "after", "submission", "counts", "taken"),
+    [
+        ("replace", (), 5, 3, "digest", 3, True),
+        ("replace", (), 5, 7, "digest", 7, True),
+        ("never-lower", (), 5, 3, "digest", 5, False),
+        ("never-lower", (), 5, 5, "digest", 5, True),
+        ("never-lower", (), 5, 7, "digest", 7, True),
+        ("never-lower", (), 5, 3, "another", 3, True),
+        ("only-listed", (), 5, 7, "digest", 5, False),
+        ("only-listed", ("t",), 5, 7, "digest", 7, True),
+        ("only-listed", ("u",), 5, 7, "another", 7, True),
+        ("never-lower", (), None, 3, "digest", 3, True),
+        ("only-listed", (), None, 3, "digest", 3, True),
+    ],
+)
+def test_which_result_counts_is_for_the_policy_to_say(
+    policy, listed, before, after, submission, counts, taken, folder
+):
+    standing = None if before is None else result(before)
+    (move,) = moves(folder(standing, result(after, submission)), policy, listed)
+    assert move[:6] == (PIECE, before, after, counts, counts - (before or 0), taken)
+    same = before is None or before == after
+    assert move.changes == (
+        () if same else (("a", "It ps", f"holds, {before} of 10 \u2192 holds, {after} of 10"),)
+    )
+    assert move.asked == ()
+
+
+def test_who_asks_is_answered_also_where_nothing_changes(folder):
+    out = folder(here=result(5))
+    assert moves(out) == [] and moves(out, asked={"u": ["x"]}) == []
+    assert moves(out, asked={"t": ["x", "y"]}) == [Move(PIECE, 5, 5, 5, 0, True, (), ("x", "y"))]
+
+
+def test_what_could_not_be_graded_anew_keeps_what_it_has_and_what_never_was_is_no_move(folder):
+    assert moves(folder()) == [] and moves(folder(staged=b"damaged")) == []
+    (move,) = moves(folder(result(5), b"damaged"))
+    assert (move.before, move.after, move.counts, move.moves, move.taken, move.changes) == (
+        5,
+        5,
+        5,
+        0,
+        True,
+        (),
+    )
+
+
+def test_promises_that_come_and_go_are_told_too(folder):
+    (move,) = moves(folder(result(5, name="p"), result(5, name="q", outcome="fails")))
+    assert set(move.changes) == {
+        ("a", "It ps", "holds, 5 of 10 \u2192 not asked"),
+        ("a", "It qs", "not asked \u2192 fails, 5 of 10"),
+    }
+
+
+def test_of_two_results_of_a_team_the_later_one_stands(folder):
+    out = folder(result(5))
+    older = journal.place(out / "results", PIECE._replace(key="older"))
+    journal.write(older, results.to_json(result(1)))
+    for when, points in ((1, 5), (2_000_000_000, 1)):
+        os.utime(older, (when, when))
+        assert moves(out and folder(staged=result(7)))[0].before == points
+
+
+def test_requests_are_a_teams_in_four_hundred_characters(tmp_path):
+    table = tmp_path / "a.csv"
+    table.write_text(f"student,task,words,more\nB1,hat,why?,1\n'=b2,merge,{'n' * 500},2\nb1,x,y,3\n", "utf8")
+    found = regrade.requests([table, table], CLASS)
+    assert found["t"] == ["hat: why?", "x: y"] * 2 and [len(one) for one in found["u"]] == [400, 400]
+    table.write_text("student,task\nb1,hat\n", "utf8")
+    with pytest.raises(ValueError, match="expected the columns student, task, words, got student, task"):
+        regrade.requests([table], CLASS)
+
+
+def applied(out, *found, secret="secret", **said):
+    regrade.apply(out, found, [PIECE], secret, **said)
+    return [json.loads(one) for one in (out / "journal.jsonl").read_text("utf8").splitlines()]
+
+
+def test_what_counts_is_copied_the_old_goes_into_history_and_the_journal_grows_by_a_signed_line(folder):
+    out = folder(result(5), result(7))
+    lines = applied(out, *moves(out), why="a bug")
+    assert (
+        [line["number"] for line in lines] == [1] and lines[0]["before"] == "" and lines[0]["why"] == "a bug"
+    )
+    assert lines[0]["moved"] == {"t": [5.0, 7.0]} and len(lines[0]["signature"]) == 64
+    assert regrade._read(journal.place(out / "results", PIECE)) == result(7)
+    old = journal.place(out / "history" / "1", PIECE._replace(key="old"))
+    assert regrade._read(old) == result(5) and old.parent.stat().st_mode & 0o777 == 0o700
+    again = applied(out, Move(PIECE, 7, 6, 7, 0, False, ()))
+    assert [line["number"] for line in again] == [1, 2] and again[1]["before"] == lines[0]["signature"]
+    assert again[1]["moved"] == {} and regrade._read(journal.place(out / "results", PIECE)) == result(7)
+    assert regrade.signed_lines(out, "secret") == again and applied(out) == again
+    for secret in ("other", ""):
+        with pytest.raises(
+            ValueError, match="line 1: expected a line that the|expected a class that was graded"
+        ):
+            applied(out, secret=secret)
+
+
+@pytest.mark.parametrize("change", [{"number": 3}, {"before": "x"}, {"why": "none"}, {"signature": "0"}])
+def test_a_line_that_was_changed_is_found(change, folder):
+    out = folder(result(5), result(7))
+    assert regrade.signed_lines(out, "secret") == []
+    first, second = applied(out, *moves(out), why="a") and applied(
+        out, Move(PIECE, 7, 7, 7, 0, False, ()), why="b"
+    )
+    text = "".join(json.dumps(line) + "\n" for line in (first, second | change))
+    (out / "journal.jsonl").write_text(text, "utf8")
+    with pytest.raises(
+        ValueError, match="journal.jsonl, line 2: expected a line that the course's secret has signed"
+    ):
+        regrade.signed_lines(out, "secret")
+    (out / "journal.jsonl").write_text(json.dumps(dict(reversed(first.items()))) + "\n", "utf8")
+    assert regrade.signed_lines(out, "secret") == [first]
+
+
+def test_a_result_that_is_kept_stays_under_the_new_key(folder):
+    out = folder(result(5), result(3))
+    applied(out, *moves(out, "never-lower"))
+    assert regrade._read(journal.place(out / "results", PIECE)) == result(5)
+    assert not journal.place(out / "results", PIECE._replace(key="old")).exists()
