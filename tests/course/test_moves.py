@@ -24,7 +24,7 @@ def result(points, submission="digest", *, name="p", outcome="holds"):
 
 @pytest.fixture
 def folder(tmp_path):
-    """folder(standing, staged, here) -> a class's results: that under old checks, under the new, and one that counts."""
+    """folder(standing, staged, here) -> a class's results: under old checks, under the new, and in force."""
 
     def written(standing=None, staged=None, here=None):
         for place, found, key in (
