@@ -76,3 +76,68 @@ def test_the_page_shows_what_follows_below_its_cause_and_a_terminal_in_a_line():
     assert page.index("Promise a") < page.index("Follows from this: 1 more") < page.index("Promise b")
     assert page.count("It is 3") == 2 and page.count("<details") == page.count("</details>")
     assert "✗ Promise b (follows from: Promise a)" in text and text.count("It is 3") == 1
+
+
+@pytest.mark.parametrize(
+    ("points", "weights", "shares"),
+    [
+        (10, (1, 4, 3, 3), (1, 3.5, 3, 2.5)),
+        (10, (1, 1, 1), (3.5, 3.5, 3)),
+        (1, (1, 1, 1), (0.5, 0.5, 0)),
+        (2, (5, 1), (1.5, 0.5)),
+        (7.25, (1, 1), (3.75, 3.5)),
+        (0, (1, 2), (0, 0)),
+        (4, (0, 0), (3.5, 0.5)),
+        (3, (2,), (3,)),
+        (5, (0.5, 2), (1, 4)),
+    ],
+)
+def test_the_halves_that_are_left_over_go_to_the_largest_remainders(points, weights, shares):
+    found = causes.in_halves(Fraction(points), [Fraction(one) for one in weights])
+    assert [float(one) for one in found] == list(shares)
+
+
+@pytest.mark.parametrize(
+    ("outcomes", "knobs", "earnings", "follows"),
+    [
+        ("hff", {}, (4, 0, 0), ("", "", "")),
+        ("hff", {"named": True}, (4, 0, 0), ("", "", "b")),
+        ("hff", {"once": True}, (4, 0, 2), ("", "", "")),
+        ("fff", {"named": True, "once": True}, (0, 2, 4), ("", "a", "a")),
+        ("hhh", {"named": True, "once": True}, (4, 4, 4), ("", "", "")),
+    ],
+)
+def test_what_fails_costs_its_points_and_follows_where_a_mistake_is_named(outcomes, knobs, earnings, follows):
+    words = {"h": "holds", "f": "fails"}
+    found = causes.traced(checks(*(words[one] for one in outcomes)), {}, **knobs)
+    assert tuple(earned(found)) == earnings
+    assert tuple(one.follows.removeprefix("Promise ") for one in found) == follows
+
+
+def test_of_a_hidden_check_nothing_follows_and_it_follows_from_nothing():
+    a, b, c = checks("fails", "fails", "holds")
+    hidden = [a._replace(hidden=True), b, c]
+    found = causes.traced(hidden, {"c": "a", "b": "a"}, named=True)
+    assert [one.follows for one in found] == ["", "", ""] and earned(found) == [0, 0, 4]
+    assert found[2].message == ""
+    same = [one._replace(kind="late") for one in (a._replace(hidden=True), b)]
+    assert [one.follows for one in causes.traced(same, {})] == ["", ""]
+
+
+@pytest.mark.parametrize(
+    ("first", "second", "follows"),
+    [
+        (("late", "x"), ("late", "y"), True),
+        (("raised", "x"), ("raised", "x"), True),
+        (("raised", "x"), ("raised", "y"), False),
+        (("raised", "x"), ("died", "x"), False),
+        (("", "x"), ("", "x"), False),
+        (("late", "x"), ("raised", "x"), False),
+    ],
+)
+def test_two_calls_have_one_cause_where_both_were_late_or_ended_in_the_same_words(first, second, follows):
+    each = [
+        one._replace(kind=kind, message=said)
+        for one, (kind, said) in zip(checks("fails", "fails"), (first, second), strict=True)
+    ]
+    assert [one.follows for one in causes.traced(each, {})] == ["", "Promise a" if follows else ""]

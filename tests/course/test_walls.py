@@ -1,11 +1,13 @@
 """What the walls are made of, option by option: how the tiers for credit are launched."""
 
 import os
+import sys
+from pathlib import Path
 from types import SimpleNamespace
 
 import pytest
 
-from hdrlab.course.sandbox import container, descent, filters, running, strict, users
+from hdrlab.course.sandbox import container, contents, descent, filters, practice, running, strict, users
 from hdrlab.course.sandbox.contents import Contents
 from hdrlab.course.sandbox.running import Unavailable
 
@@ -133,3 +135,48 @@ def test_the_container_tier_needs_linux_root_and_landlock(launched, monkeypatch)
     container.sys.platform = "darwin"
     with pytest.raises(Unavailable, match="the container tier needs Linux, and this is darwin"):
         container.sandbox()
+
+
+@pytest.mark.parametrize("variables", [{"SYSTEMROOT": "C:"}, {}])
+def test_the_practice_tier_is_launched_in_a_folder_that_goes_with_it(variables, launched, monkeypatch):
+    began = []
+    monkeypatch.setattr(running, "start", lambda *words, **knobs: began.append((words, knobs)) or "process")
+    monkeypatch.delenv("SYSTEMROOT", raising=False)
+    for name, value in variables.items():
+        monkeypatch.setenv(name, value)
+    made = practice.launch(CONTROL)
+    (((words, environment, control), knobs),) = began
+    python = getattr(sys, "_base_executable", sys.executable)
+    assert words == running.command(python, str(running.PROGRAM), 5, running.packages()) and control == 5
+    own = {"HOME": made.scratch, "TMPDIR": made.scratch}
+    assert environment == running.ENVIRONMENT | own | variables and knobs == {"folder": made.scratch}
+    assert os.listdir(made.scratch) == []
+    Path(made.scratch, "left").touch()
+    made.after()
+    assert not os.path.exists(made.scratch)
+    made.after()
+
+
+def test_the_practice_tier_counts_no_processes_and_no_credit():
+    assert practice.sandbox()[:3] == ("practice", False, practice.launch)
+    assert set(practice.sandbox().limits) == {"CPU", "AS", "FSIZE", "NOFILE", "CORE"}
+    assert practice.sandbox().limits.items() <= running.LIMITS.items()
+
+
+def test_what_may_be_read_is_all_that_is_placed_but_what_is_hidden_in_it(tmp_path):
+    for folder in ("lib/a", "lib/packages/x", "lib/b/packages", "other"):
+        (tmp_path / folder).mkdir(parents=True)
+    places = {"/in": f"{tmp_path}/lib", "/o": f"{tmp_path}/other", "/none": f"{tmp_path}/none"}
+    inside = Contents("", "", places, ("/in/packages", "/in/b/packages"), {})
+    listed, read = inside.readable()
+    assert sorted(listed) == [f"{tmp_path}/lib", f"{tmp_path}/lib/b"]
+    assert read == [f"{tmp_path}/lib/a", f"{tmp_path}/other"]
+    assert Contents("", "", places, (), {}).readable() == ([], [f"{tmp_path}/lib", f"{tmp_path}/other"])
+
+
+def test_folders_of_packages_are_found_in_what_is_placed(tmp_path):
+    for folder in ("a/site-packages", "a/python3.11/dist-packages", "a/b/site-packages", "p/x-packages"):
+        (tmp_path / folder).mkdir(parents=True)
+    places = {"/python/lib": f"{tmp_path}/a", "/packages/p": f"{tmp_path}/p", "/f": f"{tmp_path}/none"}
+    found = contents._others(places)
+    assert found == ["/python/lib/python3.11/dist-packages", "/python/lib/site-packages"]

@@ -1,0 +1,111 @@
+"""The process of the checks, followed line by line: how it is begun, and what its end means."""
+
+import json
+import os
+import subprocess
+import sys
+from types import SimpleNamespace
+
+import pytest
+
+from hdrlab.course.checks import SPECIFICATION, running
+
+
+@pytest.fixture
+def followed(monkeypatch, tmp_path):
+    """followed(looks, code) -> a process that writes these texts look by look, and ends by a code."""
+
+    def followed(looks, code=0, said="", patience=10.0):
+        told = SimpleNamespace(done=[], slept=[], now=100.0, looks=list(looks))
+        (tmp_path / "lines").touch()
+
+        class Process:
+            def __init__(self, words, **knobs):
+                told.words, told.knobs = words, knobs
+                told.there = os.path.isdir(knobs["cwd"])
+                knobs["stdout"].write(said.encode())
+
+            def poll(self):
+                if told.looks:
+                    text = told.looks.pop(0)
+                    with (tmp_path / "lines").open("a") as lines:
+                        lines.write(text)
+                    return None
+                return code
+
+            def kill(self):
+                told.done.append("kill")
+
+            def wait(self):
+                told.done.append("wait")
+
+        def sleep(seconds):
+            told.slept.append(seconds)
+            told.now += seconds
+
+        monkeypatch.setattr(running, "time", SimpleNamespace(monotonic=lambda: told.now, sleep=sleep))
+        monkeypatch.setattr(running.subprocess, "Popen", Process)
+        told.lines = running.run(tmp_path, tmp_path / "job.json", [tmp_path / "test_a.py"], patience)
+        return told
+
+    return followed
+
+
+def test_lines_come_as_they_are_whole(followed, tmp_path):
+    told = followed(['{"a": 1}\n{"b"', ": 2}", '\n{"c": 3}\n'])
+    assert next(told.lines) == {"a": 1} and not told.slept
+    assert next(told.lines) == {"b": 2} and told.slept == [0.02] * 2
+    assert list(told.lines) == [{"c": 3}] and told.done == ["kill", "wait"]
+
+
+def test_it_is_begun_in_an_empty_folder_without_anything_of_this_machine(followed, tmp_path, monkeypatch):
+    monkeypatch.setenv("PYTEST_ADDOPTS", "-x")
+    monkeypatch.setenv("OF_MINE", "1")
+    monkeypatch.setenv("OPENBLAS_NUM_THREADS", "7")
+    told = followed([])
+    assert list(told.lines) == []
+    empty, environment = tmp_path / "empty", told.knobs["env"]
+    assert told.there and told.knobs["cwd"] == empty and told.knobs["stdin"] == subprocess.DEVNULL
+    assert told.knobs["stdout"] is told.knobs["stderr"]
+    assert told.words[:4] == [sys.executable, "-P", "-m", "pytest"] and told.words[-1] == str(
+        tmp_path / "test_a.py"
+    )
+    for word in (f"--rootdir={empty}", f"--job={tmp_path / 'job.json'}", f"pythonpath={SPECIFICATION}"):
+        assert word in told.words
+    assert "PYTEST_ADDOPTS" not in environment and environment["OF_MINE"] == "1"
+    assert environment["TMPDIR"] == str(tmp_path) and environment["PYTHONPATH"] == running.import_path()
+    for name in ("PYTEST_DISABLE_PLUGIN_AUTOLOAD", "PYTHONDONTWRITEBYTECODE", "OPENBLAS_NUM_THREADS"):
+        assert environment[name] == "1"
+
+
+@pytest.mark.parametrize(
+    ("code", "said", "error"),
+    [
+        (0, "", None),
+        (1, "one failed", None),
+        (-9, "", "the checks were ended from outside, by signal 9"),
+        (-1, "", "the checks were ended from outside, by signal 1"),
+        (2, "a\nb\nc\nd\ne\n\n", "the checks could not be run: b / c / d / e"),
+        (5, "", "the checks could not be run: "),
+    ],
+)
+def test_its_end_means_something_by_its_code(code, said, error, followed):
+    told = followed([json.dumps({"a": 1}) + "\n"], code, said)
+    assert next(told.lines) == {"a": 1}
+    if error is None:
+        assert list(told.lines) == []
+    else:
+        with pytest.raises(ValueError, match=f"^{error}$"):
+            next(told.lines)
+
+
+def test_when_its_time_is_over_it_is_ended_and_what_it_wrote_counts(followed):
+    told = followed(['{"a": 1}\n'] + [""] * 999, 7, patience=0.99)
+    assert list(told.lines) == [{"a": 1}] and 49 <= len(told.slept) <= 51 and told.done == ["kill", "wait"]
+
+
+def test_who_listens_no_more_ends_it(followed):
+    told = followed(['{"a": 1}\n'] + [""] * 9, 7)
+    next(told.lines)
+    told.lines.close()
+    assert told.done == ["kill", "wait"]
