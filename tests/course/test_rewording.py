@@ -1,0 +1,91 @@
+"""The words of a variant, pair by pair, and functions that are asked in this very process."""
+
+import numpy as np
+import pytest
+
+from hdrlab.course import plan
+from hdrlab.course.checks import inprocess, rewording
+
+SIZES = {"small": [], "large": [("five", "nine"), ("few", "many")]}
+PAIRS = {"size": SIZES, "way": {"up": [], "down": [("up", "down")]}}
+
+
+@pytest.fixture
+def known(monkeypatch):
+    """A task, t, with two parameters; all others have none."""
+    monkeypatch.setattr(rewording, "parameters", lambda task: PAIRS if task == "t" else {})
+
+
+@pytest.mark.parametrize(
+    ("variant", "text"),
+    [
+        ("", "five go up"),
+        ("small/up", "five go up"),
+        ("large/up", "nine go up"),
+        ("large/down", "nine go down"),
+    ],
+)
+def test_each_value_of_a_variant_changes_its_words(variant, text, known):
+    assert rewording.reword("t", variant, "five go up") == text
+    assert rewording.reword("t", variant, "nothing") == "nothing"
+    assert rewording.reword("other", "", "five go up") == "five go up"
+
+
+def test_a_variant_has_a_value_for_each_parameter(known):
+    for variant in ("small", "small/up/more"):
+        with pytest.raises(ValueError, match="zip"):
+            rewording.reword("t", variant, "five")
+    with pytest.raises(KeyError):
+        rewording.reword("t", "huge/up", "five")
+
+
+def test_of_a_sheet_all_that_a_value_changes_must_be_there(known):
+    assert rewording.reword("t", "large/down", "five up", all_of_it=True) == "nine down"
+    assert rewording.reword("t", "small/up", "words", all_of_it=True) == "words"
+    assert rewording.reword("t", "large/up", "few", all_of_it=True) == "many"
+    with pytest.raises(ValueError, match="expected the sheet of t in hdrlab's words, to put 'down' there"):
+        rewording.reword("t", "large/down", "five", all_of_it=True)
+
+
+def test_parameters_are_read_from_their_files_and_every_variant_is_named_that_of_the_library_first():
+    tasks = {file.stem for file in rewording.FOLDER.glob("*.toml")}
+    assert {"shift", "exclusion"} <= tasks and rewording.parameters("gsolve") == {}
+    assert rewording.every("gsolve") == ("",)
+    for task in tasks:
+        every = rewording.every(task)
+        values = rewording.parameters(task).values()
+        assert len(every) == np.prod([len(one) for one in values]) == len(set(every))
+        assert every[0] == "/".join(next(iter(one)) for one in values)
+
+
+def test_a_function_here_is_asked_as_a_student_s_and_its_calls_are_remembered_as_they_were():
+    def f(x, *, k=1):
+        x *= k
+        return x, [1]
+
+    subject = inprocess.Subject({"f": f, "_g": f, "h": lambda: 1 / 0})
+    given = np.arange(3.0)
+    answer = subject.f(given, k=2)
+    assert answer[0].tolist() == [0, 2, 4] and answer[1] == [1]
+    ((args, named, came),) = subject.calls
+    assert named == {"k": 2} and came is answer
+    given[:] = 9
+    assert args[0].tolist() == [0, 2, 4]
+    with pytest.raises(ZeroDivisionError):
+        subject.h()
+    assert subject.calls[1] == ((), {}, None)
+    for name in ("_g", "g"):
+        with pytest.raises(AttributeError, match=f"no function for the task {name}"):
+            getattr(subject, name)
+
+
+def test_the_library_has_a_function_for_each_task_of_a_plan():
+    whole = plan.read()
+    tasks = [one for homework in whole.homeworks.values() for one in homework.tasks]
+    subject = inprocess.library()
+    assert all(callable(getattr(subject, one.id)) for one in tasks)
+    hw2 = {"hw2": whole.homeworks["hw2"]}
+    own = inprocess.library(whole._replace(homeworks=hw2))
+    (other,) = {one.id for one in whole.homeworks["hw1"].tasks} & {"shrink"}
+    with pytest.raises(AttributeError):
+        getattr(own, other)

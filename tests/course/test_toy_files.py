@@ -1,0 +1,72 @@
+"""The toy class as files: who is in it, what each hands in and when, and where it may be written."""
+
+import csv
+from datetime import datetime, timedelta
+
+import pytest
+
+from hdrlab.course import plan
+from hdrlab.course.classroom import toy
+from hdrlab.course.material import solutions
+
+HOMEWORK = plan.read().homeworks["hw2"]
+
+
+@pytest.fixture
+def short(monkeypatch):
+    """Solutions that are made in a moment: the ids of the tasks, and the mistakes."""
+
+    def texts(homework, mistakes=()):
+        return {"tasks": [one.id for one in homework.tasks], "m": [*mistakes]}
+
+    monkeypatch.setattr(solutions, "texts", texts)
+    monkeypatch.setattr(solutions, "script", lambda cells: f"script {cells}")
+    monkeypatch.setattr(solutions, "notebook", lambda homework, cells: f"notebook {homework.name} {cells}")
+
+
+def test_there_are_fourteen_students_two_of_them_a_team():
+    assert toy.STUDENTS[0] == "s01" and toy.STUDENTS[-1] == "s14" and len(toy.STUDENTS) == 14
+    assert toy.ATTACKS.is_file()
+
+
+def test_each_hands_in_what_the_list_says(short, monkeypatch):
+    tasks = [one.id for one in HOMEWORK.tasks]
+    listed = {
+        "s01.py": {"hours": 1, "about": "a", "mistakes": ["m"]},
+        "s02.ipynb": {"hours": -2, "about": "b", "done": tasks[:1]},
+        "s03.py": {"hours": 0, "about": "c", "attacks": True},
+        "s04.zip": {"hours": 0, "about": "d", "beside": {"other.txt": "x"}},
+    }
+    monkeypatch.setattr(toy, "HANDED", listed)
+    each = {one.name: one for one in toy.hand_ins(HOMEWORK)}
+    assert list(each) == list(listed)
+    assert each["s01.py"] == ("s01.py", f"script {{'tasks': {tasks}, 'm': ['m']}}".encode(), 1, "a")
+    assert each["s02.ipynb"].data == f"notebook hw2 {{'tasks': {tasks[:1]}, 'm': []}}".encode()
+    assert each["s03.py"].data == toy.ATTACKS.read_bytes()
+    assert each["s04.zip"].data == toy.packed(
+        {"hw2.ipynb": f"notebook hw2 {{'tasks': {tasks}, 'm': []}}".encode(), "other.txt": b"x"}
+    )
+    times = [(HOMEWORK.due + timedelta(hours=hours)).isoformat() for hours in (1, -2)]
+    assert toy.received(list(each.values())[:2], HOMEWORK) == [("s01.py", times[0]), ("s02.ipynb", times[1])]
+
+
+@pytest.mark.parametrize("made", [True, False])
+def test_a_class_is_written_into_a_new_or_empty_folder_alone(made, short, tmp_path):
+    folder = tmp_path / "in" / "class"
+    if made:
+        folder.mkdir(parents=True)
+    files = toy.write(folder)
+    assert files == [folder / "submissions" / name for name in toy.HANDED]
+    assert all(file.is_file() and file.stat().st_size for file in files)
+    rows = [*csv.DictReader((folder / "roster.csv").read_text("utf-8-sig").splitlines())]
+    assert [row["student"] for row in rows] == list(toy.STUDENTS) and rows[4]["name"] == "Student 05"
+    assert [row["student"] for row in rows if row["team"] == "t1"] == ["s03", "s04"]
+    assert {row["team"] for row in rows} == {"t1", ""}
+    came = [*csv.DictReader((folder / "received.csv").read_text("utf-8-sig").splitlines())]
+    assert [row["file"] for row in came] == list(toy.HANDED)
+    assert all(datetime.fromisoformat(row["received"]).tzinfo for row in came)
+    text = (folder / "README.md").read_text("utf8")
+    assert text.endswith("\n") and str(folder) in text and all(name in text for name in toy.HANDED)
+    for taken in (folder, folder / "README.md"):
+        with pytest.raises(ValueError, match="expected a new folder for the toy class, something is there"):
+            toy.write(taken)
