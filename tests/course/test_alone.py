@@ -126,7 +126,8 @@ def test_a_process_that_is_stopped_is_ended(ended):
 
 
 def test_what_is_printed_is_no_answer_and_limits_hold_in_there():
-    asked = "[__import__('resource').getrlimit(n) for n in (0, 7)], __import__('tempfile').gettempdir()"
+    limited = "[r.getrlimit(n) for r in [__import__('resource')] for n in (r.RLIMIT_CPU, r.RLIMIT_NOFILE)]"
+    asked = f"{limited}, __import__('tempfile').gettempdir()"
     piece = f"print('noise') or __import__('os').write(1, b'more') and repr(({asked})).encode()"
     limits = {"CPU": 50, "NOFILE": 40, "OF_NO_KIND": 1}
     found, scratch = ast.literal_eval(alone.run(eval, piece, patience=60, limits=limits).decode())
