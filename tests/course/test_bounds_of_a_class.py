@@ -175,3 +175,18 @@ def test_a_table_is_read_up_to_its_bound(tmp_path):
     with pytest.raises(ValueError, match=f"at most {size - 1} bytes, got {size}"):
         sheets.read_csv(tmp_path / "a.csv", most=size - 1)
     assert sheets.read_csv.__kwdefaults__ == {"most": 5_000_000}
+
+
+def test_a_file_and_a_folder_may_be_as_large_as_their_bounds(tmp_path, monkeypatch):
+    monkeypatch.setattr(handins, "LARGEST", 1 << 20)
+    monkeypatch.setattr(handins, "MOST", 2)
+    for name, size in (("b1/a.py", 1 << 20), ("b1/b.py", 0), ("b3/a.py", (1 << 20) + 1), ("b3/.x", 0)):
+        (tmp_path / name).parent.mkdir(exist_ok=True)
+        (tmp_path / name).touch()
+        with (tmp_path / name).open("r+b") as file:
+            file.truncate(size)
+    found = handins.find(tmp_path, CLASS)
+    assert set(found.handins) == {"t"} and found.refused == {"b3": "b3/a.py: expected at most 1 MB, got 1"}
+    (tmp_path / "b1" / "c.py").touch()
+    found = handins.find(tmp_path, CLASS)
+    assert found.handins == {} and found.refused["t"] == "b1: expected at most 2 files in a folder"

@@ -1,0 +1,144 @@
+"""A Result's JSON and its page's numbers, to the byte: the same result is the same file in every year."""
+
+import json
+from fractions import Fraction
+
+import pytest
+
+from hdrlab.course.reports import feedback, gradebook, results
+from hdrlab.course.reports.results import Check, Drawing, Result
+
+CHECK = Check("a", "n", "It \u00e9s", Fraction(1, 3), Fraction(2), "fails")
+RESULT = Result("ada", "hw2", "T", "strict", (CHECK,), {}, (), "d", "s", "x", {})
+TEXT = """{
+ "version": 1,
+ "student": "ada",
+ "homework": "hw2",
+ "title": "T",
+ "tier": "strict",
+ "checks": [
+  {
+   "task": "a",
+   "name": "n",
+   "promise": "It \\\\u00e9s",
+   "points": 0.3333,
+   "max_points": 2.0,
+   "outcome": "fails",
+   "message": "",
+   "hints": [],
+   "drawing": [],
+   "said": "",
+   "hidden": false,
+   "kind": "",
+   "follows": "",
+   "exact": {
+    "points": "1/3",
+    "max_points": "2"
+   }
+  }
+ ],
+ "misconceptions": {},
+ "problems": [],
+ "submission": "d",
+ "specification": "s",
+ "seed": "x",
+ "versions": {},
+ "at_most": null,
+ "for_credit": true,
+ "score": 0.3333,
+ "max_score": 2.0
+}
+"""
+
+
+def test_a_result_is_this_text():
+    assert results.to_json(RESULT).decode() == TEXT.replace("\\\\", "\\")
+    assert results.from_json(TEXT.replace("\\\\", "\\").encode()) == RESULT
+
+
+def test_a_teams_copy_is_the_same_text_without_what_is_hidden():
+    hidden = RESULT._replace(checks=(CHECK, CHECK._replace(hidden=True, message="secret", said="s")))
+    shown = results.for_team(results.to_json(hidden))
+    assert shown.startswith(b'{\n "version": 1,\n "student": "ada",') and shown.endswith(b"}\n")
+    read = json.loads(shown)
+    assert set(read["checks"][0]) == set(results.OF_OWN) and set(read["checks"][1]) == set(results.OF_HIDDEN)
+    assert b"\\u00e9" in shown and b"secret" not in shown and "at_most" not in read
+
+
+@pytest.mark.parametrize("version", [0, 2, "1", None])
+def test_another_version_is_refused(version):
+    with pytest.raises(ValueError, match="expected a result of version 1, written by hdrlab grade"):
+        results.from_json(json.dumps(json.loads(results.to_json(RESULT)) | {"version": version}).encode())
+    with pytest.raises(ValueError, match="expected a result of version 1"):
+        results.from_json(b"[1]")
+
+
+@pytest.mark.parametrize(
+    ("at_most", "score", "most"), [(None, 3.3333, 6), (3.0, 3, 3), (3.3333, 3.3333, 3.3333), (7.0, 3.3333, 6)]
+)
+def test_a_score_is_what_counts_of_the_points(at_most, score, most):
+    checks = (CHECK, CHECK._replace(task="b", points=Fraction(2)), CHECK._replace(points=Fraction(1)))
+    found = RESULT._replace(checks=checks, at_most=at_most)
+    assert (found.score, found.max_score, found.tasks) == (score, most, ("a", "b"))
+    assert found.of("a") == (checks[0], checks[2]) and results.points(found.of("b")) == (2, 2)
+
+
+@pytest.mark.parametrize(
+    ("tier", "seed", "credit"),
+    [("strict", "x", True), ("container", "x", True), ("practice", "x", False), ("strict", "", False)],
+)
+def test_what_counts_ran_behind_walls_on_inputs_that_nobody_knew(tier, seed, credit):
+    found = RESULT._replace(tier=tier, seed=seed)
+    assert found.for_credit is credit and bool(found.why_practice) is not credit
+    assert ("without a sandbox" in found.why_practice) is (tier == "practice")
+
+
+def test_an_early_result_lacks_what_came_later():
+    read = json.loads(results.to_json(RESULT))
+    del read["at_most"], read["checks"][0]["kind"], read["checks"][0]["follows"]
+    assert results.from_json(json.dumps(read).encode()) == RESULT
+    for name in ("student", "checks", "problems"):
+        with pytest.raises(ValueError, match="expected a result written by hdrlab grade"):
+            results.from_json(json.dumps({key: one for key, one in read.items() if key != name}).encode())
+    del read["checks"][0]["said"]
+    with pytest.raises(ValueError, match="'said'"):
+        results.from_json(json.dumps(read).encode())
+
+
+def test_pictures_travel_as_text():
+    drawing = Drawing((b"RIFF", b"2"), ("a", "b"), ("c", "d"))
+    told = [{"webp": "UklGRg==", "alt": "a", "caption": "c"}, {"webp": "Mg==", "alt": "b", "caption": "d"}]
+    assert results.drawing_to_json(drawing) == told and results.drawing_from_json(told) == drawing
+    with pytest.raises(ValueError, match="zip"):
+        results.drawing_to_json(drawing._replace(alts=("a",)))
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(7, "7"), (7.5, "7.5"), (1 / 3, "0.33"), (10, "10"), (0.004, "0")],
+)
+def test_points_are_shown_in_hundredths_at_most(value, text):
+    assert feedback.number(value) == text
+
+
+def test_a_page_shows_what_is_private_and_a_terminal_hints_only_where_it_is_told():
+    found = RESULT._replace(checks=(CHECK._replace(hints=("first", "second"), message="no"),))
+    assert feedback.text(found) == feedback.text(found, hints=0, private=False)
+    assert "first" not in feedback.text(found) and "second" not in feedback.text(found, hints=1)
+    assert "first" in feedback.text(found, hints=1) and "second" in feedback.text(found, hints=2)
+    secret = found._replace(checks=(CHECK._replace(hidden=True, message="the reason"),))
+    for shown in (feedback.page, feedback.fragment, feedback.text):
+        assert "the reason" in shown(secret, private=True) and "the reason" not in shown(secret)
+
+
+def test_all_forms_are_for_their_owner_alone(tmp_path):
+    folder = tmp_path / "a" / "b"
+    for shown, expected in ((None, results.to_json(RESULT)), (b"shown", b"shown")):
+        files = gradebook.write_results(folder, RESULT, shown)
+        assert files == [folder / name for name in gradebook.FILES]
+        assert {file.stat().st_mode & 0o777 for file in files} == {0o600}
+        assert folder.stat().st_mode & 0o777 == 0o700 and (folder / "result.json").read_bytes() == expected
+    assert (
+        gradebook.table(RESULT)
+        == "student,homework,tier,score,max_score,a\r\nada,hw2,strict,0.3333,2.0,0.3333\r\n"
+    )
