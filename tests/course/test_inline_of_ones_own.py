@@ -140,6 +140,50 @@ def test_two_helpers_of_one_name_part_by_their_files_and_two_alike_are_one(inlin
     }
 
 
+def test_two_functions_may_call_each_other(inlined):
+    text = "def main(n):\n    return other(n)\n\n\ndef other(n):\n    return n and main(n - 1)\n"
+    parts = text.removesuffix("\n").split("\n\n\n")
+    assert inlined({"main": ("a.py", text, "main")}) == {"main": f"{parts[1]}\n\n{parts[0]}\n"}
+
+
+def test_a_comment_belongs_to_what_stands_below_it_and_to_nothing_else(inlined):
+    above = "# above\ndef main():\n    return 1\n"
+    assert inlined({"main": ("a.py", above, "main")})["main"] == above
+    below = "def main():\n    return 1\n\n\n# below\n"
+    assert inlined({"main": ("b.py", below, "main")})["main"] == "def main():\n    return 1\n"
+
+
+def test_a_name_is_changed_where_it_is_the_definitions_and_nowhere_else(inlined):
+    text = 'def main(x, main=1):\n    """Return a main."""\n    return " main"\n'
+    assert inlined({"a": ("a.py", text, "main")})["a"] == text.replace("def main", "def a")
+    texts = {k: f'A = " A{k}"\n\n\ndef main():\n    return A\n' for k in (1, 2)}
+    found = inlined({"a": ("c.py", texts[1], "main"), "b": ("d.py", texts[2], "main")})
+    assert found["b"] == 'A_d = " A2"\n\ndef b():\n    return A_d\n'
+
+
+def test_of_each_docstring_within_a_definition_the_first_paragraph_stays(inlined):
+    def method(name, more):
+        return f'    def {name}(self):\n        """Say {name}.{more}"""\n        return 1\n'
+
+    more = "\n\n        More.\n        And more.\n        "
+    whole = 'class main:\n    """Say main.{}"""\n\n{}\n{}'.format
+    text = whole(more, method("a", more), method("b", more))
+    found = inlined({"main": ("a.py", text, "main")})["main"]
+    assert found == whole("", method("a", ""), method("b", ""))
+
+
+def test_a_function_of_the_library_whose_name_is_taken_where_it_is_used_has_its_modules_too(inlined):
+    text = "from hdrlab.core import weights\n\n\ndef main():\n    hat = weights.hat()\n    return hat\n"
+    found = inlined({"main": ("a.py", text, "main")})["main"]
+    assert "def hat_weights(" in found and "    hat = hat_weights()\n    return hat\n" in found
+    argument = text.replace("hat = weights.hat()", "f = lambda hat: hat + weights.hat()")
+    assert "hat + hat_weights()" in inlined({"main": ("b.py", argument, "main")})["main"]
+    other = text.replace("hat = ", "w = ").replace("return hat", "return w")
+    assert "    w = hat()\n" in inlined({"main": ("c.py", other, "main")})["main"]
+    with pytest.raises(ValueError, match="line 5: weights cannot be copied from hdrlab.core"):
+        inlined({"main": ("d.py", text.replace("weights.hat()", "weights.none()"), "main")})
+
+
 @pytest.mark.parametrize(
     ("texts", "joined"),
     [

@@ -54,6 +54,7 @@ def moves(out, policy="replace", listed=(), asked=None):
         ("never-lower", (), 5, 5, "digest", 5, True),
         ("never-lower", (), 5, 7, "digest", 7, True),
         ("never-lower", (), 5, 3, "another", 3, True),
+        ("never-lower", (), 0, 0.5, "digest", 0.5, True),
         ("only-listed", (), 5, 7, "digest", 5, False),
         ("only-listed", ("t",), 5, 7, "digest", 7, True),
         ("only-listed", ("u",), 5, 7, "another", 7, True),
@@ -112,7 +113,7 @@ def test_of_two_results_of_a_team_the_later_one_stands(folder):
 
 def test_requests_are_a_teams_in_four_hundred_characters(tmp_path):
     table = tmp_path / "a.csv"
-    table.write_text(f"student,task,words,more\nB1,hat,why?,1\n'=b2,merge,{'n' * 500},2\nb1,x,y,3\n", "utf8")
+    table.write_text(f"student,task,words\nB1,hat,why?\n'=b2,merge,{'n' * 500}\nb1,x,y\n", "utf8")
     found = regrade.requests([table, table], CLASS)
     assert found["t"] == ["hat: why?", "x: y"] * 2 and [len(one) for one in found["u"]] == [400, 400]
     table.write_text("student,task\nb1,hat\n", "utf8")
@@ -168,3 +169,25 @@ def test_a_result_that_is_kept_stays_under_the_new_key(folder):
     applied(out, *moves(out, "never-lower"))
     assert regrade._read(journal.place(out / "results", PIECE)) == result(5)
     assert not journal.place(out / "results", PIECE._replace(key="old")).exists()
+
+
+def test_the_page_of_a_regrade_says_who_moves_from_where_to_where(tmp_path, monkeypatch):
+    asked = []
+    monkeypatch.setattr(regrade, "render_page", lambda *given, **words: asked.append(words) or "a page")
+    change = ("a", "It ps", "fails \u2192 holds")
+    found = [Move(PIECE, 0.5, 9, 9, 8.5, True, (change,)), Move(PIECE, None, 3, 3, 3, True, (change,))]
+    page = regrade.write(tmp_path, found, 10, "replace")
+    assert page == tmp_path / "regrade" / "regrade.html" and page.read_text("utf8") == "a page"
+    assert page.parent.stat().st_mode & 0o777 == 0o700
+    (words,) = asked
+    assert (words["found"], words["whole"], words["policy"]) == (found, 10, "replace")
+    assert words["promises"] == [(change, 2)]
+    bins = list(words["bins"])
+    assert bins[0] == ((0, 1), (0, 0)) and bins[3] == ((30, 0), (30, 1)) and bins[9] == ((90, 0), (90, 1))
+
+
+def test_a_teams_name_may_have_dots(tmp_path):
+    piece = Piece("t.1", "file", "new")
+    (tmp_path / "results").mkdir()
+    journal.write(journal.place(tmp_path / "results", piece), results.to_json(result(5)))
+    assert regrade._standing(tmp_path) == {"t.1": tmp_path / "results" / "t.1.new.json"}
