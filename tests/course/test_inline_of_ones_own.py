@@ -3,7 +3,6 @@
 import pytest
 
 from hdrlab.course.code import inline, source
-from hdrlab.course.code.source import Key
 
 OWN = '''\
 """A module."""
@@ -204,15 +203,6 @@ def test_imports_stand_in_the_order_of_where_they_come_from():
     assert sorted(lines, key=inline._rank) == [
         *("import ast", "import os", "from typing import A", "import numpy as np", "from scipy import b")
     ]
-
-
-def test_places_are_written_as_they_are_read():
-    for text, key in (
-        ("response.debevec.gsolve", Key("hdrlab.response.debevec", "gsolve")),
-        ("/a/v.py:vignette", Key("/a/v.py", "vignette")),
-    ):
-        assert source.key_of(text) == key and source.written(key) == text
-    assert source.WIDTH == 110
 
 
 LONG = ", ".join(f"a_long_name_{k}=1" for k in range(9))

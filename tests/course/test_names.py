@@ -4,7 +4,8 @@ import ast
 
 import pytest
 
-from hdrlab.course.code import names
+from hdrlab.course.code import names, source
+from hdrlab.course.code.source import Key
 
 
 @pytest.mark.parametrize(
@@ -41,3 +42,12 @@ def test_imported_parts_of_numpy_and_scipy_are_named_once():
     ]
     assert names.imported(texts) == ["numpy.fft", "scipy", "scipy.ndimage"]
     assert names.modules("from .numpy import a\nimport a.b") == {"a.b"}
+
+
+def test_places_are_written_as_they_are_read():
+    for text, key in (
+        ("response.debevec.gsolve", Key("hdrlab.response.debevec", "gsolve")),
+        ("/a/v.py:vignette", Key("/a/v.py", "vignette")),
+    ):
+        assert source.key_of(text) == key and source.written(key) == text
+    assert source.WIDTH == 110
