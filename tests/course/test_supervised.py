@@ -122,6 +122,12 @@ def test_whole_seconds_are_granted_and_one_at_least(each, left, granted, begun):
     assert made.granted == granted
 
 
+def test_a_word_that_is_of_no_check_is_heard_too(begun):
+    made, behind = begun([READY, ("begun", None, 0)])
+    made.check().close()
+    assert len(behind.ends) == 1
+
+
 def test_unless_told_a_check_has_a_minute_of_a_processor(begun):
     made, _ = begun([READY, ("begun", None, 1)])
     made.check().close()
