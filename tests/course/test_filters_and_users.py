@@ -110,10 +110,12 @@ class Held:
     """A socket whose name another may have."""
 
     taken: set = set()
+    made: list = []
 
     def __init__(self, family):
         assert family == socket.AF_UNIX
         self.closed = False
+        self.made.append(self)
 
     def bind(self, name):
         if name in self.taken:
@@ -127,9 +129,11 @@ class Held:
 def test_a_lease_is_the_first_number_of_the_namespace_that_nobody_holds(monkeypatch):
     monkeypatch.setattr(users, "socket", SimpleNamespace(socket=Held, AF_UNIX=socket.AF_UNIX))
     monkeypatch.setattr(Held, "taken", {"\0hdrlab-user-60708"})
+    monkeypatch.setattr(Held, "made", [])
     monkeypatch.setattr(users, "_mapped", lambda: [range(10), range(60707, 60710)])
     leased = [users.lease() for _ in range(2)]
     assert [user for user, _ in leased] == [60707, 60709] and not any(held.closed for _, held in leased)
+    assert [held for held in Held.made if not held.closed] == [held for _, held in leased]
     assert Held.taken == {f"\0hdrlab-user-{user}" for user in (60707, 60708, 60709)}
     with pytest.raises(Unavailable):
         users.lease()
