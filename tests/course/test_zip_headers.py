@@ -90,7 +90,11 @@ def test_a_list_that_is_cut_short_is_told_at_each_byte(taken):
     for cut in (1, 21, 22, 23):
         assert refused(taken, whole[:-cut]) == said
     assert refused(taken, b"PK\5\6") == said
-    assert refused(taken, b"PK\5\6" + bytes(18)).startswith(TOLD)
+
+
+def test_a_zip_of_nothing_or_of_folders_alone_holds_no_files(taken):
+    assert refused(taken, b"PK\5\6" + bytes(18)) == "it holds no files"
+    assert refused(taken, archive(("a/", b""))) == "it holds no files"
 
 
 def test_the_list_is_found_before_a_comment_of_any_length(taken):

@@ -73,6 +73,8 @@ def _zip(archive: Path, fresh: Path, limits: Limits) -> list[Member]:
     with zipfile.ZipFile(archive) as opened:
         infos = [info for info in opened.infolist() if not info.is_dir()]
         members.check_count(len(opened.infolist()), limits)
+        if not infos:
+            raise Refused("it holds no files")
         for info in infos:
             _check_entry(info)
         paths = members.check_names([info.orig_filename for info in infos], limits)

@@ -14,8 +14,7 @@ def counted(rng, times=TIMES, dimmest=2.0):
     E = np.exp(rng.uniform(np.log(dimmest / N), np.log(0.2), SHAPE))
     t = times[:, None, None]
     X = (rng.poisson(E * t * N) + R * rng.standard_normal((len(t), *SHAPE))) / N
-    step = float(rng.uniform(0.5, 1) / N)
-    measured = E * t < 1
+    step, measured = float(rng.uniform(0.5, 1) / N), E * t < 1
     measured[0] = True
     return (step * np.maximum(np.round(X / step), 1), np.full(X.shape, step), measured, times, N, R), E
 
