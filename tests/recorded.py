@@ -22,6 +22,7 @@ import numpy as np
 
 SMALL, LARGE = 8, 20_000
 TOLERANCE = 2e-6  # relative to the largest value of the same part
+FLOOR = 1e-14  # what rounding leaves of 0
 Part = tuple[str, float]  # a value, and the largest of its part
 
 
@@ -96,14 +97,16 @@ def answers(call: Callable[[], Any]) -> list[list[str]]:
         return [["refused"]]
 
 
-def same(came: list[list[str]], expected: list[list[str]], tolerance: float = TOLERANCE) -> bool:
+def same(
+    came: list[list[str]], expected: list[list[str]], tolerance: float = TOLERANCE, *, floor: float = FLOOR
+) -> bool:
     """Return whether all words are the same, and all numbers within the tolerance."""
     if [len(one) for one in came] != [len(one) for one in expected]:
         return False
-    return all(_close(a, b, tolerance) for a, b in zip(came, expected, strict=True))
+    return all(_close(a, b, tolerance, floor) for a, b in zip(came, expected, strict=True))
 
 
-def _close(came: list[str], expected: list[str], tolerance: float) -> bool:
+def _close(came: list[str], expected: list[str], tolerance: float, floor: float) -> bool:
     a, b = [[_number(word) for word in part] for part in (came, expected)]
     largest = max((abs(x) for x in b if isinstance(x, float) and np.isfinite(x)), default=0.0)
     for x, y in zip(a, b, strict=True):
@@ -113,7 +116,7 @@ def _close(came: list[str], expected: list[str], tolerance: float) -> bool:
         elif not np.isfinite([x, y]).all():
             if x != y and not (x != x and y != y):
                 return False
-        elif abs(x - y) > tolerance * largest + 1e-14:
+        elif abs(x - y) > tolerance * largest + floor:
             return False
     return True
 
