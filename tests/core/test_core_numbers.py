@@ -128,6 +128,8 @@ CASES = recorded.named(
     of(gainmap.apply_gain, np.array([0.5, 0.5, 1]), np.array([0, 0.5, 1]), -1, 2),
     of(gainmap.apply_gain, np.array([0.5, 0.5, 1]), np.array([0, 0.5, 1]), -1, 2, W=0.3, gamma=2, k=(0.1,
         0.3)),
+    of(gainmap.expose, E, np.where(E > 2, 0.5, 0), 4.0),
+    of(gainmap.expose, E * 0 + 5, E * 0, 9.0),
     of(gainmap.expose, E, np.minimum(E / 3, 1), 4.0),
     of(gainmap.expose, E * 0, np.minimum(E, 1), 4.0),
     of(gainmap.expose, np.where(E > 1, E, 0), np.where(E > 0.5, np.minimum(E, 1), 0), 9.0),
@@ -172,6 +174,7 @@ CASES = recorded.named(
     of(sampling.by_rank, Z16, 7),
     of(sampling.by_rank, Z8, 7, valid=VALID),
     of(sampling.by_rank, np.broadcast_to(np.arange(250, dtype=np.uint8), (1, 4 * 4000, 250)), 9),
+    *(of(sampling.by_grid, a, n) for a in (Z8[:1, :1], Z8[:, :5, :3]) for n in (1, 2, 3, 5, 7, 14)),
     *(of(sampling.by_grid, Z8, n) for n in (0, 1, 2, 12, 56, 80)),
     *(of(sampling.by_grid, a, 20) for a in (Z8C, Z16, Z8[:, :1], Z8[..., :1])),
     of(sampling.by_grid, Z8, 20, valid=VALID),
@@ -188,6 +191,9 @@ CASES = recorded.named(
     ),
     *(of(transfer.histograms, a) for a in (Z8, Z8C, Z16)),
     of(transfer.histograms, Z8, VALID),
+    of(transfer.histograms, Z8[:1, :1, :1]),
+    of(transfer.brightness_transfer, [0, 1, 1, 2, 0], [0, 2, 0, 1, 1]),
+    of(transfer.brightness_transfer, [1, 3, 0, 0, 0], [0, 2, 2, 0, 0]),
     *(of(transfer.cumulate, h, 4) for h in ([1, 0, 2, 1], [0, 0, 0, 0], [1, -1, 2, 1], [1, 2, 3])),
     *(of(f, a, b) for f in (transfer.brightness_transfer, transfer.literal_transfer) for a, b in ((A2, B2),
         (B2, A2))),
@@ -200,14 +206,22 @@ CASES = recorded.named(
     *(of(weights.cut, np.ones(3), above=a, below=b) for a, b in ((1, 0), (1.01, 0), (1, -0.01), (0.5, 0.5),
         (0.5, 0.4))),
     of(weights.snr, CURVE),
+    of(weights.snr, np.log([1.0, 2, 2.02, 2.03, 2.03, 2.04, 2.5, 9, 11]), span=1),
+    of(weights.snr, np.log([1.0, 2, 2.005, 2.01, 9, 99, 999]), span=1),
     of(weights.snr, RAMPS),
     of(weights.snr, CURVE, least=2.0, span=1),
     of(weights.snr, np.log([1.0, 1, 1, 4, 5, 9])),
     *(of(weights.snr, g) for g in ([1, 2, 3.0], [1, 2.0], [1, NAN, 2], [3, 2, 1.0], [1, 2, 1.0], E)),
     of(weights.second_differences, np.arange(1, 7.0), 3.0),
+    of(weights.make_monotone, np.array([[4.0, 1, 3, 2, 5, 4, 6, 1, 9]]).T),
     *(of(weights.make_monotone, np.array(g)) for g in ([-1.0, -2, 0, 2, 1], [3.0, 1, 2, 2, 0, 4], [[1.0, 2],
         [0, 3], [5, 1]])),
 )  # fmt: skip
+
+
+def test_where_the_curves_of_srgb_meet_the_line_holds():
+    assert colour.encode_srgb(0.0031308) == 12.92 * 0.0031308
+    assert colour.decode_srgb(0.04045) == 0.04045 / 12.92
 
 
 @pytest.mark.parametrize("function", CASES)

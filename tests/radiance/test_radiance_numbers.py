@@ -66,6 +66,14 @@ def repaired(Z, times=TIMES, valid=None, E=L):
     return stuck.repair_stuck(light, Z, times, valid), light
 
 
+def random_histograms(k):
+    """Return histograms of two photographs, with gaps."""
+    rng = np.random.default_rng(k)
+    return [
+        np.bincount(np.clip(rng.gamma(2, 9 * m, 400), 0, 255).astype(int), minlength=256) for m in (1, 2 + k)
+    ]
+
+
 def glare(F, **named):
     """Return what is removed, and what is said of it."""
     found = flare.remove_glare(F, **named)
@@ -95,6 +103,10 @@ CASES = recorded.named(
         {"spread": GlareSpread(0.2)})),
     *(of(f, W, X, T) for f in merge.METHODS.values()),
     *(of(merge.weigh, Z3, weights.hat(), t) for t in (250, 100)),
+    *(of(merge.merge_with_quality, z, t, G) for z, t in ((Z1[:1, :1, :1], [0.5]), (np.array([[[0, 1, 2, 249,
+        250, 251]]] * 2, np.uint8), [1, 3]))),
+    *(of(merge.merge, np.array([[[0, 1, 2, 249, 250, 251]]] * 2, np.uint8), [1, 3], G, w) for w in (None,
+        weights.flat(), weights.hat() * 9)),
     of(merge.weigh, Z3, weights.hat(), 250, VALID[..., None]),
     *(of(bounded, *a) for a in (([255, 255, 255],), ([0, 0, 0],), ([0, 250, 255],), ([9, 0, 3],), ([9, 9,
         9],), ([249, 1, 250],))),
@@ -119,9 +131,13 @@ CASES = recorded.named(
     of(ratios.square_errors, READ, 2.0),
     *(of(ratios.ratio_steps, f, **k) for f, k in ((FOUND, {}), (READ, {"limit": 1.5}), (FOUND,
         {"tolerance": 0.01}), (FOUND, {"rounds": 1}))),
+    *(of(ratios.collect_equations, *random_histograms(k), s) for k in range(6) for s in ("paper",
+        "mid-step")),
     *(of(ratios.estimate_ratio, *LINEAR[::d], **k) for d in (1, -1) for k in ({}, {"scheme": "paper"})),
     *(of(ratios.estimate_ratios, z, **k) for z, k in ((Z3, {}), (LINEAR[:1], {}), (LINEAR[..., 0],
         {"scheme": "paper", "valid": VALID[:2]}), (LINEAR // 64, {}))),
+    *(of(reflection.fit_reflection, SPOTTED + r * SPOTTED[::-1, ::-1]) for r in (0.19, 0.2, 0.22, 0.001)),
+    *(of(reflection.fit_reflection, np.random.default_rng(k).random((9, 11)) ** 8) for k in range(9)),
     *(of(reflection.fit_reflection, f) for f in (MIRRORED, SPOTTED, E, SPOTTED * 0 + 1,
         np.stack([MIRRORED] * 3, axis=-1))),
     *(of(reflection.remove_reflection, MIRRORED, *r) for r in ((), (0.1,), (0,), (1,), (-0.1,))),
@@ -142,6 +158,8 @@ CASES = recorded.named(
         3)) == [[[129]], [[1]]]).all(0) * np.uint8(64))),
     *(of(stuck.neighbours_median, NEIGHBOURS, m) for m in (np.eye(3) > 0, np.fliplr(np.eye(3)) > 0,
         np.arange(9).reshape(3, 3) == 4)),
+    *(of(stuck.find_stuck, *np.random.default_rng(k).choice([9, 16, 17, 80, 81], (2, 6, 5,
+        1)).astype(np.uint8)) for k in range(12)),
     *(of(repaired, z, **k) for z, k in ((Z1, {}), (Z1, {"times": np.array([1, 1.5, 1.99])}), (Z1,
         {"times": np.array([1, 1.5, 2.0])}), (Z1, {"valid": VALID}), (Z3, {"E": E}))),
     *(of(uncertainty.variance, X, X / 9, n, r) for n, r in ((1000, 3), (50, [1.0] * 9))),
@@ -150,6 +168,8 @@ CASES = recorded.named(
     *(of(uncertainty.merge_with_deviation, z, TIMES, g, n, *a) for z, g, n, a in ((Z3, RGBG, 1000, (5.0,
         0.02)), (Z1, G, 50, ()), (DEEP, G, 1e4, (20.0,)), (Z3, RGBG, [1e3, 2e3, 3e3], ([1, 2, 3.0], [0.1, 0,
         0.2])))),
+    *(of(uncertainty.merge_with_deviation, z, t, G, 300, *a) for z, t in ((Z1[:1, :1, :1], [0.5]),
+        (np.array([[[0, 1, 2, 250, 251]]] * 2, np.uint8), [1, 3])) for a in ((), (2.0,), (12.0, 0.1))),
     *(of(uncertainty.merge_with_deviation, Z3, TIMES, RGBG, *a) for a in ((0,), (INF,), (1e-12,), (5, -1),
         (5, INF), (5, 1, -0.1), (5, 1, INF), ([1, 2],), (5, [1, 2]), (5, 300.0))),
 )  # fmt: skip

@@ -49,6 +49,22 @@ VIGNETTED = np.rint(VIGNETTED).astype(np.uint8)
 PARTS = self_calibration.samples(LARGE, TIMES, pixels=2000, count=50, valid=None)
 
 
+def ringed(k):
+    """Return two photographs, of which one falls off to the corners, with levels on both sides of a limit."""
+    rng = np.random.default_rng(k)
+    a = rng.choice([3, 4, 5, 6, 90, 91, 92, 150, 248, 249, 250, 251], (17 + k % 3, 20))
+    return np.stack(
+        [
+            a,
+            np.clip(
+                a + rng.integers(-1, 2, a.shape) - (selection.radius(a.shape) > 7 + k % 4) * (1 + k % 3),
+                0,
+                255,
+            ),
+        ]
+    ).astype(np.uint8)
+
+
 def masses(m, sigma, z):
     """Return the probabilities of levels, and their slopes."""
     return likelihood.masses(m, sigma, z)
@@ -103,12 +119,14 @@ CASES = recorded.named(
     *(of(selection.threshold, *a, **k) for a, k in (((), {}), ((9,), {"psi": 0.1}), ((25,),
         {"estimated": 50.0}), ((2,), {}), ((1,), {}), ((9,), {"psi": 0}), ((9,), {"psi": 1}), ((9,),
         {"estimated": 0}))),
+    *(of(selection.flat, STACK[:t, :9, :9], size=n, psi=0.4) for t in (1, 2, 3, 4) for n in (2, 3, 4, 6)),
     *(of(selection.flat, a, **k) for a, k in ((STACK, {}), (STACK[:1], {}), (STACK, {"size": 3, "psi": 0.3}),
         (STACK[:1], {"sigma": 0.05, "size": 4}), (STACK, {"size": 1}), (STACK, {"sigma": 0}), (STACK,
         {"size": 2}))),
     *(of(selection.radius, s) for s in ((4, 5), (1, 3))),
     *(of(selection.circle, *VIGNETTED, **k) for k in ({}, {"tolerance": 6.0}, {"tolerance": 90.0},
         {"rings": 12})),
+    *(of(selection.circle, *ringed(k), rings=6 + k % 3, tolerance=1 + k % 2) for k in range(24)),
     of(selection.circle, VIGNETTED[0] // 99, VIGNETTED[0] // 99),
     *(of(self_calibration.average, z, *n) for z, n in ((GRID, (7,)), (GRID, ()), (GRID[:3], ()), (GRID[0],
         ()), (GRID * 1.0, ()), (GRID[:0], ()), (GRID + 1, ()), (GRID - 1, ()))),

@@ -22,6 +22,7 @@ LAMP[4, 5], LAMP[0, 0] = 100, 7
 TILTED = np.array([[1.02, 0.03, -0.4], [-0.02, 0.98, 0.7], [1e-3, -2e-3, 1]])
 THREE = np.stack([np.eye(3), TILTED, warp.turn((20, 30), 3, (1.5, -2.2))])
 SHIFTS = [[0, 0], [3, -1], [-2, 4]]
+SHIFT = warp.as_homographies([[3, -4]])[0]
 FLIP = np.array([[-1.0, 0, 29], [0, 1, 0], [0, 0, 1]])
 SQUARE = np.array([[0.0, 0], [10, 0], [10, 8], [0, 8]])
 LEANING = np.array([[1.0, -0.5], [11, 0.2], [9.5, 8.3], [-0.2, 7]])
@@ -96,9 +97,17 @@ CASES = recorded.named(
     of(warp.apply, TILTED, SQUARE),
     of(warp.apply, THREE, SQUARE),
     of(warp.through, SQUARE, LEANING),
+    of(warp.corner_distance, TILTED, np.eye(3), (20, 30)),
+    of(warp.corner_distance, SHIFT, np.eye(3), (9, 9)),
     *(of(warp.corner_distance, THREE, np.eye(3), s) for s in ((20, 30), (5, 5))),
     *(of(warp.chain_homographies, o, THREE[1:][: len(o) - 1]) for o in ([0, 1, 2], [2, 0, 1], [1, 0], [0])),
     of(warp.chain_homographies, [3, 1, 0, 2], THREE),
+    of(warp.chain_homographies, [0, 1, 2, 3, 4], [TILTED, TILTED @ FLIP, TILTED.T, TILTED]),
+    *(of(warp.common_rectangle, THREE * [[[s, s, s]]], (40, 30, 3)) for s in (1, -1)),
+    *(of(warp.common_rectangle, [[0, 0], d], (9, 12)) for d in ([8, 0], [9, 0], [0, 11], [0, 12], [2.5,
+        -3.5])),
+    *(of(warp.common_rectangle, np.eye(3)[None] + [[0, 0, 0], [0, 0, 0], [a, b, 0]], (20, 30)) for a,
+        b in ((-0.03, 0), (-1 / 29, 0), (0, -1 / 19), (0.01, -0.02), (-0.04, 0.01))),
     *(of(warp.common_rectangle, a, s) for a in (SHIFTS, THREE, FLIP[None], WALLS[None]) for s in ((20, 30),
         (9, 7))),
     *(of(warp.common_rectangle, [[0, 0], d], (4, 6)) for d in ([0, 5], [0, 6], [3, 0], [-4, 0], [0.4, 0.6])),
@@ -108,6 +117,9 @@ CASES = recorded.named(
     *(of(warp.sample, a, TILTED, s) for a in (V, RGB) for s in ((6, 7), (10, 13))),
     of(warp.sample, LAMP, warp.as_homographies([[0.3, 0.6]])[0], (9, 12)),
     *(of(warp.nearest, a, TILTED, (8, 9)) for a in (V, RGB)),
+    *(of(warp.before, a, TILTED, (10, 13, 3)) for a in (V, RGB)),
+    of(warp.sample, RGB, TILTED, (10, 13, 3)),
+    of(warp.sample, V * 7 - 3, TILTED, (12, 15)),
     *(of(warp.before, a, TILTED, (10, 13)) for a in (V, RGB)),
     of(warp.before, V > 0.5, warp.as_homographies([[-0.5, 2]])[0], (9, 12)),
 )  # fmt: skip
