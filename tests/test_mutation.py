@@ -3,6 +3,7 @@
 import ast
 import tomllib
 
+import numpy as np
 import pytest
 
 from benchmarks import mutation
@@ -45,6 +46,13 @@ def test_it_doubles():
 def test_every_operator_number_and_condition_is_changed_but_words_types_and_refusals_are_not():
     said = {one.said.partition(": ")[2] for one in mutants("toy.py", SOURCE)}
     assert said == CHANGES
+
+
+def test_the_length_that_a_reshape_finds_becomes_another_but_no_other_number_below_0():
+    assert [one.new for one in mutants("toy.py", "a.reshape(3, -1)")] == ["pass", "4", "(1)"]
+    assert [one.new for one in mutants("toy.py", "a[-1]")] == ["(1)", "2"]
+    a = np.arange(6)
+    assert a.reshape(3, -1).tolist() == a.reshape(3, -2).tolist()
 
 
 @pytest.mark.parametrize("file", ["hdrlab/radiance/merge.py", "hdrlab/course/submission.py"])

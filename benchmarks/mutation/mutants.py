@@ -98,8 +98,18 @@ def changes(tree: ast.AST) -> Iterator[tuple[ast.expr | ast.stmt, str]]:
     for name, value in ast.iter_fields(tree):
         if name not in left_out:
             for child in value if isinstance(value, list) else [value]:
-                if isinstance(child, ast.AST):
+                if isinstance(child, ast.expr) and left_open(tree, child):
+                    yield from ((child, new) for new in instead(child))
+                elif isinstance(child, ast.AST):
                     yield from changes(child)
+
+
+def left_open(tree: ast.AST, child: ast.expr) -> bool:
+    """Return whether this is the -1 of a reshape, which is the same with any other number below 0."""
+    match tree:
+        case ast.Call(ast.Attribute(attr="reshape")):
+            return ast.unparse(child) == "-1"
+    return False
 
 
 def instead(node: ast.expr | ast.stmt) -> Iterator[str]:
