@@ -17,7 +17,8 @@ import hdrlab
 
 LIST = Path(__file__).with_name("knobs.txt")
 CONSTANTS = Path(__file__).with_name("constants.txt")
-OF_THIS_MACHINE = {"PROCESSORS", "THREADS"}
+# of this machine; and options out of which SciPy takes some as it reads them
+NOT_LISTED = {"PROCESSORS", "THREADS", "SEARCH"}
 ROOMS = ("align", "beyond", "calibration", "capture", "core", "diagnostics", "enhance", "fast", "pipeline")
 ROOMS += ("radiance", "response", "tonemap")
 
@@ -68,7 +69,7 @@ def named(text):
             statement.targets if isinstance(statement, ast.Assign) else [getattr(statement, "target", None)]
         )
         for node in (node for target in targets if target is not None for node in ast.walk(target)):
-            if isinstance(node, ast.Name) and node.id.isupper() and node.id not in OF_THIS_MACHINE:
+            if isinstance(node, ast.Name) and node.id.isupper() and node.id not in NOT_LISTED:
                 yield node.id
 
 
