@@ -64,9 +64,26 @@ def validated(how, images, H, **named):
     return found, found.reliable, found.known, found.step
 
 
-compared.__module__ = validated.__module__ = "hdrlab.diagnostics.registration"
+def lowered(how, k):
+    """Return where differences drawn at random are lower than others, of which few may be known."""
+    rng = np.random.default_rng(k)
+    if how is bits:
+        pair, compared = bits(MOVED), rng.integers(0, 300, 4) * (np.arange(4) > k % 3)
+        other = np.stack([compared * rng.uniform(0.05, 0.4, 4), compared], axis=-1)
+        return pair.lower(other * [1 - 0.06 * k, 1], other), pair.error(other), pair.error(other * 0)
+    pair = registration.compare_light(0, 1, LIGHT[:, :40, :50], 1 + k % 3)
+    other = rng.normal(0, 0.3, 2000)
+    d = other * rng.uniform(0.6 + 0.02 * k, 1.05, 2000) ** (1 + k % 2)
+    known = rng.random(2000) < (0.04 if k % 2 else 0.9)
+    return pair.lower(np.where(known, d, NAN), other), np.nanmean(pair.differences(TRUE))
+
+
+lowered.__module__ = compared.__module__ = validated.__module__ = "hdrlab.diagnostics.registration"
 TOLERANCE = 1e-5
 CASES = recorded.named(
+    *(of(lowered, how, k) for how in ("light", bits) for k in range(14)),
+    *(of(registration.rivals, np.random.default_rng(k).random((12 + k, 15))) for k in range(6)),
+    *(of(registration._middle, MOVED[0][: 9 + k, : 8 + k], 8) for k in range(4)),
     *(of(compared, "light", X, np.eye(3), TRUE) for X in (LIGHT, REPEATS)),
     *(of(compared, bits, z, np.eye(3), TRUE) for z in (MOVED, REPEATED)),
     *(of(validated, how, z, h) for how, z in (("light", LIGHT), (bits, MOVED), ("light", REPEATS), (bits,
