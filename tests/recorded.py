@@ -156,7 +156,7 @@ def check(
     assert len(cases[name]) == len(expected)
     for k, (call, wanted) in enumerate(zip(cases[name], expected, strict=True)):
         came = answers(call)
-        assert same(came, wanted, tolerance), f"call {k} of {name}: {came} instead of {wanted}"
+        assert same(came, wanted, tolerance), f"call {k} of {name}: {came} instead of {wanted}"[:600]
 
 
 def main(file: str) -> None:

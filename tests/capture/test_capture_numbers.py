@@ -15,7 +15,6 @@ from hdrlab.capture import (
     metering,
     movers,
     photon_transfer,
-    planning,
     ranges,
     responses,
     sensor,
@@ -39,8 +38,6 @@ STEP = np.arange(7)[:, None, None, None]
 PAIRS = np.rint(64 + 45 * STEP + RNG.normal(0, 1, (7, 2, 11, 10)) * np.sqrt(4 + 9 * STEP)).astype(int)
 FULL = np.minimum(PAIRS, 290)
 TURNS = np.stack([np.eye(3), warp.turn((9, 12), 2, (0.5, 0.7))])
-MODEL = planning.Model(converter_noise=2.0, speeds=(100.0, 400.0))
-T, S = np.array([0.01, 0.1, 1.0]), np.array([100.0, 400.0, 100.0])
 W = metering.average((20, 30))
 
 
@@ -181,26 +178,6 @@ CASES = recorded.named(
         PAIRS * 1.0, PAIRS[:, :, :10], PAIRS[..., :9], PAIRS[::-1], PAIRS * 0)),
     of(photon_transfer.variance, PAIRS[3]),
     of(photon_transfer.line, np.array([0.0, 10, 20, 50]), np.array([0.05, 3, 5, 14])),
-    *(of(planning.count, s, u, o) for s, u, o in ((7, 7, 3), (7.1, 7, 3), (11, 7, 3), (11.01, 7, 3), (2, 7,
-        3), (20, 5, 1))),
-    *(of(planning.plan, lo, hi, **k) for lo, hi, k in ((1, 1000, {}), (0.5, 3e4, {"per_stop": 3,
-        "overlap": 2.5}), (3, 3, {}), (1, 1e4, {"aperture": 4.0, "iso": 400.0}), (0.01, 99,
-        {"usable": 5.0}))),
-    *(of(planning.plan, lo, hi, **k) for lo, hi, k in ((0, 1, {}), (2, 1, {}), (1, INF, {}), (1, 2,
-        {"usable": 3.0}), (1, 2, {"overlap": -0.1}), (1, 2, {"usable": INF}), (1, 2, {"usable": 3.5}), (1, 9,
-        {"overlap": 0, "usable": 1.0}))),
-    *(of(planning.around, m, 2.0 ** np.arange(-6, 4), n, s) for m, n, s in ((0.1, 3, 2), (8, 3, 1), (2**-6,
-        4, 1), (0.3, 2, 3), (1, 11, 1), (1, 5, 0.4))),
-    of(planning.squared_snr, [0.1, 10, 500, 7680], T, S, planning.Model()),
-    of(planning.squared_snr, [0.1, 10, 500], T, S, MODEL),
-    *(of(planning.settings, 0.5, 400, snr, m) for snr in (10, 200) for m in (planning.Model(), MODEL)),
-    of(planning.hardest, 0.5, 3000.0, T, S, MODEL),
-    of(planning.hardest, 19.2, 768, T, np.full(3, 400.0), planning.Model()),
-    of(planning.worst_snr, 0.5, 700, T, S, MODEL),
-    *(of(planning.plan_by_noise, lo, hi, snr, *m) for lo, hi, snr, m in ((1, 500, 10, ()), (0.5, 3000, 20,
-        (MODEL,)), (1, 1, 5, ()), (0, 1, 5, ()), (2, 1, 5, ()), (1, 2, 0, ()), (1, INF, 5, ()))),
-    *(of(planning.plan_by_noise, 1, 9, 10, planning.Model(**{k: v})) for k, v in (("full_well", 0), ("gain",
-        0), ("read_noise", -1), ("converter_noise", -1), ("pause", -1), ("pause", INF), ("pause", 0))),
     *(of(ranges.dynamic_range, hi, lo) for hi, lo in ((1000, 1), (8, 2), (1, 1), (1, 2), (1, 0), (INF, 1))),
     *(of(f, s) for f in (ranges.noise_floor, ranges.sensor_range, sensor.full_electrons) for s in (SENSOR,
         SMALL)),
