@@ -17,8 +17,8 @@ import hdrlab
 
 LIST = Path(__file__).with_name("knobs.txt")
 CONSTANTS = Path(__file__).with_name("constants.txt")
-# of this machine; and options out of which SciPy takes some as it reads them
-NOT_LISTED = {"PROCESSORS", "THREADS", "SEARCH"}
+# of this machine
+NOT_LISTED = {"PROCESSORS", "THREADS"}
 ROOMS = ("align", "beyond", "calibration", "capture", "core", "diagnostics", "enhance", "fast", "pipeline")
 ROOMS += ("radiance", "response", "tonemap")
 

@@ -213,7 +213,7 @@ def plan_by_noise(L_low: float, L_high: float, snr: float, camera: Model = Model
     A = np.minimum(squared_snr(hardest(L_low, L_high, t, S, camera), t, S, camera) / snr**2, 1)
     enough, whole, some = LinearConstraint(A, 1), np.ones(t.size), Bounds(0, MOST)
     with silence(1):  # HiGHS speaks of its own rounding
-        found = milp(t + camera.pause, constraints=enough, integrality=whole, bounds=some, options=SEARCH)
+        found = milp(t + camera.pause, constraints=enough, integrality=whole, bounds=some, options={**SEARCH})
     if found.x is None:
         raise ValueError(f"expected a ratio that {MOST} photographs of each setting reach, got {snr:g}")
     t, S, dial = *(one.repeat(np.rint(found.x).astype(int)) for one in (t, S)), exposure.shutter_series()

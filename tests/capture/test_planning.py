@@ -124,6 +124,12 @@ def test_by_noise_what_means_nothing_is_refused(maker, snr):
         planning.plan_by_noise(0.1, 1000, snr, maker)
 
 
+def test_a_plan_leaves_the_next_one_the_same_limits_of_its_search():
+    limits = dict(planning.SEARCH)
+    planning.plan_by_noise(1, 50, 15, planning.Model())
+    assert limits == planning.SEARCH and "node_limit" in limits
+
+
 def test_a_bracket_around_a_time_takes_the_nearest_that_the_camera_has():
     dial = exposure.read_dial(["bulb", "1/30", "1/125", "1/60", "1/15", "0.25s", "1/4000"])
     chosen = planning.around(1 / 60, dial.values, 3, 2.0)
