@@ -20,8 +20,6 @@ EXTRAS = {"scenes": "test,scenes", "papers": "test,bench", "coverage": "test,cov
 # in these tiers a dear fixture is made once: the tests of a module, or of a class in it, stay with one worker
 # (in a browser they need not: what is dear there, the site, is one for all workers)
 TOGETHER = ("notebooks", "jupyterlab", "grading", "papers", "scenes", "wheel")
-# a test of these waits now and then, for a kernel, a browser, a limit of time: a worker more fills that
-WAITING = ("notebooks", "jupyterlab", "browser", "grading")
 
 
 def test(session: nox.Session, tier: str, *options: str, under: Sequence[str] = ()) -> None:  # noqa: PT028
@@ -30,8 +28,6 @@ def test(session: nox.Session, tier: str, *options: str, under: Sequence[str] = 
         session.install("--editable", f".[{EXTRAS.get(session.name, 'test')}]")
     if tier in TOGETHER:
         options = (*options, "--dist=loadscope", "--no-loadscope-reorder")
-    if tier in WAITING:
-        options = (*options, f"--numprocesses={1 + (os.cpu_count() or 1)}")
     if results := os.environ.get("HDRLAB_RESULTS"):
         options = (*options, f"--junitxml={results}/{tier}.xml")
     session.run("python", *under, "-m", "pytest", f"--tier={tier}", *options, *session.posargs)
