@@ -1,23 +1,17 @@
 """The bounds of a class's grading, to the last one that is still taken, and who is told what."""
 
-from datetime import UTC, datetime, timedelta
-from fractions import Fraction
+from datetime import timedelta
 
 import pytest
+from small_class import CLASS, HOMEWORK, NOON, result
 
 from hdrlab.course.classroom import handins, journal, late, marks, moodle, overview, roster, run
 from hdrlab.course.classroom.handins import Handin
 from hdrlab.course.classroom.journal import Done, Piece
 from hdrlab.course.classroom.late import Handed
-from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.classroom.run import Course
-from hdrlab.course.plan import Conditions, Homework, Late, Task
+from hdrlab.course.plan import Conditions, Late
 from hdrlab.course.reports import gradebook, results, sheets
-from hdrlab.course.reports.results import Check, Result
-
-NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
-HOMEWORK = Homework("hw2", "Curves", NOON, (Task("a", "b.a", 10.0),))
-CLASS = Roster((Student("b1", "Ada", "t", "a@x"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
 
 
 def test_the_bounds_are_those_that_the_pages_for_instructors_name():
@@ -31,24 +25,6 @@ def test_the_bounds_are_those_that_the_pages_for_instructors_name():
     assert (roster.TEAM, roster.NAME) == (2, 80)
     assert set(map(chr, range(32))) | set('/\\:*?"<>|') == roster.FORBIDDEN
     assert marks.COLUMNS[-3:] == ("score", "grace left", "note") and len(marks.COLUMNS) == 13
-
-
-def result(student="t", *kinds, problems=(), **more):
-    """A Result with a check for each kind of answer."""
-    checks = [
-        Check(
-            "a",
-            f"c{k}",
-            f"P{k}",
-            Fraction(not kind),
-            Fraction(1),
-            "no answer" if kind else "holds",
-            kind=kind,
-        )
-        for k, kind in enumerate(kinds or ("",))
-    ]
-    made = Result(student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {})
-    return made._replace(**more)
 
 
 HANDINS = {

@@ -1,41 +1,16 @@
 """How one submission of a class is graded: under what, how often, and what travels with it."""
 
-from datetime import UTC, datetime
-from fractions import Fraction
 from types import SimpleNamespace
 
 import pytest
+from small_class import HOMEWORK, result
 
 from hdrlab.course.classroom import run
 from hdrlab.course.classroom.journal import Piece
-from hdrlab.course.classroom.roster import Roster, Student
 from hdrlab.course.classroom.run import Grader
-from hdrlab.course.plan import Conditions, Homework, Task
+from hdrlab.course.plan import Conditions
 from hdrlab.course.reports import results
-from hdrlab.course.reports.results import Check, Result
 from hdrlab.course.sandbox.running import Unavailable
-
-NOON = datetime(2026, 3, 1, 12, tzinfo=UTC)
-HOMEWORK = Homework("hw2", "Curves", NOON, (Task("a", "b.a", 10.0),))
-CLASS = Roster((Student("b1", "Ada", "t", "a@x"), Student("b2", "Bo", "t"), Student("b3", "Cy", "b3")))
-
-
-def result(student="t", *kinds, problems=(), **more):
-    """A Result with a check for each kind of answer."""
-    checks = [
-        Check(
-            "a",
-            f"c{k}",
-            f"P{k}",
-            Fraction(not kind),
-            Fraction(1),
-            "no answer" if kind else "holds",
-            kind=kind,
-        )
-        for k, kind in enumerate(kinds or ("",))
-    ]
-    made = Result(student, "hw2", "", "strict", tuple(checks), {}, tuple(problems), "", "", "seed", {})
-    return made._replace(**more)
 
 
 def grader(monkeypatch, *each, **knobs):

@@ -5,25 +5,17 @@ from functools import partial as of
 import numpy as np
 import pytest
 import recorded
+from shots import TIMES, shots
 
-from hdrlab.capture import responses
 from hdrlab.core import sampling, weights
 from hdrlab.response import families, likelihood, marginal, selection, self_calibration, space
 
 RNG = np.random.default_rng(11)
 NAN, INF = np.nan, np.inf
-TIMES = np.array([0.25, 1.0, 4.0])
 LIGHT = RNG.lognormal(-2, 1.5, (24, 30, 3))
 
 
-def shots(scene=LIGHT, times=TIMES, curve="gamma", noise=0.003):
-    """Return photographs of a scene."""
-    X = np.clip(np.multiply.outer(times, scene), 0, 1)
-    M = responses.as_response(curve).f(X) + noise * np.random.default_rng(2).standard_normal(X.shape)
-    return np.rint(np.clip(M, 0, 1) * 255).astype(np.uint8)
-
-
-Z3, Z1 = shots(), shots(LIGHT[..., 1])
+Z3, Z1 = shots(LIGHT), shots(LIGHT[..., 1])
 DEEP = Z1.astype(np.uint16) * 257
 LARGE = shots(RNG.lognormal(-2, 1.5, (60, 70)))
 VALID = RNG.random(Z1.shape) > 0.02
