@@ -85,13 +85,19 @@ def move(page, widget):
     slider.press("Home" if at_end else "End")
 
 
+def seen(page, canvas):
+    """Return the pixels of a picture on the screen: as it is now, without waiting until it rests."""
+    return page.screenshot(clip=canvas.bounding_box(), caret="initial")
+
+
 def changed_by(page, widget, move):
     """Move a control, and wait until what one sees is another: from a folder no canvas can be read."""
     canvas = widget.locator("canvas").first
-    before = canvas.screenshot()
+    canvas.scroll_into_view_if_needed()
+    before = seen(page, canvas)
     move()
     for _ in range(PATIENCE // 20):
-        if canvas.screenshot() != before:
+        if seen(page, canvas) != before:
             return
         page.wait_for_timeout(20)
     raise AssertionError("the picture is as it was")
