@@ -312,7 +312,7 @@ def test_the_wrong_times_of_the_phone_are_found_and_replaced(photographs, assemb
 
 def test_a_walk_around_the_crusader_is_doubted_and_the_message_says_what_to_do(shared):
     paths = sorted((shared("crusader") / "frames").glob("*.jpeg"))
-    images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(2)) for path in paths])
+    images = np.stack([np.asarray(Image.open(path).convert("RGB").reduce(4)) for path in paths])
     order = np.argsort(images.mean(axis=(1, 2, 3)))
     taken = bracket(images[order], 2.0 ** np.arange(7), [paths[j].name for j in order])
     (doubt,) = (doubt for doubt in assemble(taken).doubts if "do not lie on each other" in doubt)
