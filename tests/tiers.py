@@ -36,7 +36,6 @@ TIERS = {
     "notebooks": (
         "tests/test_notebooks_run.py",
         "tests/cli/test_faults.py::test_a_disk_that_refuses_is_told_in_a_line[site",
-        "tests/cli/test_faults.py::test_a_site",
         "tests/course/test_handouts.py::test_building_writes_both",
         "tests/course/test_site.py",
     ),

@@ -14,6 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
+from lacking import POOR, turn_clock_back
 from PIL import Image
 
 from hdrlab import scenes
@@ -152,28 +153,6 @@ def absolute(command, here):
     return [str(here / word) if (here / word).exists() or word.startswith("out/") else word for word in words]
 
 
-def turn_clock_back(here):
-    """Return where Python finds a clock that loses a minute at each look, and files from the future."""
-    (here.parent / "clock").mkdir()
-    (here.parent / "clock/sitecustomize.py").write_text(CLOCK)
-    for path in here.rglob("*"):
-        os.utime(path, (4e9, 4e9))
-    return os.pathsep.join([str(here.parent / "clock"), *filter(None, [os.environ.get("PYTHONPATH")])])
-
-
-CLOCK = """import itertools, time
-true = time.time
-late = itertools.count()
-time.time = lambda: true() - 60 * next(late)
-"""
-NOWHERE = "/proc/nowhere"
-POOR = {
-    "no HOME": {"HOME": None, "XDG_CACHE_HOME": None},
-    "no caches": {"HOME": NOWHERE, "XDG_CACHE_HOME": NOWHERE, "MPLCONFIGDIR": NOWHERE},
-    "LANG=C": {"LANG": "C", "LC_ALL": "C", "PYTHONUTF8": "0", "PYTHONCOERCECLOCALE": "0"},
-}
-
-
 @pytest.mark.parametrize("lacks", [*POOR, "a clock", "a working folder"])
 @pytest.mark.parametrize("command", ["assemble", "tonemap", "grade"])
 def test_a_machine_that_lacks_something_gives_the_result(command, lacks, here, made):
@@ -186,14 +165,6 @@ def test_a_machine_that_lacks_something_gives_the_result(command, lacks, here, m
     ended = end(start(words, here, **options))
     assert ended.code == 0 and "Traceback" not in ended.err, ended.err
     assert len(files(here / "out")) == {"assemble": 3, "tonemap": 1, "grade": 5}[command]
-    assert_nothing_is_lost(here, made)
-
-
-def test_a_site_is_made_where_caches_signs_and_a_clock_are_lacking(here, made):
-    poor = POOR["no caches"] | POOR["LANG=C"] | {"PYTHONPATH": turn_clock_back(here)}
-    ended = end(start("site", here, **poor))
-    assert ended.code == 0 and "Traceback" not in ended.err, ended.err
-    assert list((here / "out/site").rglob("small.html"))
     assert_nothing_is_lost(here, made)
 
 
