@@ -94,7 +94,7 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     from nbclient import NotebookClient
     from nbclient.exceptions import CellExecutionError, CellTimeoutError
 
-    notebook = nbformat.read(source, as_version=4)
+    notebook, where = nbformat.read(source, as_version=4), "its kernel"
     # where a notebook may leave something
     folder = cache / "kernels" / f"{source.stem}-{secrets.token_hex(4)}"
     folder.mkdir(parents=True)
@@ -105,7 +105,6 @@ async def _run(source: Path, kept: Path, cache: Path) -> None:
     client.km.connection_file = f"{sockets}/kernel.json"
     # of ports two kernels may choose the same, of files not; but a socket's path has room for 100 bytes alone
     client.km.transport = "ipc" if os.name == "posix" and len(os.fsencode(sockets)) < 80 else "tcp"
-    where = "its kernel"
     try:
         # the kernel imports this very hdrlab, writes nothing at home, and stores 400 pictures of a slider:
         # no Python answers on a page

@@ -117,8 +117,7 @@ def _build(
     first = {"hero": Markup(hero.as_html(WIDGETS)), "titles": titles, "handouts": headings}
     texts["index.md"] = render_page(PAGES, "index.md", **first)
     guides = [page for page in PAGES.glob("*.md") if page.name != "index.md"]
-    texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides}
-    texts |= more
+    texts |= {page.name: _linked(page.read_text("utf-8"), known) for page in guides} | dict(more)
     files = {name: text.encode() for name, text in texts.items()}
     files |= {f"cases/{one.name}": one.read_bytes() for one in PAGES.glob("cases/*.webp")}
     for name, content in files.items():
