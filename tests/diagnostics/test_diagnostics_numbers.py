@@ -53,10 +53,15 @@ CORNERS = shots(falloff=0.25)
 STEPPED = shots(times=TIMES * [1, 1, 0.6, 1])
 PASSED = Z1.copy()
 PASSED[1, 60:120, 80:150], PASSED[2, 90:140, 20:90] = 140, 60
+PLAIN = np.minimum(shots(np.repeat([[0.4, 0.03]], [20, 12], axis=1) * np.ones((20, 1)), noise=0), 250)
+PLAIN[1, 4:12, 4:12], PLAIN[2, 12:, 8:20] = 90, 0
+PART = np.zeros(PLAIN.shape, bool)
+PART[:3, 4:12, 8:16], PART[:, ::4, ::4] = True, True
 FLICKERED = np.rint(
     np.clip(Z1 * (1 + 0.15 * np.sin(np.arange(210) / 9 + 2 * np.arange(4)[:, None]))[..., None], 0, 255)
 ).astype(np.uint8)
 VALID = RNG.random(Z1.shape) > 0.001
+RISING = np.repeat(np.arange(30, 130, dtype=np.uint8), 10).reshape(25, 40)
 E1 = merge(Z1, TIMES, G)
 FOUND, FOUND3 = flat_patches.find_flat_patches(Z1), flat_patches.find_flat_patches(Z3)
 H, H3 = (flat_patches.count_pairs(one.Z, one.best) for one in (FOUND, FOUND3))
@@ -74,6 +79,7 @@ POISSON = (
 )
 NOISY = np.rint(65535 * np.clip(POISSON + 0.002 * RNG.standard_normal(POISSON.shape), 0, 1)).astype(np.uint16)
 LINEAR = np.log(np.maximum(np.arange(65536), 0.25) / 32768)
+THREE = np.arange(70)[:, None] + [0, 90, 180]  # columns of three channels
 AVERAGE = (NOISY * 2.0 ** (-2 * np.arange(4))[:, None, None]).mean(axis=0) / 65535
 
 
@@ -115,6 +121,29 @@ def doubted(stops, accepted=True):
     return exposure_times.note(found, "abcdef"[: len(found.stops)]), exposure_times.doubts(found)
 
 
+def marked():
+    """Return what groups tell of the noise, of which some stand just at what counts as measured."""
+    rng, groups = np.random.default_rng(2), np.split(np.arange(900), range(100, 900, 100))
+    E = np.repeat(np.geomspace(0.08, 0.8, 9), 100)
+    X = E * np.array([[1], [2.1]])
+    Z = np.rint(128 * (X + rng.normal(0, np.sqrt(X / 900 + 0.01**2)))).astype(int)
+    Z[0, 100:102], Z[0, 200:201], Z[1, 301:304], Z[:, 400:500], E[400:500] = 1, 0, 250, 128, 1
+    groups[5], groups[6:] = groups[5][:60], groups[6:8]
+    return noise._fit(Z, np.array([1.0, 2.0]), np.log(np.maximum(np.arange(256), 0.25) / 128), E, groups, 250)
+
+
+def fainter(steps, times):
+    """Return how far a curve departs from ranks, of which the longer exposure has others by these steps."""
+    Z = np.stack([np.arange(100, 100 + len(steps)), np.arange(100, 100 + len(steps)) + steps], axis=1)
+    return plausibility.neighbour_errors(Z[..., None], np.array(times), G[:, None])
+
+
+def accepted(images, times, stops):
+    """Return whether a curve that spans some stops between the inner levels is one of a camera's."""
+    g = np.maximum(np.arange(256) - 30, -30) / 195 * (stops * np.log(2)) + 20
+    return plausibility.validate_response(g, images, times)[[30, 225]]
+
+
 def directions(B, known):
     """Return what the free directions span."""
     Q = response_steps.free_directions(B, known=known)
@@ -122,10 +151,14 @@ def directions(B, known):
 
 
 directions.__module__ = "hdrlab.diagnostics.response_steps"
+marked.__module__ = "hdrlab.diagnostics.noise"
+fainter.__module__ = accepted.__module__ = "hdrlab.diagnostics.plausibility"
 best.__module__ = "hdrlab.diagnostics.flat_patches"
 judged.__module__ = warned.__module__ = "hdrlab.diagnostics.contradictions"
 estimated.__module__ = doubted.__module__ = "hdrlab.diagnostics.exposure_times"
-LOOSE = dict.fromkeys(("diagnostics.noise.estimate_noise", "diagnostics.noise._solve"), 1e-4)
+LOOSE = dict.fromkeys(
+    ("diagnostics.noise.estimate_noise", "diagnostics.noise._solve", "diagnostics.noise.marked"), 1e-4
+)
 TOLERANCE = 1e-5
 CASES = recorded.named(
     *(of(consistency.measure_level_exposures, z, TIMES, e, **k) for z, e, k in ((Z1, E1, {}), (Z3, merge(Z3,
@@ -183,13 +216,20 @@ CASES = recorded.named(
     of(motion.measure_motion, Z1 * 0, TIMES, G, weights.hat()),
     of(motion.measure_bands, RNG.normal(0, 9, (3, 20)).astype(np.float32), RNG.random((3,
         20)).astype(np.float32) * 20, 9),
+    *(of(motion.measure_motion, z, TIMES, G, np.ones(256), valid=v) for z, v in ((PLAIN, None), (PLAIN,
+        PLAIN >= 0), (PLAIN, PART), (np.stack([PLAIN] * 3, axis=-1), PART))),
+    of(motion.measure_bands, np.sin(np.arange(60, dtype=np.float32) ** 2).reshape(3, 20),
+        np.repeat(np.float32([[8, 20]] * 3), 10, axis=1), 5),
     of(motion.sum_blocks, Z1[:, :23, :30]),
     of(noise.estimate_noise, NOISY, TIMES, LINEAR, AVERAGE),
     *(of(noise.estimate_noise, z, TIMES, LINEAR, e) for z, e in ((NOISY, AVERAGE[1:]), (NOISY * 0, AVERAGE))),
-    of(noise.slope, AVERAGE),
+    of(noise.estimate_noise, (NOISY[..., THREE] // 256).astype(np.uint8), TIMES, LINEAR[::257],
+        AVERAGE[:, THREE]),
+    of(marked),
+    *(of(noise.slope, e) for e in (AVERAGE, np.eye(7)[::-1])),
     of(noise.group_flat, AVERAGE.ravel()[:500], RNG.random(500)),
     *(of(noise.scatter, np.array(y)) for y in ([1.0, 2, 3, 2, 40, 1, 2, 2, 3, 1, 2, 2, 1.5, 2.5, 2, 2, 2, 2,
-        2], [1.0, 1, 1, 1, 9], [0.1, -0.2, 0.3])),
+        2], [1.0, 1, 1, 1, 9], [0.1, -0.2, 0.3], [0.5, 0.5])),
     of(noise._solve, np.geomspace(1e-5, 1e-2, 8), np.full(8, 1e-7), np.stack([np.geomspace(1, 900, 8),
         np.geomspace(1, 9e5, 8), np.full(8, 2.0)]), np.full(8, 200.0)),
     *(of(outlying_frames.find_outlying_frames, z, t, **k) for z, t, k in ((Z1, TIMES, {}), (Z1, SWAPPED[[0,
@@ -206,6 +246,14 @@ CASES = recorded.named(
         TIMES ** 2, {"valid": VALID}), (G, Z1, TIMES**4, {}), (G, Z1[:2], [1, 20], {}), (G, Z1[:2], [1, 90],
         {}))),
     *(of(plausibility.validate_response, g, Z1 // 200, TIMES) for g in (G * s for s in (1, 1.3, 2, 2.6, 3))),
+    of(plausibility.ranks, Z1[:2], np.indices(Z1[:2].shape)[0] == np.arange(266) // 133),
+    *(of(fainter, s, [1.0, 2.0]) for s in (np.repeat([-3, -2, 1], [4, 13, 13]), np.repeat([-3, 1], [12,
+        17]))),
+    *(of(plausibility.validate_response, G, np.stack([RISING, RISING - np.uint8(9) * (RISING < 80 +
+        n)]), [1, 2]) for n in (0, 1, 12)),
+    *(of(plausibility.validate_response, G, np.stack([RISING] * len(t)), t) for t in ([1, 16], [1, 2**3.5,
+        2**7], [1, 8, 64, 512], [1, 8, 64.1, 513])),
+    *(of(accepted, Z1[:2], [1, 1], stops) for stops in (12.9, 13, 13.03)),
     of(plausibility._pair, TIMES, np.array([0.1, NAN, 3])),
     *(of(response_steps.as_ascending_times, t, 3) for t in ([1, 2, 4], [1, 1, 4], [2, 1, 4], [1, 2])),
     *(of(response_steps.remove_trend, np.array(x), B) for x in ([0, 0.1, 0.2, 0.3], [0.0, 0.1, 0.5, 0.3],
