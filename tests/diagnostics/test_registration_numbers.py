@@ -25,6 +25,9 @@ f_inv = np.exp(G)
 LIGHT = light.pair(MOVED[0], MOVED[1], f_inv, f_inv / 4)[0]
 REPEATS = light.pair(REPEATED[0], REPEATED[1], f_inv, f_inv / 4)[0]
 TRUE = warp.as_homographies([[3, 5]])[0]
+THERE = warp.as_homographies([[0, -36]])[0]
+TRUE4 = warp.as_homographies([[12, 20]])[0]
+APART = np.where(np.indices((2, 1, 72))[0] == np.arange(72) // 36, np.float32(1), np.float32(NAN))
 
 
 def bits(images, q=0.5):
@@ -58,7 +61,7 @@ def validated(how, images, H, **named):
     pair = (
         how(images)
         if how is bits
-        else registration.compare_light(0, 1, images, **({"scale": 2} if how == "twice" else {}))
+        else registration.compare_light(0, 1, images, {"twice": 2, "fourfold": 4}.get(how, 1))
     )
     found = registration.validate(pair, H, **named)
     return found, found.reliable, found.known, found.step
@@ -78,7 +81,47 @@ def lowered(how, k):
     return pair.lower(np.where(known, d, NAN), other), np.nanmean(pair.differences(TRUE))
 
 
-lowered.__module__ = compared.__module__ = validated.__module__ = "hdrlab.diagnostics.registration"
+def weighed():
+    """Return which quarters of light are lower, by 20 pixels or hardly a twentieth."""
+    pair = registration.compare_light(0, 1, np.ones((2, 21, 21), np.float32))
+    d, other = np.full((2, 21, 21), NAN)
+    d[:11, 10], d[:9, 9], d[:11, 11:], d[11:, :11] = 0.1, 0.1, np.sqrt(1 - 0.049), 0
+    other[:11, 9:], other[11:, :11] = 1, 0
+    return pair.lower(d.ravel(), other.ravel())
+
+
+def halved():
+    """Return what bitmaps compare whose overview is half as large, and which of them are lower."""
+    Y = [np.zeros((64, 80), np.uint8), np.arange(1280, dtype=np.uint8).reshape(32, 40)]
+    pair = registration.compare_bits(0, 1, Y, 1, 90, lambda by, k: np.array([[*by, k]]))
+    d, other = np.array([[0.4755e9, 1e9], [1, 1]]), np.array([[0.5e9, 1e9], [800, 1000]])
+    return (
+        pair.scale,
+        pair.middle,
+        pair.differences(registration.shift(np.eye(3), (4, 6))),
+        pair.lower(d, other),
+    )
+
+
+def certain():
+    """Return whether a confidence of exactly as much counts."""
+    return registration.uninformative(0, 1)._replace(confidence=registration.LOST).known
+
+
+def refused(e, also, elsewhere, n=1):
+    """Return why not to trust what errs by e, where a texture that repeats errs by so much elsewhere."""
+    tile = np.tile(np.random.default_rng(3).normal(0, 1, (12, 10)).astype(np.float32), (4, 4))
+    pair = registration.compare_light(0, 1, np.stack([tile, tile]), n)
+
+    def error(by):
+        return e if not by.any() else elsewhere if np.any(by % (10 * n, 12 * n)) else also
+
+    pair = pair._replace(differences=lambda H: H[:2, 2], error=error)
+    return registration.failure_reason(pair, np.eye(3), [elsewhere] * 8, True, 0)
+
+
+for one in (lowered, compared, validated, weighed, halved, certain, refused):
+    one.__module__ = "hdrlab.diagnostics.registration"
 TOLERANCE = 1e-5
 CASES = recorded.named(
     *(of(lowered, how, k) for how in ("light", bits) for k in range(14)),
@@ -93,6 +136,14 @@ CASES = recorded.named(
         MOVED))),
     *(of(validated, "light", LIGHT, TRUE, limit=n) for n in (5, 5.01)),
     of(validated, "light", LIGHT * np.float32(NAN), TRUE),
+    of(validated, "light", LIGHT * np.where(np.arange(180) < 85, np.float32(1), NAN), TRUE),
+    of(validated, "light", np.stack([REPEATS[0][:40, :72], REPEATS[0][:40, :72]]) * APART, THERE),
+    of(validated, "fourfold", LIGHT[:, :70, :90], TRUE4),
+    of(weighed),
+    of(halved),
+    *(of(refused, *a) for a in ((0.1, 0.16, 1.0), (0.1, 0.2, 1.0), (0.1, 0.16, 1.0, 3), (0.5, 0.6, 9.0))),
+    of(certain),
+    of(registration.rivals, REPEATS[0][:30, :80] * np.float32(0.01)),
     of(validated, bits, MOVED * 0, TRUE),
     of(registration.uninformative, 2, 3),
     *(of(registration.confidence, e, o) for e, o in ((0.1, [0.5, 0.7]), (0.5, [0, 0]), (0.5, [0.1]))),
