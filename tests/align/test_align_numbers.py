@@ -55,6 +55,11 @@ def correlated(*args):
     return cerman.peaks(c, 2), c.max(), c.shape, c[::7, ::7]
 
 
+def searched(pyramid):
+    """Return how a pair is searched for from the coarsest size on: where each path begins and ends."""
+    return [(s.level, len(s.path), s.path[0], s.path[-1], s.errors[-1], s.H) for s in cerman.search(pyramid)]
+
+
 def found_points():
     """Return how many points of interest agree, and where the first lie."""
     points = homography.match_points(light.pyramid(X3, X3 > 0)[0])
@@ -62,11 +67,14 @@ def found_points():
 
 
 X3 = np.stack([SCENE[8:78, 9:89], SCENE[10:80, 8:88]]).astype(np.float32)
-correlated.__module__ = "hdrlab.align.cerman"
+correlated.__module__ = searched.__module__ = "hdrlab.align.cerman"
 found_points.__module__ = "hdrlab.align.homography"
+FINE = gaussian_filter(np.random.default_rng(57).lognormal(0, 1, (22, 26)), 1.2).astype(np.float32)
+RIVALS = np.stack([FINE[:16, :18], FINE[3:19, 4:22] * np.float32(1.1)])
 DISPLACED = cerman.correlation(light.pyramid(X3, X3 > 0)[-1])
 ROUGH = warp.as_homographies([[1.4, 0.8]])[0]
-LOOSE = {"align.cerman.descend": 1e-4, "align.cerman.align": 1e-4, "align.homography.refine": 1e-3}
+LOOSE = {f"align.cerman.{name}": 1e-4 for name in ("descend", "align", "searched")}
+LOOSE["align.homography.refine"] = 1e-3
 
 CASES = recorded.named(
     of(correlated, X2),
@@ -76,6 +84,8 @@ CASES = recorded.named(
     of(cerman.descend, X2, (0.0, 0.0, 0.0), 2.0, 0.3),
     of(cerman.descend, X2, (-1.0, 0.3, 0.1), 1.0),
     of(cerman.align, SMALL, TIMES, G),
+    *(of(cerman.peaks, 0.5 * np.eye(n), 50) for n in (7, 9)),
+    *(of(searched, [X, X[:, ::k, ::k]]) for X, k in ((np.ones((2, 8, 8), np.float32), 2), (RIVALS, 1))),
     of(homography.detail, X2[0]),
     of(found_points),
     *(of(homography.consensus, POINTS[:, :n]) for n in (30, 10, 9, 0)),
