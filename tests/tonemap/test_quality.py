@@ -48,6 +48,10 @@ def test_structural_fidelity_is_its_definition():
     assert quality.structural_fidelity(x, y) == pytest.approx(defined_S(x, y), rel=1e-6)
 
 
+def test_the_brightest_pixel_is_the_largest_number_of_32_bits():
+    assert quality.scale_luminance(np.float32([[1, 3]])).tolist() == [[0, 2**32 - 1]]
+
+
 def test_naturalness_is_the_product_of_its_two_densities_over_their_peaks():
     y = quality.gray(shown(scene((110, 121))))
     d = np.mean([b.std() for row in np.split(y, 10) for b in np.split(row, 11, axis=1)]) / 64.29

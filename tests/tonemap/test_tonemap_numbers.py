@@ -39,6 +39,7 @@ GRAY = np.clip(255 * L / (1 + L), 0, 255).astype(np.uint8)
 BIG = np.clip(255 * LARGE / (1 + LARGE), 0, 255).astype(np.uint8)
 X, Y = quality.scale_luminance(LARGE), BIG.astype(float)
 LM = reinhard.scale_to_key(L.astype(float))
+EVEN = 1e6 + np.where(np.indices((24, 26))[1] > 13, 10.0, 0.05) * np.sin(np.arange(26.0))
 STEPS = np.array([0, 1, 5, 9, 2, 0, 3, 1.0])
 V = np.linspace(0, 1, 11)
 SCENES = (L, HOLES, DARK, ONE, FLAT, TINY, ROW, NARROW, FAR)
@@ -144,6 +145,9 @@ CASES = recorded.named(
     of(quality.window_means, Y),
     *(of(f, X, Y, *a) for f, a in ((quality.deviations, ()), (quality.local_fidelity, (4.0,)))),
     of(quality.deviations, X * 0 + 7, Y),
+    of(quality.deviations, EVEN, EVEN[::-1]),
+    of(quality.local_fidelity, Y / 40, Y[::-1] / 60, 4.0),
+    of(quality.scale_fidelities, np.tile(X, (6, 4))[:352, :352], np.tile(Y, (6, 4))[:352, :352]),
     *(of(quality.halve, a) for a in (Y, Y[:5, :7])),
     *(of(f, a, b) for f in (quality.scale_fidelities, quality.structural_fidelity) for a, b in ((X, Y),
         (X[:11, :11], Y[:11, :11]), (X[:10, :30], Y[:10, :30]), (X[:3, :4], Y[:3, :4]), (X[:22, :23], Y[:22,
@@ -151,7 +155,7 @@ CASES = recorded.named(
     *(of(f, a) for f in (quality.brightness, quality.contrast, quality.block_deviation, quality.naturalness)
         for a in (Y, Y[:25, :13], Y[:4, :5], np.indices((22, 22)).sum(0) % 2 * 255.0)),
     of(quality.overall, 0.8, 0.3),
-    *(of(quality.scale_luminance, s) for s in (L, DARK, FLAT)),
+    *(of(quality.scale_luminance, s) for s in (L, DARK, FLAT, L / L.max() / 2)),
     *(of(quality.tmqi, a, b) for a, b in ((L, GRAY), (LARGE, BIG), (L, BIG), (FLAT, GRAY))),
     *(of(reinhard.log_average, s, **k) for s, k in ((L, {}), (HOLES, {}), (HOLES, {"delta": 0.1}), (DARK,
         {}))),
