@@ -1,5 +1,7 @@
 """What `assemble` says of alignment: a doubt where photographs do not lie on each other, and nowhere else."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from brackets import MARGIN, H, W, bracket as shoot, photograph, radiance
@@ -9,6 +11,7 @@ from hdrlab import pipeline, scenes
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 from hdrlab.core.filters import warp
+from hdrlab.pipeline import alignment
 from hdrlab.pipeline.alignment import register
 
 STILL = [(0, 0)] * 7
@@ -95,3 +98,51 @@ def test_photographs_that_turned_are_not_said_to_show_leaves_and_water_besides()
     taken = camera.shoot(room, camera.times_around(room, 4, stops=1.5), offsets=turned, rng=1)
     (doubt,) = pipeline.assemble(taken, align="mtb").doubts
     assert "do not lie on each other" in doubt
+
+
+def by_percentile(monkeypatch, **validations):
+    """Return which of the answers at the median and at the other two percentiles is taken."""
+    answers = {
+        q: alignment.judgement.uninformative(0, 1)._replace(
+            moving=q, **({"failure": "", "confidence": 0.95, "offset": (4, 0)} | validations.get(name, {}))
+        )
+        for q, name in ((50, "median"), (83, "high"), (17, "low"))
+    }
+    monkeypatch.setattr(alignment.mtb, "percentile", lambda *_, near: near)
+    monkeypatch.setattr(alignment.judgement, "compare_bits", lambda *_: None)
+    monkeypatch.setattr(alignment.judgement, "validate", lambda _, H, limit: answers[round(H[1, 2])])
+    B = SimpleNamespace(h=[0], offset_onto=lambda A, q: (100 * q, 0))
+    A = SimpleNamespace(h=[0], Y=[0], overview=0, threshold=lambda q, level: 0)
+    return alignment.best_percentile(0, B, 1, A).moving
+
+
+def test_another_percentile_counts_where_the_median_fails_and_it_is_certain_and_lies_elsewhere(monkeypatch):
+    lost = {"failure": "turned", "offset": (0, 0)}
+    assert by_percentile(monkeypatch) == 50
+    assert by_percentile(monkeypatch, median=lost) == 83
+    for wrong in ({"failure": "turned"}, {"confidence": alignment.CERTAIN}, {"offset": (0, 2)}):
+        assert by_percentile(monkeypatch, median=lost, high=wrong) == 17
+        assert by_percentile(monkeypatch, median=lost, high=wrong, low=wrong) == 50
+    assert by_percentile(monkeypatch, median=lost, high={"offset": (0, 3)}) == 83
+
+
+def improved(monkeypatch, side, **searches):
+    """Return what is found of a pair that moved by (24, 40) pixels, its light measured on the left alone."""
+    texture = np.random.default_rng(2).uniform(1, 2, (12, 14)).repeat(4, axis=0).repeat(4, axis=1)
+    X = np.stack([texture[:40, :50], texture[3:43, 5:55]]).astype(np.float32)
+    X[0, :, 25:] = np.nan
+    for name, found in searches.items():
+        states = [] if found is None else [SimpleNamespace(H=found)]
+        monkeypatch.setitem(alignment.SEARCHES, name, lambda pyramid, states=states: iter(states))
+    photograph = SimpleNamespace(overview=3, Y=[np.zeros((side, 400)), np.zeros((side // 2, 200)), 0, 0])
+    best = alignment.judgement.uninformative(0, 1)._replace(apart=True)
+    return alignment.improve(best, "mtb", photograph, photograph, lambda *_: [X])
+
+
+def test_the_simplest_search_that_serves_is_taken_and_none_that_leaves_little_in_common(monkeypatch):
+    true, still = warp.as_homographies([(3, 5), (0, 0)])
+    found, name = improved(monkeypatch, 100, cerman=true, homography=None)
+    assert name == "cerman" and found.offset == pytest.approx((24, 40)) and not found.apart
+    assert improved(monkeypatch, 100, cerman=still, homography=true)[1] == "homography"
+    assert improved(monkeypatch, 100, cerman=still, homography=still)[1] == "mtb"
+    assert improved(monkeypatch, 80, cerman=true, homography=true)[1] == "mtb"

@@ -67,6 +67,11 @@ STATE = assembly.Assembly(
 )
 SURE = Validation(0, 1, np.eye(3), (0.0, 0.0), 0.0, 0.1, 0.1, 0.9, True, "")
 TILT = warp.turn((9, 9), 1)
+GRAIN = np.random.default_rng(5).integers(0, 256, (40, 48)).astype(np.uint8)
+DUSK = np.where(GRAIN < 100, 8, np.maximum(GRAIN // 2, 20)).astype(np.uint8)  # nothing below 8
+COARSE = np.kron(GRAIN[:20, :24], np.ones((2, 2), np.uint8))
+CHESS = np.where(np.indices(COARSE.shape).sum(axis=0) % 2, COARSE, 255 - COARSE)  # gray at half the size
+STEPPED = shots(SCENE, TIMES[:2], ((6, 6), (6, 7)))
 PHOTOGRAPHS = list(alignment.photograph_pairs(SHIFTED))
 
 
@@ -85,10 +90,21 @@ def tables(times=None, g=None, dark=Z1[0], bright=Z1[2]):
     return alignment.light_scale(Z1, times, g)(0, 2, dark, bright)
 
 
-def judged(k, **named):
+def judged(k, photographs=PHOTOGRAPHS):
     """Return what is found of a pair."""
-    moving, B, fixed, A = PHOTOGRAPHS[k]
-    return alignment.best_percentile(moving, B, fixed, A, **named)
+    moving, B, fixed, A = photographs[k]
+    return alignment.best_percentile(moving, B, fixed, A)
+
+
+def lit(images):
+    """Return what is found of pairs by their light."""
+    as_light = alignment.light_scale(images, TIMES[: len(images)], G)
+    return list(alignment.register_by_light(images, as_light, "cerman"))
+
+
+def counted(images, times, *, valid):
+    """Return a curve that tells what it is recovered from."""
+    return np.array([images.shape[2], images.sum(), valid.sum(), images[:, valid[0]].sum()])
 
 
 def aligned(taken, *args, **named):
@@ -176,7 +192,7 @@ def lazy():
 
 
 for home, own in {
-    "alignment": (registered, tables, judged),
+    "alignment": (registered, tables, judged, lit),
     "registration": (aligned, described),
     "recovery": (chosen,),
     "stages": (assembled, corrected, cleaned, assessed, calibrated),
@@ -194,18 +210,24 @@ CASES = recorded.named(
         6), (6, 6))))),
     *(of(tables, *a) for a in ((), (TIMES,), (TIMES, G), (None, G), (None, lambda: None), (TIMES,
         lambda: np.stack([G, G * 0.9, G], axis=-1)))),
+    of(tables, dark=DUSK, bright=np.where(DUSK > 8, 2 * DUSK, 8 + GRAIN // 2 % 23).astype(np.uint8)),
     *(of(judged, k) for k in (0, 1)),
+    *(of(judged, 0, list(alignment.photograph_pairs(z, bits=b))) for z, b in ((np.stack([CHESS // 2,
+        CHESS]), 2), (STEPPED, 1))),
+    of(lit, COLOUR[:2, 20:53, 30:66] // np.uint8([2, 1, 4])),
     *(of(assembly.take_frames, STATE, np.array(o)) for o in ([0, 1, 2], [2, 0], [1, 0, 2])),
     *(of(catalogue.names, c) for c in catalogue.VERBS),
     of(lazy),
     *(of(sure, **k) for k in ({}, {"moving": (BLOCKS > 0.3).astype(np.int32)},
         {"E": BLOCKS.astype(np.float32) * 0 + 1})),
-    *(of(recovery.split_stripes, t) for t in (TAKEN, TAKEN3, bracket(np.tile(Z1, (1, 3, 2)), TIMES))),
+    *(of(recovery.split_stripes, t) for t in (TAKEN, TAKEN3, bracket(np.tile(Z1, (1, 3, 2)), TIMES),
+        bracket(np.tile(Z1[:1], (1, 5, 4)), TIMES[:1]))),
     *(of(recovery.find_widest_gap, z) for z in ([[9, 12], [11, 30]], [[20, 60], [30, 90], [10, 251]], [[0,
-        255]], [[20, 255], [0, 40]])),
+        255]], [[20, 255], [0, 40]], [[10, 250]], [[50, 51]])),
     *(of(chosen, r, t) for r, t in (("linear", LINEAR), ("auto", LINEAR), ("debevec", TAKEN), ("auto",
         TAKEN3), ("robertson", TAKEN), ("mitsunaga", TAKEN), ("auto", bracket(Z1 * 0 + 9, TIMES)))),
     *(of(recovery.share_curve(space.recover), z, TIMES, **k) for z, k in ((Z3, {}), (Z1, {"valid": VALID}))),
+    of(recovery.share_curve(counted), Z3, TIMES, valid=VALID),
     *(of(recovery.measure_spread, m, *recovery.split_stripes(TAKEN)) for m in (lambda *a, **k: G,
         space.recover)),
     *(of(aligned, t, a) for t, a in ((TAKEN, "none"), (bracket(SHIFTED, TIMES), "mtb"), (bracket(SHIFTED,

@@ -58,3 +58,29 @@ def test_a_validated_response_is_the_method_s_own(taken):
 def test_a_level_that_one_frame_shows_alone_bridges_no_gap():
     assert recovery.find_widest_gap([[100, 200], [101, 201], [20, 255]]) == 99
     assert recovery.find_widest_gap([[100, 200], [101, 201], [150, 255], [150, 0]]) == 99
+
+
+ASKED = ("three by debevec", "three by space", "one by space", "one by debevec")
+ENOUGH = 1.05 * 0.1 + 0.003
+
+
+@pytest.mark.parametrize(
+    ("spreads", "gap", "name"),
+    [
+        ((0.1, 0, ENOUGH, 0), 20, "one by space"),
+        ((0.1, 0, ENOUGH + 1e-6, ENOUGH), 20, "one by debevec"),
+        ((0.1, 0, ENOUGH + 1e-6, ENOUGH + 1e-6), 20, "three by debevec"),
+        ((0, 0.1, ENOUGH + 1e-6, 0), 21, "three by space"),
+        ((0, 0.1, ENOUGH, 0), 21, "one by space"),
+        ((np.inf, 0.1, 0.2, 0.2), 20, "three by space"),
+    ],
+)
+def test_one_curve_is_taken_where_it_explains_nearly_as_much_and_debevec_s_where_few_levels_are_open(
+    spreads, gap, name, taken, monkeypatch
+):
+    names = [one.replace("three", "a curve for each channel") for one in ASKED]
+    monkeypatch.setattr(recovery, "CANDIDATES", dict(zip(names, ASKED, strict=True)))
+    monkeypatch.setattr(recovery, "find_widest_gap", lambda Z: gap)
+    monkeypatch.setattr(recovery, "measure_spread", lambda one, *_: spreads[ASKED.index(one.args[0])])
+    found = recovery.choose_response("auto", taken)
+    assert found.method.args == (name,) and found.spread == spreads[ASKED.index(name)]
