@@ -31,6 +31,7 @@ TIERS = {
         "tests/course/test_toy.py::test_the_readme",
         "tests/course/test_toy.py::test_two_toy_classes",
         "tests/course/test_variants.py::test_each_variant_has_checks",
+        "tests/diagnostics/test_motion.py::test_gray",
         "tests/pipeline/test_alignment.py::test_another_percentile",
         "tests/pipeline/test_alignment.py::test_the_simplest_search",
         "tests/pipeline/test_recovery.py::test_linear_and",

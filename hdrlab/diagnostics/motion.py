@@ -75,7 +75,7 @@ def measure_motion(
     True
     """
     stack, t, w, curves, top = as_tables(images, times, g, w, "log", TOP)
-    mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0, ..., :1].size / PIXELS)))
+    mask, every = as_mask(valid, stack), max(1, int(np.sqrt(stack[0].size / curves.shape[1] / PIXELS)))
     few = np.s_[:, ::every, ::every]
     Z = np.moveaxis(stack[few].reshape(*stack[few].shape[:3], -1), -1, 0).copy()
     seen = (Z < top).all(axis=0) if mask is None else (Z < top).all(axis=0) & mask[few]

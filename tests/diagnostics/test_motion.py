@@ -35,6 +35,14 @@ def test_the_share_of_the_picture_that_moved_is_measured():
     assert motion.MOVED < share(15) < share(30) < 0.5
 
 
+def test_gray_photographs_are_thinned_as_those_in_colour_are(monkeypatch):
+    ball = movers.ball((60, 90), (30, 45), 12, 2.0)
+    gray = movers.shoot(WALL, ball, movers.path(3, (0, 30)), [0.25, 0.5, 1.0]).bracket.images
+    wide = gray.repeat(2, axis=1).repeat(2, axis=2)
+    monkeypatch.setattr(motion, "PIXELS", WALL.size)
+    assert share(30, images=wide) == share(30, images=np.stack([wide] * 3, axis=-1)) == share(30) > 0
+
+
 def test_what_a_photograph_does_not_show_does_not_count():
     shown = np.ones((3, 60, 90), bool)
     shown[1:] = False
