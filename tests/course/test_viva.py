@@ -4,7 +4,6 @@ import base64
 import difflib
 import json
 import re
-import time
 from html.parser import HTMLParser
 from pathlib import Path
 from types import SimpleNamespace
@@ -342,13 +341,13 @@ def test_a_function_that_breaks_a_promise_is_not_asked_about():
     assert {one["task"] for one in questions} == {"equivalent_time"}
 
 
-def test_a_change_that_never_ends_costs_its_time_and_no_more():
+def test_a_change_that_never_ends_is_left_and_others_are_asked_about():
     text = "import numpy as np\n\n\ndef ev(N, t, S=100.0):\n    k = 0\n    while k < 3:\n        k += 1\n"
     text += "    return np.log2(N**2 / t) - np.log2(S / 100)\n"
-    begun = time.monotonic()
+    assert any("k -= 1" in one.source for one in changed.versions(text))
     *_, questions = examined("hw1", tasks=["ev"], by=THERE, ev=text)
     assert questions
-    assert time.monotonic() - begun < 100
+    assert not any("k -= 1" in one["source"] for each in questions for one in each["versions"])
 
 
 @pytest.mark.parametrize("name", siege.NAMES)
