@@ -57,7 +57,7 @@ def correlated(*args):
 
 def searched(pyramid):
     """Return how a pair is searched for from the coarsest size on: where each path begins and ends."""
-    return [(s.level, len(s.path), s.path[0], s.path[-1], s.errors[-1], s.H) for s in cerman.search(pyramid)]
+    return [(s.level, s.path[0], s.path[-1], s.errors[-1], s.H) for s in cerman.search(pyramid)]
 
 
 def found_points():
