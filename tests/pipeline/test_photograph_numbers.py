@@ -20,7 +20,7 @@ LINES = photograph.filter_light(LL)
 PICTURE = RNG.integers(0, 256, (61, 83, 3), np.uint8)
 CASES = recorded.named(
     *(of(photograph.choose_settings, e) for e in (E, L, HOLES, L * 0 + 1, L * 0, L[:1, :1], E[:3, :2],
-        np.kron(L, np.ones((12, 9), np.float32)))),
+        E**3, L**6, E * (L > np.median(L))[..., None], np.kron(L, np.ones((12, 9), np.float32)))),
     *(of(photograph.filter_light, a) for a in (LL, LL[:1], LL[:, :5], np.kron(LL, np.ones((2, 3),
         np.float32)))),
     *(of(photograph.draw_lines, *a) for a in ((5, 3, 2), (7, 3, 4), (4, 4, 1))),

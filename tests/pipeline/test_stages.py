@@ -1,0 +1,75 @@
+"""What the stages make of frames that contradict the others, of times that do, and of what moved."""
+
+import numpy as np
+import pytest
+
+from hdrlab.core.bracket import bracket
+from hdrlab.diagnostics import outlying_frames
+from hdrlab.diagnostics.exposure_times import Estimate
+from hdrlab.pipeline import stages, timing
+from hdrlab.pipeline.assembly import Assembly
+from hdrlab.radiance.deghosting import ghosts
+
+TAKEN = bracket(np.full((5, 20, 20), 9, np.uint8), [1, 2, 3, 4, 5], "abcde")
+STATE = Assembly(
+    *("merge", TAKEN, np.zeros((5, 2), int)),
+    g=np.zeros(256),
+    E=np.zeros((20, 20), np.float32),
+    quality=np.zeros((20, 20), np.uint8),
+    homographies=np.stack([np.eye(3)] * 5),
+)
+
+
+@pytest.mark.parametrize(
+    ("rivals", "relative", "doubted"), [((), False, False), ((1, 2), False, True), ((1, 2), True, False)]
+)
+def test_a_frame_that_contradicts_all_others_goes_with_a_doubt_only_where_true_times_leave_it_open_which(
+    rivals, relative, doubted, monkeypatch
+):
+    monkeypatch.setattr(outlying_frames, "find_outlying_frames", lambda *_, **__: ((3,), rivals))
+    found = stages.leave_out_contrary(STATE, relative=relative)
+    assert found.bracket.names == ("a", "b", "c", "e")
+    assert (len(found.doubts), len(found.notes)) == (doubted, not doubted)
+    (said,) = found.doubts + found.notes
+    assert (
+        ": d; see whether its time is right" in said
+        and ("it may also be b or c that is wrong" in said) == doubted
+    )
+
+
+@pytest.mark.parametrize(
+    ("way", "moved", "fixed", "most"),
+    [("reference", 399, 2, np.inf), ("regions", 399, None, np.inf), ("auto", 199, None, ghosts.WIDESPREAD)],
+)
+def test_what_moved_is_taken_from_the_middle_photograph_or_the_best_ones_and_by_itself_not_where_half_did(
+    way, moved, fixed, most, monkeypatch
+):
+    def remove(*_, **named):
+        asked.append((named["fixed"], named["most"]))
+        labels = (np.arange(400) < moved).astype(np.int32).reshape(20, 20)
+        return ghosts.Ghosts(STATE.E + 1, STATE.quality, labels, np.array([2]), labels > 0, STATE.E)
+
+    asked = []
+    monkeypatch.setattr(ghosts, "remove_ghosts", remove)
+    found = stages.deghost(STATE, way, np.ones_like, None)
+    assert asked == [(fixed, most)] and found.E.all() and found.moving.sum() == moved
+    moved += 1
+    found = stages.deghost(STATE, way, np.ones_like, None)
+    assert bool(found.E.any()) == (found.moving is not None) == (way != "auto")
+
+
+@pytest.mark.parametrize(
+    ("spread", "other", "replaced"), [(0.5, 0.0, False), (0.51, 0.25, False), (0.51, 0.24, True)]
+)
+def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_than_half_of_that(
+    spread, other, replaced, monkeypatch
+):
+    def correct(taken, response, before):
+        return Estimate(taken.times, np.zeros(5), False, ""), other if before is None else spread
+
+    relative = TAKEN._replace(times=2.0 ** np.arange(5))
+    monkeypatch.setattr(timing, "correct_times", correct)
+    monkeypatch.setattr(timing, "estimate_relative_times", lambda taken: relative)
+    found = timing.refine_times(STATE, "auto", 0.7)
+    assert np.array_equal(found.bracket.times, (relative if replaced else TAKEN).times)
+    assert ["contradict the pixels by 0.70 stops" in one for one in found.doubts] == [True] * replaced
