@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import recorded
 
-from hdrlab.capture import planning
+from hdrlab.capture import exposure, planning
 
 INF, NAN = np.inf, np.nan
 MODEL = planning.Model(converter_noise=2.0, speeds=(100.0, 400.0))
@@ -33,6 +33,8 @@ CASES = recorded.named(
         4, 1), (0.3, 2, 3), (1, 11, 1), (1, 5, 0.4))),
     of(planning.squared_snr, [0.1, 10, 500, 7680], T, S, planning.Model()),
     of(planning.squared_snr, [0.1, 10, 500], T, S, MODEL),
+    of(planning.squared_snr, [0.1, 10, 500], T, S, MODEL._replace(converter_noise=3.0)),
+    *(of(planning._name, t, exposure.shutter_series()) for t in (64, 1.55, 2**-15, 2**-6, 2**-5.985)),
     *(of(planning.settings, 0.5, 400, snr, m) for snr in (10, 200) for m in (planning.Model(), MODEL)),
     of(planning.hardest, 0.5, 3000.0, T, S, MODEL),
     of(planning.hardest, 19.2, 768, T, np.full(3, 400.0), planning.Model()),

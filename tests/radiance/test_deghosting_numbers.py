@@ -46,6 +46,9 @@ BOX = (slice(3, 25), slice(2, 40))
 SMALL = (slice(0, 9), slice(40, 52))
 KNOWN, OTHER = (reference.read_frame(TAKEN, j, BOX) for j in (0, 1))
 MASKED, DARKER = (reference.read_frame(SHOWN, j, SMALL) for j in (2, 0))
+BOUNDED = reference.Estimate(
+    np.geomspace(0.2, 4, 64), np.full(64, 0.003), np.ones(64, bool), np.zeros(64), np.ones(64)
+)
 SCORE = np.zeros((12, 14), np.float32)
 SCORE[3:6, 4:7], SCORE[8, 9:13], SCORE[9:11, 9:11] = 1.5, 2, 3
 SEED = SCORE > 2.5
@@ -98,7 +101,7 @@ CASES = recorded.named(
     of(frames.fit_bias, np.repeat([20, 60], [100, 99]), np.full(199, 0.1), NOISE),
     *(of(f, t, LABELS) for f in (frames.mean_losses, frames.best_exposures) for t in (TAKEN, SHOWN)),
     *(of(ghosts.detect_motion, FOUND, tau=t, edge=e, margin=m) for t, e, m in ((0.1, 0.35, 4), (0.05, 0.2,
-        1), (9.0, 9.0, 4))),
+        1), (9.0, 9.0, 4), (0.4, 0.35, 2), (0.2, 2.0, 2))),
     *(of(ghosts.find_contradictions, TAKEN, BOX, j, E3[BOX]) for j in (0, 2)),
     *(of(ghosts.region_steps, TAKEN, E3, LABELS > 0, m, choose=partial) for m, partial in ((2,
         lambda found: np.full(found.max(), 1)), (4, lambda found: frames.best_exposures(TAKEN, found)))),
@@ -110,6 +113,9 @@ CASES = recorded.named(
     *(of(noted, *a) for a in ((LABELS, [0, 2]), (LABELS * 0, []), (LABELS * 0 + 1, [1]),
         ((np.arange(92) < 46).repeat(26).reshape(46, 52), [1]))),
     *(of(reference.read_frame, t, j, b) for t in (TAKEN, SHOWN) for j, b in ((0, BOX), (2, SMALL))),
+    *(of(reference.read_frame, TAKEN._replace(images=np.where(Z3 < 120, 0, Z3)), j, SMALL) for j in (0, 1)),
+    *(of(reference._violates, BOUNDED, BOUNDED._replace(low=low, high=high), 0.2) for low, high in ((0, 1),
+        (1, 9))),
     *(of(reference.find_consistent, a, b, tau=t) for a, b in ((KNOWN, OTHER), (OTHER, KNOWN), (MASKED,
         DARKER)) for t in (0.05, 0.2)),
     *(of(reference.join, a, b, w) for a, b, w in ((KNOWN, OTHER, np.tile([True, False], (22, 19))), (MASKED,
