@@ -262,6 +262,7 @@ CASES = recorded.named(
         bracket(Z1[:1], [1]), bracket(Z1 * 0 + Z1[:1], TIMES)) for way in ("correct", "stated", "estimate")),
     *(of(timing.complete_times, bracket(Z3[::-1], t), way) for t, way in ((TIMES, "estimate"), (TIMES,
         "correct"), (TIMES[:1].repeat(3), "correct"))),
+    of(timing.complete_times, bracket(Z3[:2], TIMES[:2]), "correct"),
     *(of(timing.complete_times, bracket(shots(BLOCKS[:56, :70], t, ((0, 0),) * len(t)), np.ones(len(t))),
         "correct") for t in ([1, 1.4], [1, 1.05, 3])),
     of(timing.describe_steps, TIMES * [1, 1, 1.1]),
