@@ -73,3 +73,10 @@ def test_relative_times_replace_those_of_a_worthless_map_where_they_leave_less_t
     found = timing.refine_times(STATE, "auto", 0.7)
     assert np.array_equal(found.bracket.times, (relative if replaced else TAKEN).times)
     assert ["contradict the pixels by 0.70 stops" in one for one in found.doubts] == [True] * replaced
+
+
+def test_photographs_that_get_darker_while_the_times_rise_are_named():
+    ramp = np.linspace(20, 240, 400).reshape(20, 20)
+    images = np.stack([ramp * share for share in (0.5, 0.7, 1, 0.6, 0.8)]).astype(np.uint8)
+    with pytest.raises(ValueError, match=r"c \(3 s\) and d \(4 s\)"):
+        timing.complete_times(TAKEN._replace(images=images), "correct")
