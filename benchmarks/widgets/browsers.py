@@ -1,4 +1,4 @@
-"""The browser of the tests, `tests/browser/laboratory.py`: what is measured is what is tested."""
+"""The laboratory of the tests, `tests/browser/laboratory.py`, with the Chromium that a reader has."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -27,7 +27,7 @@ def page() -> Iterator[tuple[Any, ModuleType]]:
     """Return a page of Chromium, and the laboratory it was started with."""
     tools = laboratory()
     try:
-        with tools.chromium() as browser:
+        with tools.chromium("chromium") as browser:
             yield browser.new_page(viewport=WINDOW), tools
     except tools.Absent as reason:
         raise Skipped(str(reason)) from None
