@@ -147,6 +147,8 @@ def test_a_site_is_made_in_its_folder_and_its_cache_also_where_caches_signs_and_
     assert "4 widgets, 4 notebooks; run now: 5" in ran.stdout  # the first page has a picture to wipe
     assert sorted(folder.iterdir()) == sorted([site, folder / ".site.cache", *notebooks])
     assert not list((folder / ".site.cache" / "kernels").iterdir())
+    assert not [path for path in folder.rglob("*") if path.name.startswith((".hdrlab-", "tmp"))]
+    assert all(one.stat().st_mtime == 4e9 for one in notebooks), "a notebook was written"
 
 
 def test_the_folder_of_a_site_holds_the_site_alone_and_is_served_as_it_is(made):
