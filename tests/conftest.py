@@ -3,7 +3,6 @@
 import csv
 import os
 import signal
-import sys
 import tempfile
 import threading
 from functools import cache
@@ -18,12 +17,10 @@ from PIL import Image
 from tiers import ALL, QUICK, TIERS, may_hold, tier_of, turn
 from xdist.scheduler import LoadScopeScheduling
 
+import hdrlab.course.site  # noqa: F401  # with it nbformat is loaded two seconds sooner, in each worker
 from hdrlab.capture import camera
 from hdrlab.core.bracket import bracket
 
-# with it nbformat's schemas know addresses of all alphabets, which no notebook has; when loaded it compiles a
-# grammar, two seconds for each worker
-sys.modules.setdefault("rfc3987_syntax", None)
 pytest.register_assert_rewrite("laws", "hdrlab.course.checks.laws")
 settings.register_profile("hdrlab", derandomize=True, database=None, deadline=None, max_examples=50)
 settings.load_profile("hdrlab")
